@@ -1,4 +1,8 @@
-"""Which cases of a test run by default: marker few(n) keeps n of them, evenly spread, and leaves the others to make robustness, as all of tests/hostile are."""
+"""Selects the test cases that run by default.
+
+The marker few(n) keeps n cases of a test, evenly spread. The others, and all of tests/hostile, run
+with `make robustness`.
+"""
 
 from collections import defaultdict
 from pathlib import Path

@@ -1,2 +1,5 @@
-"""Measurements of the program itself, commands of `python -m ffimpact` in the source folder: what it costs, how its errors fall, what it promises and
-what it does with hard scenes; other programs beside it (peers)."""
+"""Measurements of ffimpact itself, started with `python -m benchmarks NAME` in the source folder.
+
+They measure its cost, the convergence of its errors, the coverage of its error estimates and its
+robustness in difficult scenes. `peers` runs other programs on the same problems.
+"""

@@ -1,4 +1,4 @@
-"""python -m benchmarks NAME: one of the measurements, each with its own --help."""
+"""Runs one measurement: `python -m benchmarks NAME`. Each measurement has its own --help."""
 
 import importlib
 import sys
@@ -11,7 +11,8 @@ NAMES = sorted(path.stem.replace("_", "-") for path in Path(__file__).parent.glo
 
 
 def main(argv: list[str]) -> int | None:
-    """The exit code of the measurement that the first word names."""
+    """Runs the measurement whose name is `argv[0]` and returns its exit code. Raises BadInput for
+    an unknown name."""
     if not argv or argv[0] in ("-h", "--help"):
         print(f"usage: python -m benchmarks NAME [OPTIONS]\n\nNAME: {', '.join(NAMES)}")
         return 0

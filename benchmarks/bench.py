@@ -1,5 +1,9 @@
-"""Run time against error: many settings of a case on one core, the errors of their answers against our finest runs, and which
-setting is cheapest for 5 %, 1 % and 0.1 %. Other programs on the same problem, where they are installed (peers.py)."""
+"""Run time against error on one core.
+
+Each case runs with many settings. The errors of its results are relative to our two finest runs,
+and the report lists the cheapest setting for 5 %, 1 % and 0.1 %. Other programs that are installed
+(peers.py) solve the same problems.
+"""
 
 import itertools
 from collections.abc import Iterable
@@ -24,10 +28,13 @@ from verification import commands
 
 from . import peers
 
-LEVELS = (5.0, 1.0, 0.1)    # % of error
-HEADLINE, HEADLINE_CONTACT = 0.5, 1.0   # % at the same time in everything but the contact time, and in that
-LIMIT = 600.0               # seconds a run may take
-# Other programs, by case: program, form, mesh factor, dt [s]; from their cheapest setting for 0.5 % on
+LEVELS = (5.0, 1.0, 0.1)  # error levels of the tables [%]
+# Error levels of the headline [%]: of all results but the contact time, and of the contact time. A
+# setting must satisfy both.
+HEADLINE, HEADLINE_CONTACT = 0.5, 1.0
+LIMIT = 600.0  # longest time of a run [s]
+# Settings of the other programs by case: program, form, mesh factor and dt [s]. The first setting
+# of each program is its cheapest one with an error of at most 0.5 %.
 PEERS = {
     "normal-svk": [("ngsolve", "tuned", 2, 1.5e-4), ("ngsolve", "tuned", 2, 1e-4), ("ngsolve", "tuned", 1, 1e-4),
                    ("ngsolve", "tuned", 1, 5e-5), ("ngsolve", "tuned", 1, 2e-5), ("ngsolve", "plain", 2, 1.5e-4),
@@ -41,7 +48,8 @@ PEERS = {
 }
 PEERS_QUICK = {"normal-svk": [("ngsolve", "tuned", 1, 1e-4), ("textbook", "FreeFEM", 2, 1e-4)],
                "ball-axisymmetric": [("ngsolve", "tuned", 1, 1e-4)], "ball": [("ngsolve", "tuned", 4, 1.5e-4)]}
-# The disc on the block: refinements of NGSolve's own mesh (peers.two_bodies), and what it calls our answers
+# Disc on block: the refinements of NGSolve's own mesh (peers.two_bodies), and NGSolve's names of
+# our results.
 REFINEMENTS, REFINEMENTS_QUICK = (0.25, 0.5, 0.75, 1.0), (0.25, 0.5)
 NGSOLVE = {"rebound_vy_1": "velocity_upper", "rebound_vy_2": "velocity_lower", "vibration_energy_1": "vibration_upper",
            "vibration_energy_2": "vibration_lower", "thresholded_contact_time": "contact_time_1_percent"}
@@ -49,9 +57,15 @@ NGSOLVE = {"rebound_vy_1": "velocity_upper", "rebound_vy_2": "velocity_lower", "
 
 @dataclass(frozen=True)
 class Case:
-    """A scene, what is set in it, the answers that are judged, the finest accuracy that meshes and steps are made for, how many times
-    larger given sizes and steps are than those of the disc of radius 0.05 m, the families of settings (all where none is named), and the
-    case that has the reference where it is not this one."""
+    """A problem that is solved with many settings.
+
+    scene: name of the built-in scene; base: entries that are set in it
+    answers: names of the results whose errors are measured
+    finest: smallest accuracy for which meshes and time steps are made
+    scale: factor of prescribed sizes and steps, 1 for the disc of radius 0.05 m
+    families: names of the families of settings; empty for all of them
+    like: the case whose reference is used; empty for the case's own reference
+    """
 
     scene: str
     base: study.Point
@@ -63,12 +77,13 @@ class Case:
 
     @property
     def finer(self) -> float:
-        """The accuracy of the scene over that which its mesh and steps are made for."""
+        """The accuracy of the scene over the accuracy for which its mesh and steps are made."""
         wanted = scene.load(self.scene)
         return wanted.values["accuracy"] / wanted.description()["accuracy_made"]
 
     def sized(self, factor: float, dt: float, **given) -> study.Point:
-        """A mesh of `factor` times the sizes of peers.sized(), steps dt [s], both times `scale`."""
+        """Sizes `factor` times those of peers.sized() and step dt [s], both multiplied by `scale`.
+        """
         return peers.sized(self.scale * factor, dt=float(f"{self.scale * dt:.6g}"), **given)
 
 
@@ -88,7 +103,10 @@ CASES = {
 
 
 def main(argv: list[str]) -> int:
-    """Runs all settings one after the other, writes bench.csv, a figure a case and bench.md; 0 if the references are sound."""
+    """Runs all settings in sequence and writes bench.csv, bench.md and one figure for each case.
+
+    Returns 0. Raises study.Failure if a reference run fails.
+    """
     parser = commands.command("bench", __doc__)
     parser.add_argument("cases", metavar="CASE", nargs="*", default=list(CASES), help=f"(default: {' '.join(CASES)})")
     parser.add_argument("--quick", action="store_true",
@@ -124,25 +142,25 @@ norm over time of the difference of the force histories over that of the referen
 # ---- the settings
 
 def settings(case: Case, quick: bool) -> dict[str, list[study.Point]]:
-    """Points by family, from coarse to fine."""
+    """The settings of each family, from coarse to fine."""
     return {family: points for family, points in (coarse(case) if quick else grid(case)).items() if family in case.families
             or not case.families}
 
 
 def adaptive(case: Case, accuracies: Iterable[float], **given) -> list[study.Point]:
-    """Points by the accuracy that meshes and steps are made for."""
+    """One setting for each of the `accuracies` for which meshes and steps are made."""
     return [{"accuracy": min(0.4, case.finer * each)} | given for each in accuracies]
 
 
 def coarse(case: Case) -> dict[str, list[study.Point]]:
-    """The settings of --quick."""
+    """The settings of the option --quick, by family."""
     return {"adaptive, P2": adaptive(case, (0.1, 0.05, 0.02, 0.01, 0.005)), "adaptive, P1": adaptive(case, (0.02, 0.005), degree=1),
             "fixed step, P2": [case.sized(1, 1e-4), case.sized(1, 4e-5)],
             "midpoint": adaptive(case, (0.02, 0.005), integrator="midpoint"), "bdf2": adaptive(case, (0.02, 0.005), integrator="bdf2")}
 
 
 def grid(case: Case) -> dict[str, list[study.Point]]:
-    """All settings."""
+    """All settings, by family."""
     found = {
         "adaptive, P2": adaptive(case, [a for a in (0.05, 0.02, 0.01, 0.005, 0.0025, 0.00125, 0.000625) if a >= case.finest]),
         "adaptive, P1": adaptive(case, (0.02, 0.005, 0.00125, 0.0005), degree=1),
@@ -157,7 +175,7 @@ def grid(case: Case) -> dict[str, list[study.Point]]:
 
 
 def references(case: Case, quick: bool) -> list[study.Point]:
-    """The two finest runs: by accuracy, and by mesh and step."""
+    """The two reference runs: one with a small accuracy, one with a prescribed mesh and step."""
     if quick:
         return [{"accuracy": 0.0006}, case.sized(0.7, 2e-5)]
     return [{"accuracy": 0.12 * case.finest * case.finer}, case.sized(min(0.4, float(f"{0.4 * (case.finest / 0.00125) ** 0.5:.3g}")), 6e-6)]
@@ -166,8 +184,12 @@ def references(case: Case, quick: bool) -> list[study.Point]:
 # ---- the measurement
 
 def measure(name: str, out: Path, quick: bool) -> tuple[pd.DataFrame, dict[str, float]]:
-    """A row a setting: case, family, its parameters, seconds, and the errors in % of every answer and of the force history; and the
-    error bars of the reference in %."""
+    """Runs a case. Returns a table and the error bars of the reference [%] by result.
+
+    Each row of the table is a setting: case, program, family, parameters, processor seconds, and
+    the errors [%] of all results and of the force history. Raises study.Failure if a reference run
+    fails.
+    """
     case, folder = CASES[name], out / name
     families = settings(case, quick)
     labels = [(family, point) for family, points in families.items() for point in points]
@@ -198,7 +220,7 @@ def measure(name: str, out: Path, quick: bool) -> tuple[pd.DataFrame, dict[str, 
 
 
 def force_of(folder: Path) -> tuple[np.ndarray, np.ndarray]:
-    """(t, force) of a run."""
+    """The times [s] and normal forces of a run."""
     return force(read_history(folder))
 
 
@@ -210,8 +232,12 @@ def _words(point: study.Point) -> str:
 
 def _peers(case: Case, others: list[tuple], best: pd.Series, force: tuple[np.ndarray, np.ndarray], out: Path, folder: Path,
            ours: set[Path]) -> pd.DataFrame:
-    """The same rows for the settings `others` of other programs: one with the reason for each that is not installed or failed.
-    force_from_ours: of the force history against that of our run with the same sizes and step, where `folder` has it among `ours`."""
+    """Runs the settings `others` of other programs and returns rows of the same table.
+
+    A program that is not installed or fails gives a row with the reason. `force_from_ours` compares
+    the force history with that of our run with the same sizes and step. The column is filled where
+    that run, in `folder`, is one of `ours`.
+    """
     rows = []
     for program, form, factor, dt in in_turn("others", others):
         sizes = peers.sized(factor)
@@ -233,7 +259,10 @@ def _peers(case: Case, others: list[tuple], best: pd.Series, force: tuple[np.nda
 
 
 def _two_bodies(case: Case, best: pd.Series, force: tuple[np.ndarray, np.ndarray], out: Path, quick: bool) -> pd.DataFrame:
-    """The same rows for NGSolve's disc on a block, a row a refinement of its own mesh; one with the reason where there is no answer."""
+    """Rows of the same table for NGSolve's disc on a block, one for each refinement of its mesh.
+
+    A run that fails gives a row with the reason.
+    """
     rows = []
     for refine in in_turn("NGSolve", REFINEMENTS_QUICK if quick else REFINEMENTS):
         history = _history(out, f"two-bodies-{refine:g}")
@@ -246,13 +275,17 @@ def _two_bodies(case: Case, best: pd.Series, force: tuple[np.ndarray, np.ndarray
 
 
 def _history(out: Path, name: str) -> Path:
-    """Where another program is to write its force history."""
+    """The file for the force history of another program. Its folder is created."""
     out.mkdir(parents=True, exist_ok=True)
     return out / f"{name}.csv"
 
 
 def _other(found: dict | None, reason: str, best: pd.Series, answers: dict[str, str]) -> dict:
-    """Of what another program found, which calls our answers so: size, seconds and errors [%]; or the reason why there is nothing."""
+    """A row from the output `found` of another program: unknowns, steps, seconds and errors [%].
+
+    `answers` maps our names of the results to the names in `found`. If `found` is empty, the row
+    has the `reason`.
+    """
     if not found:
         return {"exit": 1, "message": reason}
     return {"exit": 0, "message": reason, "dofs": found["dofs"], "steps": found["steps"], "seconds": found["cpu_seconds"]} | {
@@ -260,7 +293,7 @@ def _other(found: dict | None, reason: str, best: pd.Series, answers: dict[str, 
 
 
 def _textbook(sizes: study.Point, dt: float, out: Path) -> dict:
-    """The textbook FreeFEM script on our mesh of these sizes."""
+    """The results of the textbook FreeFEM script on our mesh of these sizes, with step dt [s]."""
     wanted = scene.load("disc-normal").override(sizes | {"dt": dt, "end_time": 5.2e-3})
     path = out / f"textbook-{sizes['mesh_size']:g}.msh"
     mesh.write(mesh.disc(wanted.values["radius"], sizes["mesh_size"], sizes["contact_mesh_size"], half=True), path)
@@ -270,12 +303,12 @@ def _textbook(sizes: study.Point, dt: float, out: Path) -> dict:
 # ---- the page
 
 def errors(name: str) -> dict[str, str]:
-    """Columns of the errors of a case, with their words."""
+    """The columns of the errors of a case and their headings."""
     return {f"{answer}_error": answer.replace("_", " ") for answer in CASES[name].answers} | {"force_error": "force history (L2)"}
 
 
 def page(name: str, rows: pd.DataFrame, bars: dict[str, float]) -> str:
-    """The case as markdown: the cheapest setting for each level and answer, then all settings."""
+    """The case as Markdown: the cheapest setting for each level and result, then all settings."""
     columns = errors(name)
     lines = [f"## {name}", f"![error over time]({name}.png)", "",
              "reference ± [%]: " + ", ".join(f"{words} {bars[column.removesuffix('_error')]:.2g}" for column, words in columns.items()), "",
@@ -306,13 +339,21 @@ def page(name: str, rows: pd.DataFrame, bars: dict[str, float]) -> str:
 
 
 def cheapest(rows: pd.DataFrame, columns: list[str], level: float | np.ndarray) -> str:
-    """The setting that reaches the level (of each, in their order) in all `columns` in the least time."""
+    """The cheapest setting whose errors in all `columns` are at most `level`, in words.
+
+    `level` [%] is one number or one number for each column. Returns "none" if there is no such
+    setting.
+    """
     good = rows[(rows.exit == 0) & (rows[columns] <= level).all(axis=1)].sort_values("seconds")
     return next((f"{row.seconds:.2f} s: {row.family}" + f", {row.setting}" * bool(row.setting) for row in good.itertuples()), "none")
 
 
 def draw(name: str, rows: pd.DataFrame, bars: dict[str, float], path: Path) -> None:
-    """A panel an answer: error [%] over processor time [s], a line a family; grey: below the error bar of the reference."""
+    """Draws error [%] over processor time [s], one panel for each result and one line for each
+    family.
+
+    Errors below the error bar of the reference are grey.
+    """
     columns = errors(name)
     styles = itertools.product(("-", "--", ":"), (BLUE, ORANGE, GREEN, PURPLE, BLACK))
     looks = {family: style for family, style in zip(rows.family.unique(), styles)}
@@ -331,7 +372,8 @@ def draw(name: str, rows: pd.DataFrame, bars: dict[str, float], path: Path) -> N
             axes.axhspan(1e-4, max(1e-4, bars[column.removesuffix("_error")]), color=GREY, alpha=0.25, linewidth=0)
             axes.set(title=words, ylabel="error [%]")
             axes.grid(alpha=0.3)
-        for axes in grid.flat[max(0, len(columns) - wide):len(columns)]:   # the lowest of each column
+        # The lowest panel of each column.
+        for axes in grid.flat[max(0, len(columns) - wide):len(columns)]:
             axes.tick_params(labelbottom=True)
             axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
             axes.xaxis.set_major_formatter("{x:g}")

@@ -1,4 +1,8 @@
-"""The disc on the free block (paper, section 3.2) with error bars: velocities, energies, contact times over law, nu, stiffness, mesh."""
+"""The disc on the free block (paper, section 3.2) with error bars.
+
+Computes velocities, energies and contact times for several laws, values of nu, penalties and
+meshes.
+"""
 
 import itertools
 from collections.abc import Mapping
@@ -17,28 +21,36 @@ from . import page, peers
 
 CASES = [{"law": law, "nu": nu, "penalty": k} for law, nu, k in itertools.product(("svk", "neohookean"), (0.3, 0.45), (1e9, 1e10))]
 ACCURACIES = (0.02, 0.005)
-FINER = 1.5               # elements and steps of the reference are so many times smaller than those of the most accurate run
-REFERENCE = "reference"     # in the place of an accuracy
-SPEED = 10.0                # m/s of the disc
-LIMIT = 1800.0              # seconds a run may take
+# Mesh sizes and steps of the reference are smaller by this factor than those of the most accurate
+# run.
+FINER = 1.5
+REFERENCE = "reference"  # marks the reference in the column accuracy
+SPEED = 10.0  # speed of the disc [m/s]
+LIMIT = 1800.0  # longest time of a run [s]
 OPEN = {"fields": 0}
-# The answers: velocities upwards; energies of the motion of the centres and of the vibration about it, in % of the energy at the start
+# The results. Velocities are positive upwards. The energies of the motion of the centres and of the
+# vibration about them are in % of the initial energy.
 VELOCITIES = ("v disc m/s", "v block m/s")
 SHARES = ("disc moves %", "block moves %", "disc vibrates %", "block vibrates %")
-TIMES = ("contact >1% ms", "contact ms")    # above 1 % of the peak force; from the first touch to the last
+# Contact times: while the force exceeds 1 % of its peak, and from the first to the last contact.
+TIMES = ("contact >1% ms", "contact ms")
 ANSWERS = VELOCITIES + SHARES + TIMES
-# What every run must fulfil. The block's velocity lies between that of bodies that stay together (restitution 0) and of an elastic impact
-# (1).
-BLOCK = (-0.76, -0.38)      # m/s
-MOMENTUM = 1e-8             # of the disc's momentum
-ENERGY = 1e-9               # of the energy at the start
-# NGSolve: two of the cases at two refinements of its mesh, seconds each; what its answers differ by is the finer's error bar
+# Bounds that every run must satisfy. The velocity of the block lies between the values for
+# restitution 0 (the bodies stay together) and restitution 1 (elastic impact).
+BLOCK = (-0.76, -0.38)  # velocity of the block [m/s]
+MOMENTUM = 1e-8  # change of the total momentum over the momentum of the disc
+ENERGY = 1e-9  # error of the energy balance over the initial energy
+# NGSolve solves two of the cases at two refinements of its mesh, in seconds each. The difference
+# between the two is the error bar of the finer one.
 PEER_CASES = [{"law": law, "nu": 0.45, "penalty": 1e9} for law in ("svk", "neohookean")]
 REFINEMENTS = (0.35, 0.7)
 
 
 def main(argv: list[str]) -> int:
-    """Prints answers, errors and checks, writes disc-block-errors.csv and disc-block-peers.csv; 0 if every run fulfils every check."""
+    """Prints results, errors and checks; writes disc-block-errors.csv and disc-block-peers.csv.
+
+    Returns 0 if every run passes every check.
+    """
     parser = commands.command("disc-block-errors", __doc__, page=True)
     parser.add_argument("--cases", metavar="N", type=whole, default=len(CASES), help="the first N of them")
     parser.add_argument("--accuracy", metavar="A", type=float, nargs="+", default=ACCURACIES,
@@ -58,7 +70,10 @@ def main(argv: list[str]) -> int:
 
 
 def compare(cases: list[study.Point], accuracies: tuple[float, ...], out: Path) -> pd.DataFrame:
-    """A row a case and accuracy, and one of its reference: size, processor seconds, ANSWERS, what the checks look at, the message."""
+    """Runs all cases. Each row is a case with one accuracy or with its reference.
+
+    The columns are size, processor seconds, ANSWERS, the quantities of the checks and the message.
+    """
     points = [case | {"accuracy": accuracy} for case in cases for accuracy in accuracies]
     runs = study.study(points, out, OPEN, LIMIT, "disc-block")
     last = range(len(accuracies) - 1, len(points), len(accuracies))
@@ -74,7 +89,8 @@ def compare(cases: list[study.Point], accuracies: tuple[float, ...], out: Path) 
 
 
 def row(run: Mapping[str, Value], accuracy: float | str) -> dict:
-    """Of a run: its answers, and the momentum that is missing after the impact over that of the disc before."""
+    """The results of a run, and its change of momentum over the momentum of the disc before the
+    impact."""
     if run["exit"] != 0:
         return {"accuracy": accuracy, "message": run["message"]}
     disc, block = (run["mass_1"], run["rebound_vy_1"]), (run["mass_2"], run["rebound_vy_2"])
@@ -87,13 +103,21 @@ def row(run: Mapping[str, Value], accuracy: float | str) -> dict:
 
 def answers(disc: tuple[float, float], block: tuple[float, float], vibration: tuple[float, float], energy: float,
             times: tuple[float, float]) -> dict[str, float]:
-    """ANSWERS, from mass [kg/m] and velocity [m/s] of both bodies, their energies of vibration, that at the start [J/m], both times [s]."""
+    """Returns ANSWERS.
+
+    `disc` and `block` are mass [kg/m] and velocity [m/s]; `vibration` holds their vibration
+    energies and `energy` is the initial energy [J/m]; `times` are both contact times [s].
+    """
     moves = [mass / 2 * v**2 for mass, v in (disc, block)]
     return dict(zip(ANSWERS, (disc[1], block[1], *(100 * part / energy for part in (*moves, *vibration)), *(1e3 * time for time in times))))
 
 
 def ask_peer(cases: list[study.Point]) -> tuple[pd.DataFrame, str]:
-    """A row a case and refinement of NGSolve's (benchmarks/programs/ngsolve_two_bodies.py), and why it was not run, if so."""
+    """Runs NGSolve (benchmarks/programs/ngsolve_two_bodies.py), one row for each case and
+    refinement.
+
+    Also returns the reason why NGSolve was not run, or "".
+    """
     rows, reason = [], "none of its cases is among these" if not cases else ""
     for case, refine in in_turn("NGSolve", itertools.product(cases, REFINEMENTS)):
         found, reason = peers.two_bodies(LIMIT, refine=refine, speed=SPEED, **case)
@@ -108,7 +132,7 @@ def ask_peer(cases: list[study.Point]) -> tuple[pd.DataFrame, str]:
 
 
 def violations(table: pd.DataFrame) -> list[str]:
-    """A sentence for each run and check that it does not fulfil; missing numbers fulfil none."""
+    """A sentence for each check that a run fails. A check with a missing number fails."""
     found = []
     for _, run in table.iterrows():
         if run.message:
@@ -124,14 +148,18 @@ def violations(table: pd.DataFrame) -> list[str]:
 
 
 def words(run: Mapping[str, Value]) -> str:
-    """A case, with its accuracy where it has one, in words."""
+    """A case in words, with its accuracy if it has one."""
     which = run.get("accuracy")
     which = "" if which is None else f", {which}" if which == REFERENCE else f", accuracy {which:g}"
     return f"{run['law']}, nu {run['nu']:g}, k {run['penalty']:g} Pa/m{which}"
 
 
 def differences(table: pd.DataFrame) -> pd.DataFrame:
-    """The runs but for the references, each answer replaced by how far it is from its case's reference [units of the answer]."""
+    """The runs without the references.
+
+    Each result is replaced by the distance from the reference of its case, in the unit of the
+    result.
+    """
     fine = table[table.accuracy == REFERENCE].set_index(list(CASES[0]))[list(ANSWERS)]
     rough = table[table.accuracy != REFERENCE].copy()
     index = pd.MultiIndex.from_frame(rough[list(CASES[0])])
@@ -140,21 +168,27 @@ def differences(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def with_bars(table: pd.DataFrame) -> pd.DataFrame:
-    """A row a case: the reference's answers and, as <answer> bar, what the most accurate run differs by."""
+    """A row for each case: the results of the reference and, as `<answer> bar`, their difference
+    from the most accurate run."""
     fine = table[table.accuracy == REFERENCE].reset_index(drop=True)
     bars = differences(table).groupby(list(CASES[0]), sort=False).tail(1).reset_index(drop=True)
     return fine.assign(**{f"{answer} bar": bars[answer] for answer in ANSWERS})
 
 
 def peer_with_bars(others: pd.DataFrame) -> pd.DataFrame:
-    """A row a case of which both refinements are there: the finer's answers and, as <answer> bar, what the coarser differs by."""
+    """A row for each case with both refinements: the finer results and, as `<answer> bar`, their
+    difference from the coarser ones."""
     groups = [rows for _, rows in others.groupby(list(CASES[0]), sort=False) if len(rows) == len(REFINEMENTS)]
     return pd.DataFrame([{**rows.iloc[-1], **{f"{answer} bar": abs(rows[answer].iloc[-1] - rows[answer].iloc[0]) for answer in ANSWERS}}
                          for rows in groups])
 
 
 def disagreements(ours: pd.DataFrame, theirs: pd.DataFrame) -> list[str]:
-    """A sentence for each answer (tables with bars) that the programs give further apart than both error bars together."""
+    """A sentence for each result in which the programs differ by more than the sum of both error
+    bars.
+
+    Both tables hold error bars, as with_bars() returns them.
+    """
     found = []
     for _, other in theirs.iterrows():
         own = ours[(ours[list(CASES[0])] == other[list(CASES[0])]).all(axis=1)].iloc[0]
@@ -164,7 +198,7 @@ def disagreements(ours: pd.DataFrame, theirs: pd.DataFrame) -> list[str]:
 
 
 def bar(values: Mapping[str, Value], answer: str) -> str:
-    """An answer with its error bar, to two digits of the latter."""
+    """A result with its error bar, to two digits of the error bar."""
     value, error = values[answer], values[f"{answer} bar"]
     if pd.isna(error):
         return "" if pd.isna(value) else f"{value:.4g}"
@@ -173,7 +207,8 @@ def bar(values: Mapping[str, Value], answer: str) -> str:
 
 
 def report(table: pd.DataFrame, others: pd.DataFrame, reason: str) -> str:
-    """Answers with bars, errors beside processor seconds, NGSolve's answers beside ours, the checks."""
+    """The report: results with error bars, errors beside processor seconds, NGSolve's results and
+    the checks."""
     columns = {"law": "", "nu": "g", "penalty": "g"}
     ours = with_bars(table)
     cells = pd.DataFrame([{name: values[name] for name in columns} | {answer: bar(values, answer) for answer in ANSWERS}
@@ -209,13 +244,14 @@ def report(table: pd.DataFrame, others: pd.DataFrame, reason: str) -> str:
 
 
 def cost(runs: pd.DataFrame) -> str:
-    """From the smallest to the largest of size and processor seconds."""
+    """The ranges of unknowns, steps and processor seconds of the runs."""
     return ", ".join(f"{runs[name].min():.0f} to {runs[name].max():.0f} {unit}" for name, unit in
                      (("dofs", "unknowns"), ("steps", "steps"), ("seconds", "processor seconds")))
 
 
 def beside(table: pd.DataFrame, others: pd.DataFrame, reason: str, columns: dict, formats: dict, apart: list[str]) -> list[str]:
-    """The lines on NGSolve: why it was not run, or its answers under ours and where they differ by more than their bars."""
+    """The lines about NGSolve: the reason why it was not run, or its results below ours and the
+    differences `apart` that exceed the error bars."""
     lines = [f"Not run{' to the end' if len(others) else ''}: {reason}."] if reason else []
     if others.empty:
         return lines

@@ -1,4 +1,4 @@
-"""Scenes drawn at random, the same ones for the same seed: what promises and robustness are tried on."""
+"""Random scenes for tests of the error estimates and of robustness. Equal seeds, equal scenes."""
 
 import math
 import random
@@ -7,29 +7,36 @@ from pathlib import Path
 
 from ffimpact.sweeps.study import Point
 
-# young [Pa], density [kg/m3], nu: from gel to steel, round values of handbooks
+# Young's modulus [Pa], density [kg/m3] and nu of materials from gel to steel; rounded handbook
+# values.
 MATERIALS = {"gel": (3e4, 1050.0, 0.45), "soft rubber": (1e5, 1000.0, 0.4), "foam": (1e6, 100.0, 0.0), "rubber": (7e6, 1722.0, 0.45),
              "cork": (3e7, 200.0, 0.05), "ptfe": (5e8, 2200.0, 0.46), "nylon": (2.5e9, 1150.0, 0.4), "wood": (1e10, 700.0, 0.3),
              "lead": (1.6e10, 11340.0, 0.44), "glass": (7e10, 2500.0, 0.22), "aluminium": (7e10, 2700.0, 0.33),
              "steel": (2.1e11, 7850.0, 0.3)}
-# Of a mixture of all dimensions: the share of each scene in sixty, and accuracies that are asked for; bodies and three dimensions are dear.
+# A mixture of all dimensions: the number of each scene in sixty, and its requested accuracies.
+# Scenes with two bodies and in space are expensive.
 MIXTURE = {"disc-normal": (24, (0.005, 0.01, 0.02)), "disc-block": (10, (0.01, 0.02, 0.05)), "ball-axisymmetric": (12, (0.005, 0.01, 0.02)),
            "two-discs": (10, (0.01, 0.02, 0.05)), "ball": (4, (0.1,))}
-COARSE = (0.03, 0.05, 0.1)  # accuracies of scenes where stated errors are tried at few elements and steps
-SLOWEST, FASTEST = 5e-4, {"svk": 0.1, "neohookean": 0.18}   # speeds, over sqrt(E/density); svk breaks down above
-FASTEST_CORNER = 0.05       # of those that fall on a corner
+# Requested accuracies of scenes that test the error estimates with few elements and steps.
+COARSE = (0.03, 0.05, 0.1)
+# Bounds of the speed over sqrt(E/density). Above its bound svk breaks down.
+SLOWEST, FASTEST = 5e-4, {"svk": 0.1, "neohookean": 0.18}
+# Upper bound of the speed of bodies that fall on a corner, over sqrt(E/density).
+FASTEST_CORNER = 0.05
 
 
 def bar_speed(young: float, density: float) -> float:
-    """c = sqrt(E/rho) [m/s], which scales the speeds of impacts."""
+    """The wave speed of a bar, c = sqrt(E/rho) [m/s], which scales the impact speeds."""
     return (young / density) ** 0.5
 
 
 def draw(seed: int, count: int, hard: bool = False, scene: str = "disc-normal") -> list[Point]:
-    """`count` impacts of a disc: material, law, speed, radius; some oblique or spinning, with and without friction, exponents.
+    """`count` impacts of a disc with random material, law, speed and radius.
 
-    `hard`: also gravity, other integrators, linear elements, other accuracies, penalties and friction laws.
-    `scene`: a key of SCENES, what they are overrides of; on a block no gravity, of a ball what keeps its axis.
+    Some are oblique or spinning, some have friction or another exponent of the penalty law. `hard`
+    adds gravity, other integrators, linear elements, and other accuracies, penalties and friction
+    laws. The points override the entries of `scene`, a key of SCENES. Scenes on a block have no
+    gravity, and balls of revolution keep their axis.
     """
     chance = random.Random(seed)
     points = [_scene(chance, hard) for _ in range(count)]
@@ -37,8 +44,10 @@ def draw(seed: int, count: int, hard: bool = False, scene: str = "disc-normal") 
 
 
 def mixture(seed: int, count: int) -> list[tuple[str, Point]]:
-    """About `count` scenes of all dimensions, with and without friction, of one body and two, the kinds spread evenly: each scene's name
-    and what it is overridden by."""
+    """About `count` scenes of all dimensions with one body or two, as name and overrides.
+
+    Some scenes have friction. The kinds of scenes are spread evenly over the list.
+    """
     found = []
     for scene, (share, accuracies) in MIXTURE.items():
         chance = random.Random(f"{seed} {scene}")
@@ -50,7 +59,11 @@ def mixture(seed: int, count: int) -> list[tuple[str, Point]]:
 
 
 def coarse(seed: int, count: int, asked: Sequence[float] = COARSE) -> list[tuple[str, Point]]:
-    """`count` discs and balls of revolution in turn at each accuracy `asked` for, as draw() has them, a fifth nearly incompressible."""
+    """`count` discs and balls of revolution in turn, drawn as in draw(), at each accuracy in
+    `asked`.
+
+    A fifth of them is nearly incompressible.
+    """
     chance, found = random.Random(f"{seed} coarse"), []
     for k in range(count):
         scene = ("disc-normal", "ball-axisymmetric")[k % 2]
@@ -70,14 +83,15 @@ def _of_revolution(chance: random.Random, point: Point) -> Point:
 
 
 def _on_block(chance: random.Random, point: Point) -> Point:
-    """On a free block of the same material, of some radii's width and height."""
+    """A disc on a free block of the same material; width and height are multiples of the radius."""
     across, deep = chance.choice([5, 10, 20]), chance.choice([2, 4])
     kept = {name: value for name, value in point.items() if name not in ("gravity", "height")}
     return kept | {"block_width": across * point["radius"], "block_height": deep * point["radius"]}
 
 
 def _on_another(chance: random.Random, point: Point) -> Point:
-    """On another disc, off their centres, of another radius and stiffness at times; the frame drifts."""
+    """A disc and another disc, off centre. The other disc may differ in radius and stiffness. Both
+    drift."""
     radius, speed, other = point["radius"], point["speed"], point["radius"] * chance.choice([0.5, 1, 1, 2])
     apart, off = radius + other, chance.choice([0, 0.2, 0.4, 0.6]) * (radius + other)
     drift = [_round(chance.uniform(-2, 2) * speed) for _ in "xy"]
@@ -95,7 +109,7 @@ def _on_another(chance: random.Random, point: Point) -> Point:
 
 
 def _on_corner(chance: random.Random, point: Point) -> Point:
-    """A block, square or longer, that falls on one of its corners."""
+    """A square or rectangular block that falls on one of its corners."""
     width, height, speed = 2 * point["radius"], 2 * point["radius"] * chance.choice([0.3, 0.6, 1]), min(
         point["speed"], FASTEST_CORNER * bar_speed(point["young"], point["density"]))
     found = {name: point[name] for name in ("law", "young", "density", "nu", "accuracy") if name in point}
@@ -108,7 +122,7 @@ def _on_corner(chance: random.Random, point: Point) -> Point:
 
 
 def _in_space(chance: random.Random, point: Point) -> Point:
-    """A ball in three dimensions, not too fast for coarse elements."""
+    """A ball in space. Its speed is bounded, as the elements are coarse."""
     kept = {name: value for name, value in point.items() if name not in ("symmetry", "spin", "exponent")}
     return kept | {"law": "neohookean", "speed": _round(min(point["speed"], 0.05 * bar_speed(point["young"], point["density"])))}
 
@@ -118,7 +132,7 @@ SCENES = {"disc-normal": _on_plane, "disc-block": _on_block, "ball-axisymmetric"
 
 
 def words(point: Point) -> str:
-    """A scene as a line of a table reads it best: law, material, speed over c, what is special."""
+    """A scene as a line of a table: law, material, speed over c and unusual entries."""
     named = {value[:2]: name for name, value in MATERIALS.items()}
     known = point["nu"] == MATERIALS[named[point["young"], point["density"]]][2]
     told = {"law", "young", "density", "nu" if known else "", "speed", "friction_static", "friction_dynamic", "body.1.position",
@@ -128,7 +142,8 @@ def words(point: Point) -> str:
         speed = point["speed"]
     elif "body.1.velocity" in point and isinstance(point["body.1.velocity"], list):
         speed = max(abs(a - b) for a, b in zip(point["body.1.velocity"], point.get("body.2.velocity", [0, 0])))
-    else:                                      # of flat strikes: components along one axis
+    else:
+        # Bodies that strike flat give the velocity as components along one axis.
         speed = sum(abs(value) for name, value in point.items() if ".velocity" in name)
     parts = [point["law"], named[point["young"], point["density"]], f"v/c {speed / bar_speed(point['young'], point['density']):.2g}"]
     if point.get("friction_static"):
@@ -157,7 +172,8 @@ def _scene(chance: random.Random, hard: bool) -> Point:
 
 
 def _harder(chance: random.Random, point: Point, c: float) -> Point:
-    """What a user may ask for besides, rubber and damping, too; each in a small part of the scenes."""
+    """Further options that a user may set, among them rubber and damping. Each appears in a small
+    share of the scenes."""
     more: Point = {"accuracy": chance.choice([0.002, 0.005, 0.01, 0.03])}
     if chance.random() < 0.15:
         more["integrator"] = chance.choice(["midpoint", "newmark", "bdf2", "backward-euler"])
@@ -171,7 +187,8 @@ def _harder(chance: random.Random, point: Point, c: float) -> Point:
         more["regularization"] = chance.choice(["sqrt", "tanh"])
     if chance.random() < 0.1:
         more["symmetry"] = "full"
-    beside = random.Random(repr(point | more))           # of its own: what is drawn above stays as it is
+    # A generator of its own leaves the numbers that are drawn above unchanged.
+    beside = random.Random(repr(point | more))
     if beside.random() < 0.2:
         more["nu"] = beside.choice([0.49, 0.499, 0.4999])
         if point["law"] == "neohookean" and not more.keys() & {"integrator", "degree"} and beside.random() < 0.5:
@@ -187,15 +204,16 @@ def _round(value: float) -> float:
 
 # ---- faces that strike flat
 
-FLAT = Path(__file__).with_name("flat")       # their scenes
-# how many of sixty, and the accuracies that are asked for: those in space are dear
+FLAT = Path(__file__).with_name("flat")  # folder of their scenes
+# The number of each scene in sixty, and its requested accuracies. Scenes in space are expensive.
 FLAT_MIXTURE = {"block-wall": (18, (0.02, 0.05, 0.1)), "two-bars": (14, (0.02, 0.05, 0.1)), "polygon-wall": (14, (0.02, 0.05, 0.1)),
                 "cylinder-wall": (10, (0.02, 0.05, 0.1)), "box-wall": (4, (0.1,))}
 FLAT_NU = (0.0, 0.0, 0.1, 0.2, 0.3, 0.4, 0.45, 0.49)
 
 
 def flat(seed: int, count: int) -> list[tuple[str, Point]]:
-    """About `count` bodies with faces that strike flat, on planes and on each other, in all dimensions: scene and overrides."""
+    """About `count` bodies whose faces strike planes or each other flat, in all dimensions, as
+    scene and overrides."""
     found = []
     for scene, (share, accuracies) in FLAT_MIXTURE.items():
         chance = random.Random(f"{seed} {scene}")
@@ -224,7 +242,7 @@ def _bars(chance: random.Random, speed: float) -> Point:
 
 
 def _polygon(chance: random.Random, speed: float) -> Point:
-    """A trapezoid on its longer or its shorter side."""
+    """A trapezoid that lies on its longer or its shorter side."""
     base, top, height = (0.1 * chance.uniform(*ends) for ends in ((0.5, 2), (0.3, 1), (0.5, 2)))
     corners = [[-base / 2, 0.0], [base / 2, 0.0], [top / 2, height], [-top / 2, height]]
     corners = [[float(f"{x:.3g}") for x in corner] for corner in corners]
@@ -243,19 +261,21 @@ def _box(chance: random.Random, speed: float) -> Point:
             "body.1.velocity.2": -speed}
 
 
-FASTEST_FLAT = 0.03          # speed over sqrt(E/density)
+FASTEST_FLAT = 0.03  # upper bound of the speed over sqrt(E/density)
 FLAT_SHAPES = {"block-wall": _block, "two-bars": _bars, "polygon-wall": _polygon, "cylinder-wall": _cylinder, "box-wall": _box}
 
 
 # ---- supports, loads, rigid bodies and obstacles that move
 
-HELD_MIXTURE = {"drop-weight": 18, "disc-beam": 10, "hollow-ball": 16, "roller": 16}   # how many of sixty
+# The number of each scene in sixty.
+HELD_MIXTURE = {"drop-weight": 18, "disc-beam": 10, "hollow-ball": 16, "roller": 16}
 HELD_ACCURACIES = (0.02, 0.05, 0.1)
-FASTEST_HELD = 0.06          # speed over sqrt(E/density)
+FASTEST_HELD = 0.06  # upper bound of the speed over sqrt(E/density)
 
 
 def held(seed: int, count: int) -> list[tuple[str, Point]]:
-    """About `count` scenes with supports, loads, rigid bodies and obstacles that move: scene and overrides."""
+    """About `count` scenes with supports, loads, rigid bodies and moving obstacles, as scene and
+    overrides."""
     found = []
     for scene, share in HELD_MIXTURE.items():
         chance = random.Random(f"{seed} {scene}")
@@ -272,7 +292,10 @@ def held(seed: int, count: int) -> list[tuple[str, Point]]:
 
 
 def _weight(chance: random.Random, speed: float, c: float, material: Point) -> Point:
-    """A rigid disc, 2 to 40 times the mass that it would have of the block's material, on a block that lies on the ground."""
+    """A rigid disc on a block that lies on the ground.
+
+    Its mass is 1 to 10 times the mass of the block.
+    """
     radius, width, height = 0.03 * chance.choice([0.5, 1.0, 2.0]), 0.15 * chance.choice([0.5, 1.0]), 0.04 * chance.choice([0.5, 1.0, 2.0])
     mass = material["density"] * width * height * math.exp(chance.uniform(0, math.log(10)))
     lasts = 8 * height / c * (mass / (material["density"] * width * height)) ** 0.5 + 4 * height / c
@@ -295,7 +318,7 @@ def _hollow(chance: random.Random, speed: float, c: float, material: Point) -> P
 
 
 def _roller(chance: random.Random, speed: float, c: float, material: Point) -> Point:
-    """As fast as `speed` at the first touch."""
+    """An obstacle that moves down and rotates. Its speed is `speed` at the onset of contact."""
     deep, height = 0.001 * chance.uniform(1.5, 5.0), 0.04 * chance.choice([0.5, 1.0])
     lasts = _round(math.pi * deep / speed)
     static = chance.choice([0.1, 0.3, 0.7])

@@ -1,5 +1,9 @@
-"""Who takes how long at equal errors: five impacts by this program and, where they are installed (peers.py), by NGSolve and GetFEM,
-from coarse to fine settings; processor seconds of the march and of the whole process for 1, 0.5 and 0.1 %."""
+"""Run times of several programs at equal errors.
+
+This program and, where they are installed (peers.py), NGSolve and GetFEM solve five impacts with
+coarse to fine settings. The tables hold the processor seconds of the time integration and of the
+whole process for errors of 1, 0.5 and 0.1 %.
+"""
 
 import itertools
 import math
@@ -18,32 +22,44 @@ from verification import commands
 
 from . import page, peers
 
-LEVELS = (1.0, 0.5, 0.1)    # % of error
-LIMIT = 1200.0              # seconds a run may take
-REPEATS, LONG = 3, 2.0      # runs of which the least times count; one alone where it takes longer [s]
-TOLERANCE = 1e-8            # of the peers' Newton: its work over the energy; 5e-12 changes answers by 1e-5 and costs a quarter more
+LEVELS = (1.0, 0.5, 0.1)  # error levels of the tables [%]
+LIMIT = 1200.0  # longest time of a run [s]
+# A setting runs REPEATS times and the least times count. It runs once if it takes longer than
+# LONG [s].
+REPEATS, LONG = 3, 2.0
+# Tolerance of Newton's method of the other programs: work of the residual over the energy. With
+# 5e-12 the results change by 1e-5 and the run time grows by a quarter.
+TOLERANCE = 1e-8
 SECONDS = {"imports_seconds": "imports", "setup_seconds": "set-up", "cpu_seconds": "march", "process_seconds": "process"}
 OURS, EXPLICIT, TUNED, USUAL = "ffimpact", "ffimpact, explicit", "ngsolve, tuned", "ngsolve, as written by users"
 OWN = (OURS, EXPLICIT)
 GETFEM, GETFEM_USUAL = "getfem, tuned", "getfem, as written by users"
 Found = dict[str, Any]
-Measured = dict[str, float]  # answers
+Measured = dict[str, float]  # results of a run by name
 
 
 @dataclass(frozen=True)
 class Case:
-    """An impact: what is asked of all programs, the names of its answers by program and what their errors are relative to (None:
-    itself), settings by program from coarse to fine, and by program two finer ones, which with the last of those make its reference: the
-    finest with other elements and other steps than either, or its bar would see one of both errors alone."""
+    """An impact that all programs solve.
+
+    title: heading; scene: built-in scene; given: its entries; speed: impact speed [m/s]
+    answers: for each result, its name in our output, its name in theirs, and the value to which its
+        error is relative (None: the result itself)
+    settings: settings by program, from coarse to fine
+    finest: by program, two finer settings. With the last entry of `settings` they give the
+        reference and its error bar. Mesh and steps of the finest differ from both others, so that
+        the error bar contains both errors.
+    theirs: further flags of the other programs
+    """
 
     title: str
     scene: str
     given: study.Point
     speed: float
-    answers: dict[str, tuple[str, str, float | None]]     # words: (ours, theirs, unit)
+    answers: dict[str, tuple[str, str, float | None]]
     settings: dict[str, list]
     finest: dict[str, list]
-    theirs: study.Point = field(default_factory=dict)     # what the peers are asked beside
+    theirs: study.Point = field(default_factory=dict)
 
 
 def accuracies(*values: float, **given: Value) -> list[study.Point]:
@@ -51,7 +67,7 @@ def accuracies(*values: float, **given: Value) -> list[study.Point]:
 
 
 def sizes(*pairs: tuple[float, float]) -> list[study.Point]:
-    """Factors of the sizes of peers.sized(), and steps [s]."""
+    """Settings from pairs of a factor of the sizes in peers.sized() and a step [s]."""
     return [peers.sized(factor, dt=dt) for factor, dt in pairs]
 
 
@@ -60,7 +76,9 @@ def body(speed: float) -> dict[str, tuple[str, str, float | None]]:
 
 
 IN_PARTS = accuracies(0.05, 0.01, 0.005, 0.0025, 0.00125, integrator="central-difference")
-RIM = math.pi * peers.RADIUS**3 * 1722 / 2 # of a disc of the scenes' density, I/R: angular momentum over the speed of its rim [kg]
+# Moment of inertia over radius, I/R, of a disc with the density of the scenes, per thickness: the
+# angular momentum over the speed of the rim [kg].
+RIM = math.pi * peers.RADIUS**3 * 1722 / 2
 CASES = {
     "normal": Case(
         "Disc, normal impact, St. Venant-Kirchhoff, 8 m/s", "disc-normal", {"law": "svk"}, 8.0, body(8.0),
@@ -119,14 +137,18 @@ beside our default step, which alone is compared with others."""
 
 
 def main(argv: list[str]) -> int:
-    """Runs all cases, writes equal-errors.csv and the page; 0 where all references agree, 1 where they do not or there is no peer."""
+    """Runs all cases and writes equal-errors.csv and the page.
+
+    Returns 0 if all references agree, 1 if they do not or if NGSolve is missing.
+    """
     parser = commands.command("equal-errors", __doc__, page=True)
     parser.add_argument("cases", metavar="CASE", nargs="*", default=list(CASES), help=f"(default: {' '.join(CASES)})")
     options = parser.parse_args(argv)
     for name in options.cases:
         if name not in CASES:
             parser.error(unknown(name, CASES, ", "))
-    freefem.find()      # which builds the kernels where there are none, outside all times
+    # Builds the kernels if they are missing, so that no measured time includes it.
+    freefem.find()
     tables, references, texts, agreed, ratios = [], [], [], {}, {}
     for name in in_turn("equal-errors", options.cases):
         rows, reference = measure(CASES[name])
@@ -146,8 +168,11 @@ def main(argv: list[str]) -> int:
 
 def in_files(tables: list[pd.DataFrame], references: list[pd.DataFrame],
              ratios: dict[str, dict[float, tuple[float, float]]]) -> page.Tables:
-    """The tables of the page: all settings, the cheapest of each program for each level, the time of
-    the quickest other program over ours, and the references."""
+    """The tables of the page.
+
+    They hold all settings, the cheapest setting of each program for each level, the time of the
+    fastest other program over ours, and the references.
+    """
     rows = pd.concat(tables).rename(columns=SECONDS)
     first = ["case", "program", "setting", "dofs", "steps", *SECONDS.values()]
     answers = [name for name in rows if name.endswith(" %")]
@@ -174,7 +199,11 @@ def in_files(tables: list[pd.DataFrame], references: list[pd.DataFrame],
 # ---- the measurement
 
 def measure(case: Case) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """A row a setting: program, its setting, seconds, errors in %; and a row an answer: references, bars [%] and whether they agree."""
+    """Runs a case. Returns the table of settings and the table of references.
+
+    A setting has program, words, seconds and errors [%]. A reference has its values, error bars [%]
+    and whether they agree. Raises study.Failure if our reference run fails.
+    """
     found, rows = {}, []
     for program, points in case.settings.items():
         for point in points:
@@ -198,7 +227,7 @@ def measure(case: Case) -> tuple[pd.DataFrame, pd.DataFrame]:
 
 
 def once(case: Case, program: str, point: study.Point) -> tuple[Found | None, str]:
-    """What a program prints at a setting, or why nothing."""
+    """The output of a program at a setting, and the reason if there is none."""
     if program in OWN:
         return peers.ours(LIMIT, case.scene, fields=0, **case.given, **point)
     if case.scene == "disc-block":
@@ -208,7 +237,8 @@ def once(case: Case, program: str, point: study.Point) -> tuple[Found | None, st
 
 
 def least(case: Case, program: str, point: study.Point) -> tuple[Found | None, str]:
-    """The same with the least seconds of REPEATS runs, of one where that takes longer than LONG."""
+    """As once(), with the least times of REPEATS runs, or of one run if it takes longer than LONG.
+    """
     found, reason = once(case, program, point)
     for _ in range(REPEATS - 1 if found and found["process_seconds"] <= LONG else 0):
         again, _ = once(case, program, point)
@@ -217,20 +247,24 @@ def least(case: Case, program: str, point: study.Point) -> tuple[Found | None, s
 
 
 def answers(case: Case, program: str, found: Found | None) -> Measured | None:
-    """The judged answers of what a program printed."""
+    """The results by name from the output of a program."""
     return found and {answer: found[ours if program in OWN else theirs] for answer, (ours, theirs, _) in case.answers.items()}
 
 
 def errors(case: Case, measured: Measured, reference: Measured) -> dict[str, float]:
-    """In %, of each answer and the largest."""
+    """The error [%] of each result, and the largest of them."""
     found = {f"{answer} %": 100 * abs(measured[answer] - reference[answer]) / (unit or abs(reference[answer]))
              for answer, (*_, unit) in case.answers.items()}
     return found | {"error": max(found.values())}
 
 
 def compare(case: Case, fine: dict[str, list[Measured | None]]) -> pd.DataFrame:
-    """A row an answer: both references, whose bars [%] are the largest difference of a program's finest run from its two next, their
-    difference [%], and whether it is within both; none where NGSolve gave none."""
+    """A row for each result: both references, their error bars [%], their difference [%] and
+    whether it is within the sum of the error bars.
+
+    An error bar is the largest difference of a program's finest run from its two other fine runs.
+    The table is empty if NGSolve has no results.
+    """
     if None in fine[TUNED]:
         return pd.DataFrame()
     bars = {program: max(errors(case, run, finest)["error"] for run in runs) for program, (*runs, finest) in fine.items()}
@@ -241,17 +275,19 @@ def compare(case: Case, fine: dict[str, list[Measured | None]]) -> pd.DataFrame:
 
 
 def words(point: study.Point) -> str:
-    """A setting; sizes in mm, steps in microseconds."""
+    """A setting in words; sizes in mm, steps in microseconds."""
     if "mesh_size" in point:
         return f"h {1e3 * point['mesh_size']:g} mm, dt {1e6 * point['dt']:g} us"
     return ", ".join(f"{name} {value}" for name, value in point.items() if name not in ("contact", "integrator"))
 
 
-# ---- what the rows say
+# ---- evaluation of the rows
 
 def safe(rows: pd.DataFrame, program: str, level: float) -> pd.Series | None:
-    """The row of a program that costs its whole process least among those from which on all finer settings keep the level;
-    None where none does."""
+    """The row with the cheapest whole process among the settings of a program that are safe.
+
+    A setting is safe if it and all finer ones satisfy the level. Returns None if there is none.
+    """
     own = rows[rows.program == program]
     kept = own[(own.exit == 0) & (own.error <= level)] if "error" in own else own[:0]
     broken = own.index.difference(kept.index)
@@ -260,7 +296,11 @@ def safe(rows: pd.DataFrame, program: str, level: float) -> pd.Series | None:
 
 
 def beside(rows: pd.DataFrame) -> dict[float, tuple[float, float]]:
-    """By level the least march and whole process of all others over ours; nan where ours or all others do not reach it."""
+    """The least time of all other programs over ours by level: of the time integration and of the
+    whole process.
+
+    The ratio is nan if our program or all others do not reach the level.
+    """
     found = {}
     for level in LEVELS:
         ours = safe(rows, OURS, level)
@@ -271,7 +311,7 @@ def beside(rows: pd.DataFrame) -> dict[float, tuple[float, float]]:
 
 
 def verdict(agreed: dict[str, bool], ratios: dict[str, dict[float, tuple[float, float]]]) -> str:
-    """The last paragraph: whether the references agree, and who is quicker."""
+    """The last paragraph: agreement of the references and the fastest program."""
     without = [name for name, agrees in agreed.items() if not agrees]
     pairs = [pair for each in ratios.values() for pair in each.values() if not math.isnan(pair[0])]
     quicker = [sum(pair[which] > 1 for pair in pairs) for which in (0, 1)]
@@ -284,7 +324,7 @@ def verdict(agreed: dict[str, bool], ratios: dict[str, dict[float, tuple[float, 
 
 
 def text(case: Case, rows: pd.DataFrame, reference: pd.DataFrame) -> str:
-    """A case as markdown: who takes how long, the references, all settings."""
+    """A case as Markdown: run times, references and all settings."""
     ran = rows[rows.exit == 0]
     levels = pd.DataFrame([{"march / process [s]": program} | {f"{level:g} %": cell(safe(rows, program, level)) for level in LEVELS}
                            for program in ran.program.unique()])

@@ -22,19 +22,18 @@ from ffimpact.report.figures import (
     save,
 )
 
-Tables = Mapping[
-    str, pd.DataFrame
-]  # by the name of their file behind that of the page; "" is the main one
-FIXED = {
-    "svg.hashsalt": "ffimpact",
-    "svg.fonttype": "none",
-}  # the same file from the same numbers, letters as text
+# The tables of a page by the suffix of their file names; "" is the main table.
+Tables = Mapping[str, pd.DataFrame]
+# These settings make the SVG file depend on the numbers only, and store letters as text.
+FIXED = {"svg.hashsalt": "ffimpact", "svg.fonttype": "none"}
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, BLACK, GREY)
-SMALLEST = 5e-3  # errors below are drawn here, over the requested accuracy or in %
+# Smaller errors are drawn at this value, over the requested accuracy or in %.
+SMALLEST = 5e-3
 
 
 def promise(tables: Tables, path: Path) -> None:
-    """Errors over their estimates, a dot for each scene; coverage of the estimates by answer."""
+    """Draws errors over their estimates, a dot for each scene, and the coverage of the estimates by
+    result."""
     rows, stated = tables[""], tables["stated"]
     figure, (errors, shares) = plt.subplots(1, 2, figsize=(9, 3.8), width_ratios=(1.2, 1))
     kinds = rows.scene.str.partition(":")[0]
@@ -72,7 +71,7 @@ def promise(tables: Tables, path: Path) -> None:
 
 
 def scaling(tables: Tables, path: Path) -> None:
-    """Time of a step and memory over the number of unknowns, with the exponents of both."""
+    """Draws the time of a step and the memory over the number of unknowns, with both exponents."""
     figure, panels = plt.subplots(1, 2, figsize=(9, 3.6))
     exponents = tables["exponents"].set_index("case")
     for (case, rows), colour in zip(tables[""].groupby("case", sort=False), COLOURS):
@@ -93,9 +92,11 @@ def scaling(tables: Tables, path: Path) -> None:
 
 
 def bench(tables: Tables, path: Path) -> None:
-    """Processor time of the time integration and of the whole process over the error.
+    """Draws processor time over error: of the time integration (upper row) and of the whole
+    process.
 
-    A column is a case. The error is the largest of a setting and all finer ones of its program.
+    A column is a case. The error is the largest error of a setting and of all finer ones of its
+    program.
     """
     rows = tables[""]
     cases = list(rows.case.unique())
@@ -108,9 +109,8 @@ def bench(tables: Tables, path: Path) -> None:
             for program, one in rows[(rows.case == case) & rows.error.notna()].groupby(
                 "program", sort=False
             ):
-                kept = np.maximum.accumulate(one.error.to_numpy()[::-1])[
-                    ::-1
-                ]  # settings go from coarse to fine
+                # Settings go from coarse to fine.
+                kept = np.maximum.accumulate(one.error.to_numpy()[::-1])[::-1]
                 panel.loglog(
                     kept.clip(SMALLEST),
                     one[name],
@@ -137,7 +137,8 @@ def bench(tables: Tables, path: Path) -> None:
 
 
 def disc_block(tables: Tables, path: Path) -> None:
-    """Velocities, vibration energy and contact time with error bars, and those of NGSolve."""
+    """Draws velocities, vibration energy and contact time with error bars, ours and those of
+    NGSolve."""
     rows, other = tables[""], tables["ngsolve"]
     cases = rows[["law", "nu"]].drop_duplicates().reset_index(drop=True)
     places = {(row.law, row.nu): k for k, row in cases.iterrows()}
@@ -186,7 +187,8 @@ def disc_block(tables: Tables, path: Path) -> None:
 
 
 def pairing(tables: Tables, path: Path) -> None:
-    """Difference of pairs of points from closest points, and processor time, over epsilon."""
+    """Draws the difference of pairwise contact from closest points, and the processor time, over
+    epsilon/h."""
     rows = tables[""]
     figure, (differ, cost) = plt.subplots(1, 2, figsize=(9, 3.6))
     ranged = rows[rows["epsilon/h"].notna() & (rows["k/k0"] == 1)].sort_values("epsilon/h")
@@ -223,7 +225,7 @@ def pairing(tables: Tables, path: Path) -> None:
 
 
 def plain(axis: Axis, marks: tuple[int, ...] = (1, 2, 5)) -> None:
-    """Numbers without powers on a logarithmic axis, at these multiples of powers of ten."""
+    """Labels a logarithmic axis without powers, at the multiples `marks` of powers of ten."""
     axis.set_major_locator(LogLocator(subs=marks))
     axis.set_major_formatter("{x:g}")
     axis.set_minor_formatter(NullFormatter())
@@ -231,27 +233,28 @@ def plain(axis: Axis, marks: tuple[int, ...] = (1, 2, 5)) -> None:
 
 
 def rubber(tables: Tables, path: Path) -> None:
-    """Contact time, impulse, rebound and processor time over 0.5 - nu."""
+    """Draws contact time, impulse, rebound and processor time over 0.5 - nu."""
     from . import rubber as study
 
     study.draw(tables[""], path)
 
 
 def oblique_angles(tables: Tables, path: Path) -> None:
-    """psi_2 over psi_1, and both restitutions over the angle, beside rigid and elastic theory."""
+    """Draws psi_2 over psi_1 and both restitutions over the angle, beside rigid and elastic theory."""
     from . import oblique_angles as study
 
     study.draw(tables[""], path)
 
 
 def viscoelastic(tables: Tables, path: Path) -> None:
-    """1 - e of the ball over speed; restitution of the disc over loss and relaxation time."""
+    """Draws 1 - e of the ball over speed, and the restitution of the disc over loss and relaxation
+    time."""
     from . import viscoelastic as study
 
     study.draw(tables[""], tables["disc"], path)
 
 
-# by the name of the measurement
+# The drawing function by the name of the measurement.
 DRAWN: dict[str, Callable[[Tables, Path], None]] = {
     "promise": promise,
     "scaling": scaling,
@@ -265,7 +268,7 @@ DRAWN: dict[str, Callable[[Tables, Path], None]] = {
 
 
 def draw(measurement: str, tables: Tables, path: Path) -> None:
-    """The figure of a page, as SVG that says no date."""
+    """Draws the figure of a page as an SVG file without a date."""
     with plt.rc_context(STYLE | FIXED):
         DRAWN[measurement](tables, path)
     lines = path.read_text().splitlines()

@@ -1,9 +1,14 @@
-"""Disc and ball over the angle of incidence, with one coefficient of friction: nearly rigid, of the paper's material at its speed, and
-slow, beside rigid bodies with Coulomb friction and elastic ones, of which the ball is that of Maw, Barber and Fawcett (1976). Angles are
-from the plane: 90 degrees is normal.
+"""Oblique impacts of a disc and a ball over the angle of incidence, for one coefficient of
+friction.
 
-psi_1 = 2 (1 - nu) v_s/(mu (2 - nu) v_n), v_s the velocity along the plane of the point that touches and v_n the one across it before the
-impact; psi_2 the same with v_s after it. Error bars: what elements and steps 1.4 times larger change.
+The bodies are nearly rigid, of the paper's material at its speed, or of this material and slow.
+They are compared with rigid bodies with Coulomb friction and with elastic bodies; for the ball that
+is the theory of Maw, Barber and Fawcett (1976). Angles are measured from the plane: 90 degrees is a
+normal impact.
+
+psi_1 = 2 (1 - nu) v_s/(mu (2 - nu) v_n). Before the impact, v_s is the tangential velocity of the
+contact point and v_n its normal velocity. psi_2 is the same with v_s after the impact. The error
+bars are the changes of the results with elements and steps 1.4 times larger.
 """
 
 import itertools
@@ -36,7 +41,8 @@ from verification.rigid_disc import STIFF
 
 from . import page
 
-INERTIA = {"disc": 2.0, "ball": 2.5}                      # R^2/k^2, k the radius of gyration; the scenes are <body>-oblique
+# R^2/k^2 with the radius of gyration k. The scenes are `<body>-oblique`.
+INERTIA = {"disc": 2.0, "ball": 2.5}
 BASE = {"law": "neohookean", "nu": NU, "fields": 0}
 PAPER = {"young": YOUNG, "density": DENSITY, "radius": RADIUS}
 SLOW = PAPER | {"speed": 0.2, "slip_velocity": 2e-4, "penalty": "auto"}
@@ -47,11 +53,13 @@ KINDS = {"stiff": {"disc": STIFF | {"nu": NU, "penalty": 1e10}, "ball": RIGID | 
 WORDS = {"stiff": "E = 10 GPa, 1 m/s", "paper": "E = 7 MPa, 12 m/s", "slow": "E = 7 MPa, 0.2 m/s"}
 COLOURS = {"stiff": BLUE, "paper": ORANGE, "slow": GREEN}
 ANGLES, FRICTION = (20.0, 30.0, 40.0, 50.0, 60.0, 75.0), 0.3
-LEAST, MOST, MANY = 5.0, 85.0, 40                         # degrees; how many angles
-LIMIT = 900.0                                             # seconds a run may take
-# largest deviation of the slip that is lost and regained backwards, as in V17, and for an elastic ball that sticks so many times the
-# contact's radius over the ball's more, as a ball is no half-space: at 0.125 V17 measures 0.8 (psi_1 = 1.2) to 1.8 (0.6, finer elements)
-# times that
+# Smallest and largest angle [degrees], and the largest number of angles.
+LEAST, MOST, MANY = 5.0, 85.0, 40
+LIMIT = 900.0  # longest time of a run [s]
+# ASKED is the largest relative deviation of the slip that is lost and regained backwards, as in
+# V17. For an elastic ball that sticks, FINITE times the ratio of contact radius to ball radius is
+# added, since a ball is not a half-space. At a ratio of 0.125, V17 measures 0.8 (psi_1 = 1.2) to
+# 1.8 (psi_1 = 0.6, finer elements) times this ratio.
 ASKED, FINITE = 0.05, 1.5
 MEASURED = ("e", "along", "psi_2")
 FORMATS = {"body": "", "kind": "", "angle": "g", "psi_1": ".3f", "e": ".4f", "along": ".4f", "psi_2": ".3f", "psi_2_error": ".3f",
@@ -59,7 +67,11 @@ FORMATS = {"body": "", "kind": "", "angle": "g", "psi_1": ".3f", "e": ".4f", "al
 
 
 def main(argv: list[str]) -> int:
-    """Runs what is not there yet, prints the table, writes oblique-angles.csv and .png; 0 if all that theory holds for agrees with it."""
+    """Runs all missing impacts, prints the table, writes oblique-angles.csv and .png.
+
+    Returns 0 if all results agree with the theory where it applies. Raises BadInput for wrong
+    options.
+    """
     parser = commands.command("oblique-angles", __doc__, page=True)
     usual = ",".join(f"{angle:g}" for angle in ANGLES)
     parser.add_argument("--angles", metavar="A,B,...", default=usual, help="of incidence, degrees from the plane (default: %(default)s)")
@@ -82,7 +94,11 @@ def main(argv: list[str]) -> int:
 
 
 def numbers(name: str, text: str, low: float, high: float) -> list[float]:
-    """The numbers of a list with commas, rising; BadInput unless each is from `low` to `high`, and none twice."""
+    """The numbers of a comma-separated list in rising order.
+
+    Raises BadInput unless each number is between `low` and `high`, all differ and there are at most
+    MANY.
+    """
     found = []
     for each in text.split(","):
         try:
@@ -98,7 +114,8 @@ def numbers(name: str, text: str, low: float, high: float) -> list[float]:
 
 
 def words(name: str, text: str, known: list[str]) -> list[str]:
-    """The words of a list with commas, in the order of `known`; BadInput for any other."""
+    """The words of a comma-separated list in the order of `known`. Raises BadInput for any other
+    word."""
     given = [each.strip() for each in text.split(",")]
     for each in given:
         if each not in known:
@@ -109,7 +126,10 @@ def words(name: str, text: str, known: list[str]) -> list[str]:
 # ---- the runs
 
 def impacts(body: str, kind: str, friction: float, angles: list[float], out: Path) -> pd.DataFrame:
-    """A row an angle: psi_1, and with error bars MEASURED of the run and <name>_error, from a coarser one; no numbers where it failed."""
+    """A row for each angle: psi_1 and the results MEASURED with their error bars `<name>_error`.
+
+    The error bars come from a coarser run. The results of a failed run are nan.
+    """
     place, base, name = out / f"{body}-{kind}", BASE | KINDS[kind][body], f"{body}-oblique"
     points = [{"angle": angle, "friction_static": friction, "friction_dynamic": friction} for angle in angles]
     fine = study.study(points, place, base, LIMIT, name)
@@ -128,7 +148,8 @@ def impacts(body: str, kind: str, friction: float, angles: list[float], out: Pat
 
 
 def measured(run: pd.Series, row: dict) -> dict[str, float]:
-    """Of a finished run the restitutions of its centre across the plane (e) and along it (along), and psi_2."""
+    """The results of a finished run: normal restitution (e), tangential restitution (along) of the
+    centre, and psi_2."""
     before, across = (row["speed"] * of(math.radians(row["angle"])) for of in (math.cos, math.sin))
     slip = run.rebound_vx + RADIUS * run.rebound_spin
     return {"e": run.rebound_vy / across, "along": run.rebound_vx / before, "psi_2": number(slip / across, row["friction"])}
@@ -137,41 +158,51 @@ def measured(run: pd.Series, row: dict) -> dict[str, float]:
 # ---- theory
 
 def number(ratio: ArrayLike, friction: float) -> ArrayLike:
-    """psi of the slip over the normal speed."""
+    """psi for the ratio of slip velocity to normal velocity."""
     return 2 * (1 - NU) / (2 - NU) * ratio / friction
 
 
 def sliding(psi: ArrayLike, e: ArrayLike, inertia: float) -> np.ndarray:
-    """psi_2 of a body on which friction acts one way all the time: it loses mu (1 + e)(1 + R^2/k^2) v_n of its slip, and may turn it."""
+    """psi_2 of a body that slides in one direction throughout: its slip velocity changes by mu (1 +
+    e)(1 + R^2/k^2) v_n and may change sign."""
     return psi - number((1 + inertia) * (1 + np.asarray(e)), 1)
 
 
 def rigid(psi: ArrayLike, e: ArrayLike, inertia: float) -> np.ndarray:
-    """psi_2 of a rigid body with Coulomb friction: it slides throughout, or leaves rolling."""
+    """psi_2 of a rigid body with Coulomb friction. It slides throughout or leaves rolling."""
     return np.maximum(0, sliding(psi, e, inertia))
 
 
 def elastic(psi: ArrayLike, e: ArrayLike, inertia: float) -> np.ndarray:
-    """psi_2 of an elastic body that is pressed in little: beyond 4 chi - 1 it slides throughout; below, of a ball, by Maw, Barber and
-    Fawcett, e = 1; of a disc nan: springs side by side stand for axisymmetric contacts alone, and the approach of a half-plane hangs on the
-    point it is measured from."""
+    """psi_2 of an elastic body for small indentation.
+
+    For psi_1 > 4 chi - 1 it slides throughout. Below, the theory of Maw, Barber and Fawcett with e
+    = 1 holds for the ball. For the disc the result is nan: the model of independent springs is
+    valid for axisymmetric contact only, and the approach of a half-plane depends on its reference
+    point.
+    """
     psi = np.asarray(psi, dtype=float)
     sticks = psi * (1 - springs(psi, NU)) if inertia == INERTIA["ball"] else np.nan
     return np.where(slides_throughout(psi, NU, inertia), sliding(psi, e, inertia), sticks)
 
 
 def centre(psi: ArrayLike, after: ArrayLike, inertia: float) -> np.ndarray:
-    """Speed of the centre along the plane over that before, from psi_1 and psi_2: it takes 1/(1 + R^2/k^2) of the change of the slip."""
+    """Tangential velocity of the centre after over before the impact, from psi_1 and psi_2.
+
+    The centre takes the share 1/(1 + R^2/k^2) of the change of the slip velocity.
+    """
     return 1 - (1 - after / psi) / (1 + inertia)
 
 
 def judge(rows: pd.DataFrame) -> pd.DataFrame:
-    """The rows with what rigid() and elastic() expect for psi_2, with the measured e; the deviation from it of the slip that is lost
-    and regained backwards; what is asked, where the theory is one of such a body, and the verdict.
+    """Adds to the rows the predictions of rigid() and elastic() for psi_2 with the measured e.
 
-    Asked are ASKED of the stiff ones beside rigid ones and of the slow ones beside elastic ones: they agree. Balls that stick are allowed
-    FINITE times the contact's radius more, as the theory is of half-spaces: beyond ASKED they agree partly. Nothing is asked at the paper's
-    speed, where strains are large, nor of slow discs that stick.
+    Also adds the deviations from the theories, relative to the slip that is lost and regained
+    backwards, the allowed deviation and the verdict. The allowed deviation is ASKED for stiff
+    bodies (rigid theory) and for slow bodies (elastic theory); such results "agree". Slow balls
+    that stick may deviate by FINITE times contact radius over ball radius more, since the theory is
+    for half-spaces; they agree "partly". Nothing is required at the paper's speed, where strains
+    are large, nor of slow discs that stick.
     """
     table = rows.copy()
     for name, theory in (("rigid", rigid), ("elastic", elastic)):
@@ -191,14 +222,14 @@ def judge(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def holds(table: pd.DataFrame) -> bool:
-    """Whether every run finished, and agrees, or partly, where that is asked."""
+    """Whether every run finished and agrees, at least partly, where a theory applies."""
     return not table.verdict.isin(["failed", "DEVIATES"]).any()
 
 
-# ---- what is said of it
+# ---- report
 
 def report(table: pd.DataFrame) -> str:
-    """The table, what it says, and the verdict."""
+    """The report: table, findings and verdict."""
     kinds = "; ".join(f"{kind}: {WORDS[kind]}" for kind in table.kind.unique())
     lines = [f"One coefficient of friction, static = dynamic = {table.friction.iloc[0]:g}; nu = {NU:g}, neo-Hookean. {kinds}.", "",
              "- angle: of incidence, from the plane [degrees]; e: restitution; along: speed of the centre along the plane, after "
@@ -230,7 +261,8 @@ def report(table: pd.DataFrame) -> str:
 
 
 def findings(body: str, kind: str, group: pd.DataFrame) -> list[str]:
-    """What the finished runs of a body and kind say."""
+    """Ranges of restitution, of the deviations from theory and of psi_2 over the finished runs of a
+    body and kind."""
     slides = slides_throughout(group.psi_1, NU, INERTIA[body])
     found = [f"e {group.e.min():.3f} to {group.e.max():.3f}"]
     for where, part in (("beyond psi_1 = 4 chi - 1", group[slides]), ("below", group[~slides])):
@@ -243,7 +275,8 @@ def findings(body: str, kind: str, group: pd.DataFrame) -> list[str]:
 
 
 def draw(table: pd.DataFrame, path: Path) -> None:
-    """A row a body: psi_2 over psi_1, and over the angle the restitution along the plane and across it."""
+    """Draws a row of panels for each body: psi_2 over psi_1, and both restitutions over the angle.
+    """
     bodies = list(table.body.unique())
     with plt.rc_context(STYLE):
         figure, grid = plt.subplots(len(bodies), 3, figsize=(11, 3.3 * len(bodies) + 0.3), squeeze=False)
@@ -264,7 +297,7 @@ def draw(table: pd.DataFrame, path: Path) -> None:
 
 
 def draw_theory(panels: np.ndarray, body: str, group: pd.DataFrame) -> None:
-    """Rigid and elastic with e = 1, in all panels of a body."""
+    """Draws the curves of rigid and elastic theory with e = 1 in all panels of a body."""
     angle = np.linspace(max(2.0, group.angle.min() - 4), min(89.0, group.angle.max() + 8), 120)
     psi, inertia = number(1 / np.tan(np.radians(angle)), group.friction.iloc[0]), INERTIA[body]
     label = "Maw, Barber, Fawcett" if body == "ball" else "elastic, sliding throughout"

@@ -1,8 +1,8 @@
-"""The page of a measurement in docs/measurements.
+"""Writes the page of a measurement in docs/measurements.
 
-X.csv and X-NAME.csv hold its tables, X.svg is its figure, drawn from these files. A block between
-two marks of X.md lists them with the command that measured them. The text outside of the block is
-written by hand.
+The tables are X.csv and X-NAME.csv, the figure drawn from them is X.svg. A block between two marks
+of X.md shows tables and figure with the command that measured them. The text outside of the block
+is written by hand.
 """
 
 import argparse
@@ -21,7 +21,7 @@ from . import figures
 
 FOLDER = ROOT / "docs/measurements"
 BEGIN, END = "<!-- measured -->", "<!-- end of measured -->"
-Tables = dict[str, pd.DataFrame]  # by name; "" is the main one
+Tables = dict[str, pd.DataFrame]  # tables by name; "" is the main table
 
 
 def finish(
@@ -35,7 +35,8 @@ def finish(
     inline: Sequence[str] = (),
     files: str = "csv",
 ) -> int:
-    """Ends a measurement as commands.finish() does, and writes its page for --page; exit code."""
+    """Ends a measurement as commands.finish() does and writes its page if --page is set. Returns
+    the exit code."""
     code = commands.finish(options, rows, text, good, files)
     write(options.page, title, [options.command, *argv], text.rpartition("\n\n")[2], tables, inline)
     return code
@@ -49,7 +50,7 @@ def write(
     tables: Tables,
     inline: Sequence[str] = (),
 ) -> None:
-    """Writes tables, figure and the block of the page `path`, if there is one.
+    """Writes tables, figure and block of the page `path`; does nothing if `path` is None.
 
     The page itself shows the tables named in `inline`.
     """
@@ -72,7 +73,7 @@ def write(
 
 
 def place(path: Path, name: str) -> Path:
-    """The CSV file of a table of the page `path`."""
+    """The CSV file of the table `name` of the page `path`."""
     return path.with_name(f"{path.stem}-{name}.csv" if name else f"{path.stem}.csv")
 
 
@@ -85,7 +86,7 @@ def draw(path: Path, command: str) -> None:
 
 
 def files(path: Path) -> list[Path]:
-    """The CSV files of a page, none of another page whose name begins with its own."""
+    """The CSV files of a page, without those of pages whose names begin with the name of this page."""
     pages = sorted(
         {path.stem, *(one.stem for one in path.parent.glob("*.md"))}, key=len, reverse=True
     )
@@ -98,7 +99,7 @@ def files(path: Path) -> list[Path]:
 
 
 def markdown(table: pd.DataFrame) -> str:
-    """A table as a page shows it, numbers to four digits."""
+    """A table in Markdown, with numbers to four digits."""
     cells = [[cell(value) for value in row] for row in table.itertuples(index=False)]
     numeric = [
         pd.api.types.is_numeric_dtype(table[name]) and table[name].dtype != bool for name in table
@@ -114,7 +115,7 @@ def cell(value: object) -> str:
 
 
 def main(argv: list[str]) -> int:
-    """Draws the figures of the pages again, from the CSV files beside them."""
+    """Draws the figures of the pages again from their CSV files."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks page", description=main.__doc__)
     parser.add_argument(
         "pages", metavar="PAGE", nargs="*", help=f"of {shown(FOLDER)} (default: all)"

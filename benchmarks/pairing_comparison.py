@@ -1,4 +1,8 @@
-"""The disc on the block by closest points (9) and pairwise (14), (15), over epsilon and k: answers, conservation and cost."""
+"""The disc on the block with closest-point contact (9) and pairwise contact (14), (15), over
+epsilon and k.
+
+Compares results, conservation and cost.
+"""
 
 from pathlib import Path
 
@@ -10,20 +14,27 @@ from verification import commands
 
 from . import page
 
-RADIUS, SPEED, NU = 0.5, 10.0, 0.4                  # of the scene disc-block, section 3.2 of the paper
-LIMIT = 900.0                                       # seconds a run may take
+# Radius [m], speed [m/s] and nu of the scene disc-block, section 3.2 of the paper.
+RADIUS, SPEED, NU = 0.5, 10.0, 0.4
+LIMIT = 900.0  # longest time of a run [s]
 LAWS = ("neohookean", "svk")
-RANGES = (1 / 8, 1 / 4, 1 / 2, 2, 4)                # epsilon over the one that is chosen, an element where the bodies touch
-PENALTIES = (0.1, 10)                               # k over the one that is chosen
-FINER = 1e-3                                        # the accuracy that shows what a finer mesh makes of the difference
-AGREE = 0.01                                        # largest difference of the rebound velocities over the speed, and of the impulse
+# Factors of the automatic epsilon, which is one element size in the contact region.
+RANGES = (1 / 8, 1 / 4, 1 / 2, 2, 4)
+PENALTIES = (0.1, 10)  # factors of the automatic penalty
+FINER = 1e-3  # accuracy of the runs on the finer mesh
+# Largest difference of the rebound velocities over the speed, and of the impulse.
+AGREE = 0.01
 FORMATS = {"law": "", "pairing": "", "mesh": "", "epsilon/h": ".3g", "k/k0": ".3g", "disc [m/s]": ".3f", "block [m/s]": ".4f",
            "differ [%]": ".2f", "impulse [N s/m]": ".0f", "contact [ms]": ".2f", "touches": ".0f", "peak [N/m]": ".3g", "energy": ".0e",
            "momentum": ".0e", "steps": ".0f", "CPU [s]": ".1f", "outcome": ""}
 
 
 def main(argv: list[str]) -> int:
-    """Prints the table, writes pairing.csv; 0 if pairwise conserves and agrees with closest points where epsilon is an element."""
+    """Prints the table and writes pairing.csv.
+
+    Returns 0 if pairwise contact conserves energy and momentum and agrees with closest-point
+    contact for epsilon of one element.
+    """
     parser = commands.command("pairing-comparison", __doc__, page=True, folder="pairing")
     parser.add_argument("--laws", metavar="LAW", nargs="+", default=LAWS, choices=LAWS, help="of the bodies (default: all)")
     options = parser.parse_args(argv)
@@ -33,8 +44,11 @@ def main(argv: list[str]) -> int:
 
 
 def solve(points: list[study.Point], base: study.Point, out: Path) -> list[dict]:
-    """Of runs of disc-block, one after the other, their rows, what was used, and by what share the total momentum changes. What fails is a
-    row too."""
+    """Runs disc-block with each of the points, one run at a time, and returns a row for each.
+
+    A row has the results, the settings used and the relative change of the total momentum. A failed
+    run gives a row, too.
+    """
     found = study.study(points, out, {"fields": 0} | base, LIMIT, "disc-block", cores=1).to_dict("records")
     for point, row in zip(points, found):
         folder = study.place(out, point)
@@ -46,22 +60,27 @@ def solve(points: list[study.Point], base: study.Point, out: Path) -> list[dict]
 
 
 def compare(laws: list[str], out: Path) -> pd.DataFrame:
-    """A row a run."""
+    """A row for each run."""
     rows = [row for law in laws for row in _rows({"nu": NU, "law": law}, "usual", law, out / law)]
     finer = _rows({"nu": NU, "law": laws[0], "accuracy": FINER}, "finer", laws[0], out / f"{laws[0]}-finer")
     return pd.DataFrame(rows + finer)
 
 
 def _rows(base: study.Point, mesh: str, law: str, out: Path) -> list[dict]:
-    """Closest points, pairwise and as printed, each over epsilon and k; on the finer mesh what is compared alone. The difference is from
-    closest points with the same k."""
+    """Rows of closest-point contact, pairwise contact and pairwise contact as printed, over epsilon
+    and k.
+
+    The finer mesh has only the runs that are compared. Differences are relative to closest-point
+    contact with the same k.
+    """
     nearest, chosen = solve([{"pairing": "closest-point"}, {"pairing": "pairwise"}], base, out)
     usual, stiffer = mesh == "usual", {factor: {"penalty": factor * chosen["penalty"]} for factor in (1, *PENALTIES)}
     width = {factor: {"pairing_range": factor * chosen["range"]} for factor in (1, *RANGES)}
     wanted = [("closest-point", k, stiffer[k]) for k in PENALTIES if usual]
     wanted += [("pairwise", 1, width[factor]) for factor in (RANGES if usual else (1 / 2, 2))]
     wanted += [("pairwise", k, width[1] | stiffer[k]) for k in PENALTIES if usual]
-    for k in (1, PENALTIES[0]) if usual and law == LAWS[0] else ():      # slow
+    # These runs are slow, hence for one law only.
+    for k in (1, PENALTIES[0]) if usual and law == LAWS[0] else ():
         wanted.append(("pairwise-printed", k, width[1] | stiffer[k] | {"chatter": "continue"}))
     runs = solve([{"pairing": pairing} | more for pairing, _, more in wanted], base, out)
     found = [(pairing, k, row) for (pairing, k, _), row in zip(wanted, runs)]
@@ -71,7 +90,8 @@ def _rows(base: study.Point, mesh: str, law: str, out: Path) -> list[dict]:
 
 
 def _row(law: str, pairing: str, mesh: str, found: dict, reference: dict, factor: float) -> dict:
-    """`reference`: closest points with the same k. The impulse is that of the disc along the normal."""
+    """A row of the table. `reference` is the closest-point run with the same k. The impulse is that
+    of the disc along the normal."""
     row = {"law": law, "pairing": pairing, "mesh": mesh, "epsilon/h": None, "k/k0": factor, "disc [m/s]": found.get("rebound_vy_1"),
            "block [m/s]": found.get("rebound_vy_2"), "impulse [N s/m]": found.get("impulse_y_1"),
            "contact [ms]": 1e3 * found.get("thresholded_contact_time", float("nan")), "touches": found.get("contact_intervals"),
@@ -88,15 +108,18 @@ def _row(law: str, pairing: str, mesh: str, found: dict, reference: dict, factor
 
 
 def holds(table: pd.DataFrame) -> bool:
-    """Pairwise, where no range is given or a larger one: done, energy and momentum to 1e-9, and with the chosen k the answers of closest
-    points to AGREE."""
+    """Whether all pairwise runs with epsilon of at least one element succeed.
+
+    They must finish, conserve energy and momentum to 1e-9 and, with the automatic k, agree with
+    closest-point contact to AGREE.
+    """
     mine = table[(table.pairing == "pairwise") & (table["epsilon/h"] >= 0.9)]
     return bool((mine.outcome == "").all() and (mine.energy < 1e-9).all() and (mine.momentum < 1e-9).all()
                 and (mine[mine["k/k0"] == 1]["differ [%]"] <= 100 * AGREE).all())
 
 
 def report(table: pd.DataFrame) -> str:
-    """The table, what it says, and the verdict."""
+    """The report: table, findings and verdict."""
     repulsion, printed, nearest = (table[table.pairing == name] for name in ("pairwise", "pairwise-printed", "closest-point"))
     wide = repulsion[(repulsion["epsilon/h"] >= 0.9) & (repulsion["k/k0"] == 1)]
     narrow = repulsion[repulsion["epsilon/h"] < 0.39]

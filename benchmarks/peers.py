@@ -1,8 +1,11 @@
-"""Other programs on the same disc or ball, or the same two bodies, and a plain textbook script of FreeFEM (benchmarks/programs/): found
-where they are installed, run one process at a time. This program beside them runs as they do (ffimpact_run.py).
+"""Other programs that solve the same disc, ball or pair of bodies (benchmarks/programs/), and a
+textbook FreeFEM script.
 
-NGSolve: the extra `peers` of pyproject.toml, in this Python or in the one that $NGSOLVE_PYTHON names. GetFEM: Debian's python3-getfem,
-in /usr/bin/python3 or in $GETFEM_PYTHON. Nothing else needs them.
+Each program runs if it is installed, one process at a time. `ours()` runs this program in the same
+way (ffimpact_run.py).
+
+NGSolve is the extra `peers` of pyproject.toml, in this Python or in $NGSOLVE_PYTHON. GetFEM is
+Debian's python3-getfem, in /usr/bin/python3 or in $GETFEM_PYTHON. Only the benchmarks need them.
 """
 
 import json
@@ -25,21 +28,24 @@ from ffimpact.sweeps.study import Point
 PYTHONS = {"ffimpact": ("", sys.executable), "ngsolve": ("NGSOLVE_PYTHON", sys.executable), "getfem": ("GETFEM_PYTHON", "/usr/bin/python3")}
 INSTALL = {"ngsolve": "pip install ngsolve==6.2.2608", "getfem": "apt-get install python3-getfem"}
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
-RADIUS = 0.05               # m, of disc-normal and the peers' default
-BULK, CONTACT = 8e-3, 2.5e-3   # m: mesh sizes of factor 1 on the disc of that radius
+# Radius [m] of the scene disc-normal and default of the other programs.
+RADIUS = 0.05
+# Mesh sizes [m] in the bulk and near contact on a disc of this radius, for factor 1.
+BULK, CONTACT = 8e-3, 2.5e-3
 TEXTBOOK = "benchmarks/programs/textbook.edp"
-# our scenes, and the script <program>_<body>.py beside each
+# Our scenes and the body in the name of the script, `<program>_<body>.py`.
 BODIES = {"disc-normal": "disc", "disc-oblique": "disc_oblique", "ball-axisymmetric": "ball", "ball": "ball_3d"}
 
 
 def sized(factor: float, **given: Value) -> Point:
-    """A mesh of `factor` times the sizes BULK and CONTACT."""
+    """Mesh sizes `factor` times BULK and CONTACT, with further entries `given`."""
     return {"mesh_size": factor * BULK, "contact_mesh_size": factor * CONTACT} | given
 
 
 @cache
 def find(program: str) -> str | None:
-    """The Python that imports `program` (ngsolve or getfem), None where there is none."""
+    """The Python executable that imports `program` (ngsolve or getfem). Returns None if there is
+    none."""
     variable, usual = PYTHONS[program]
     python = os.environ.get(variable, usual)
     if program == "ffimpact":
@@ -53,34 +59,41 @@ def find(program: str) -> str | None:
 
 def run(program: str, form: str, mesh_size: float, contact_mesh_size: float, dt: float, limit: float = 600, scene: str = "disc-normal",
         **flags: Value) -> tuple[dict | None, str]:
-    """(what the peer prints, "") or (None, the reason there is nothing).
+    """Runs another program. Returns (its output, "") or (None, the reason why there is none).
 
-    program: ngsolve or (the disc alone) getfem; form: plain, tuned or (NGSolve) newmark; sizes [m], step dt [s], limit
-    [s]; scene: of BODIES. Further flags by the names of the peers: law, nu, speed, penalty, young, density, tolerance, history.
+    program: ngsolve or, for the disc only, getfem; form: plain, tuned or (NGSolve only) newmark
+    sizes [m], step dt [s], limit of the run time [s]; scene: a key of BODIES
+    flags: further flags of the scripts: law, nu, speed, penalty, young, density, tolerance, history
     """
     flags |= {"form": form, "dt": dt, "mesh_size": mesh_size, "contact_mesh_size": contact_mesh_size}
     with tempfile.TemporaryDirectory() as folder:
-        if program == "getfem":     # on our mesh; netgen makes its own with the same sizes
+        if program == "getfem":
+            # GetFEM uses our mesh. netgen makes its own mesh with the same sizes.
             flags["mesh"] = str(Path(folder) / "mesh.msh")
             mesh.write(mesh.disc(RADIUS, mesh_size, contact_mesh_size, half=True), Path(flags["mesh"]))
         return _printed(program, f"{program}_{BODIES[scene]}.py", folder, limit, flags)
 
 
 def two_bodies(limit: float, **flags: Value) -> tuple[dict | None, str]:
-    """The same of benchmarks/programs/ngsolve_two_bodies.py, SI units; flags by its names: law, nu, penalty, speed, refine ..."""
+    """As run(), for benchmarks/programs/ngsolve_two_bodies.py in SI units. The flags are law, nu,
+    penalty, speed, refine and others."""
     with tempfile.TemporaryDirectory() as folder:
         return _printed("ngsolve", "ngsolve_two_bodies.py", folder, limit, flags)
 
 
 def ours(limit: float, scene: str, **given: Value) -> tuple[dict | None, str]:
-    """The same of a run of this program without an estimate: its summary, and how its seconds part."""
+    """As run(), for a run of this program without an error estimate: its summary and its seconds by
+    phase."""
     with tempfile.TemporaryDirectory() as folder:
         return _printed("ffimpact", "ffimpact_run.py", folder, limit, {"scene": scene, "given": json.dumps(given)})
 
 
 def _printed(program: str, script: str, folder: str, limit: float, flags: dict[str, Value]) -> tuple[dict | None, str]:
-    """(the last line that the script prints, read as JSON, and process_seconds: user and system time of it and of what it started, "") or
-    (None, the reason there is nothing)."""
+    """Runs a script and returns its output or the reason why there is none.
+
+    The output is its last line, read as JSON, with `process_seconds`: user and system time of the
+    script and its children [s].
+    """
     if INSTALLED:
         return None, "the scripts of other programs are in the source folder (benchmarks/programs/)"
     python = find(program)
@@ -101,7 +114,10 @@ def _printed(program: str, script: str, folder: str, limit: float, flags: dict[s
 
 
 def textbook(wanted: Scene, mesh_file: Path) -> dict:
-    """What the textbook script prints of a disc on a mesh, under the names of summary.json. Seconds: processor time without set-up."""
+    """The output of the textbook script for a disc on a mesh, with the names of summary.json.
+
+    `cpu_seconds` excludes the set-up. Raises Failure if the script fails.
+    """
     log = mesh_file.with_suffix(".log")
     code, _ = freefem.run(freefem.find(), TEXTBOOK, wanted.values | {"mesh": mesh_file}, log)
     said = log.read_text().strip().splitlines()

@@ -1,4 +1,7 @@
-"""Whether `accuracy` and the stated errors mean what they say: scenes drawn at random, runs as they are by default against finer ones."""
+"""Tests the requested accuracy and the error estimates.
+
+Random scenes run with default settings and are compared with finer runs.
+"""
 
 import shutil
 import tempfile
@@ -22,26 +25,46 @@ from verification import commands
 
 from . import draws, page
 
-# other scenes than those that sizes (seeds 1, 2, 5, 40; 7) and stated errors (60, 61, 64, 66 to 68, 74 to 77) are calibrated on
+# Seed and number of the scenes. The seed differs from the seeds on which mesh sizes (1, 2, 5, 40;
+# 7) and error estimates (60, 61, 64, 66 to 68, 74 to 77) are calibrated.
 SEED, COUNT = 69, 240
-COARSE = 73, 180            # seed and scenes at coarse accuracies, for which estimate.ALIKE is calibrated on seed 71, stated errors on 78
-FLAT = 79, 60               # seed and scenes with faces that strike flat, for which estimate.FRONT is calibrated on seeds 303, 304
-HELD = 85, 60               # seed and scenes with supports, loads, rigid bodies, obstacles that move: HELD and LOADED are set on 1, 2, 84
-# elements and steps of the reference are 3 times smaller than the first run's; where that is a matter of hours twice smaller than
-# those of the answer, which finer runs may have made
+# Seed and number of scenes with coarse accuracies. For these, `estimate.ALIKE` is calibrated on
+# seed 71, the error estimates on 78.
+COARSE = 73, 180
+# Seed and number of scenes with faces that strike flat. For these, `estimate.FRONT` is calibrated
+# on seeds 303 and 304.
+FLAT = 79, 60
+# Seed and number of scenes with supports, loads, rigid bodies and moving obstacles. For these,
+# `estimate.HELD` and `estimate.LOADED` are calibrated on seeds 1, 2 and 84.
+HELD = 85, 60
+# Elements and steps of the reference are 3 times smaller than those of the first run. In these
+# scenes, which would take hours, they are 2 times smaller than those of the answer, which finer
+# runs may have made.
 TWICE = ("ball", "box-wall", *draws.HELD_MIXTURE)
-STEPS_GROW = 0.0576         # accuracy from which on steps are 0.3 of a transit of waves (sizes.idp): finer ones are asked for from there
-LIMIT = 1800.0              # seconds a scene may take
-KEPT = 0.95                 # share of the scenes in which the promise must be kept, and of the cases that a stated error must cover
-NEAR, FAR = 0.1, 1.0        # between which the median error must lie, over the accuracy asked for: who asks for little shall pay little
-WIDEST = 4                  # times that a stated error may be too large, in the median
-LEAST = 0.01                # of what is asked: smaller errors, true and stated, are no case
-COVER = {"answer": "", "cases": "", "within": ".1%", "times": ".1f", "needed": ".2f"}   # columns of cover()
-Drawn = tuple[str, study.Point]   # a built-in scene and what it is overridden by
+# From this accuracy on, steps are 0.3 of the transit time of waves (sizes.idp). The reference
+# requests at most this accuracy so that its steps are finer.
+STEPS_GROW = 0.0576
+LIMIT = 1800.0  # longest time of a scene [s]
+# Required share of the scenes within the requested accuracy, and of the cases within the error
+# estimate.
+KEPT = 0.95
+# Bounds of the median error over the requested accuracy. The lower bound limits the cost of coarse
+# requests.
+NEAR, FAR = 0.1, 1.0
+# Largest permitted median of error estimate over error.
+WIDEST = 4
+# Errors and estimates below this share of the requested accuracy are not counted as cases.
+LEAST = 0.01
+# Columns of cover().
+COVER = {"answer": "", "cases": "", "within": ".1%", "times": ".1f", "needed": ".2f"}
+Drawn = tuple[str, study.Point]  # a built-in scene and its overrides
 
 
 def main(argv: list[str]) -> int:
-    """Prints the errors, scene by scene, writes promise.csv; 0 if the promise is kept in enough scenes, and not at too high a price."""
+    """Prints the errors of each scene and writes promise.csv.
+
+    Returns 0 if enough scenes reach the requested accuracy and the median error is not too small.
+    """
     parser = commands.command("promise", __doc__, page=True)
     parser.add_argument("--scenes", metavar="N", type=whole, help=f"how many (default: {COUNT})")
     parser.add_argument("--seed", metavar="N", type=whole, help=f"other scenes (default: {SEED}, of --coarse {COARSE[0]})")
@@ -72,7 +95,7 @@ def main(argv: list[str]) -> int:
 
 
 def shown_in(table: pd.DataFrame) -> pd.DataFrame:
-    """Of compare() what the page has: promised answers, and whether a scene warns."""
+    """The columns of compare() for the page: promised results, and whether a scene warns."""
     answers = [each for name in estimate.PROMISED for each in (name, f"{name} stated")]
     found = table.assign(warnings=table.warnings.fillna("").str.len() > 0)
     return found[["scene", *answers, "error", "estimated", "seconds", "finer seconds", "warnings",
@@ -80,7 +103,7 @@ def shown_in(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def _drawn(options: Namespace, seed: int, count: int) -> list[Drawn]:
-    """The scenes that are asked for."""
+    """The scenes that the options select."""
     if options.coarse:
         return draws.coarse(seed, count)
     if options.flat:
@@ -93,7 +116,11 @@ def _drawn(options: Namespace, seed: int, count: int) -> list[Drawn]:
 
 
 def _finish_parts(options: Namespace, table: pd.DataFrame, part: pd.Series, argv: list[str], title: str) -> int:
-    """Whether stated errors hold: of every `part` (rows,) of the scenes, of all promised answers together; of every stated answer."""
+    """Ends a measurement of the coverage of the error estimates.
+
+    The coverage must be sufficient in every `part` (rows,) of the scenes for all promised results
+    together, and for each result with an estimate. Returns the exit code.
+    """
     by_part = [cover(rows).tail(1).assign(answer=f"promised, {name}") for name, rows in table.groupby(part)]
     found = pd.concat([*by_part, cover(table, estimate.BOUND).iloc[:-1]])
     good = bool((found.within.dropna() >= KEPT).all())
@@ -105,8 +132,12 @@ def _finish_parts(options: Namespace, table: pd.DataFrame, part: pd.Series, argv
 
 
 def compare(drawn: list[Drawn], out: Path) -> pd.DataFrame:
-    """A row a scene: what it is, of each answer the error and the stated one, and the largest promised of each, over the accuracy asked
-    for; warnings; processor seconds of the run with its estimate, and of the reference; nan where one of them failed."""
+    """A row for each scene.
+
+    The columns are the error and the error estimate of each result, and the largest of each over
+    the promised results, all over the requested accuracy; the warnings; and processor seconds of
+    the run with its estimate and of the reference. Values of a failed run are nan.
+    """
     acts = {k: partial(_row, out, *one) for k, one in enumerate(drawn)}
     rows = {k: {"message": str(found)} if isinstance(found, Failure) else found
             for k, found in study.side_by_side(acts, study.CORES, out.name)}
@@ -118,7 +149,8 @@ def compare(drawn: list[Drawn], out: Path) -> pd.DataFrame:
 
 
 def _row(out: Path, name: str, point: study.Point) -> dict:
-    """Of one scene. Its runs are kept, each without an estimate, so that other rules for estimates need no run again."""
+    """The row of one scene. Its runs are kept, each without an estimate, so that other estimates
+    need no new runs."""
     try:
         with freefem.limited(LIMIT):
             return _compared(open_scene(name, point), study.place(out / name, point))
@@ -127,7 +159,7 @@ def _row(out: Path, name: str, point: study.Point) -> dict:
 
 
 def open_scene(name: str, point: study.Point) -> scene.Scene:
-    """With the penalty left open, which built-in scenes state."""
+    """The scene with automatic penalty. The built-in scenes prescribe a penalty."""
     own = draws.FLAT / f"{name}.toml"
     open_one = scene.load(str(own) if own.exists() else name)
     penalty = "contact.penalty" if open_one.bodies else "penalty"
@@ -154,7 +186,8 @@ def _compared(wanted: scene.Scene, folder: Path) -> dict:
         used, factor = (answers.used, 1 / 2) if twice else (used, 1 / 3)
         solve(scaled(wanted, wanted.values, used | {"accuracy": min(STEPS_GROW, used["accuracy"])}, factor), finer)
         best = read_answers(finer).summary | {"largest_energy": answers.summary["largest_energy"]}
-    # the reference has itself the share `factor` of an error of first order, of flat strikes, else its square
+    # The reference itself has the share `factor` of an error of first order (bodies that strike
+    # flat), or the share `factor` squared of an error of second order.
     left = 1 - factor if answers.summary["front_rise"] else 1 - factor**2 if twice else 1.0
     apart = {name: error / left for name, error in
              estimate.difference(best, answers.summary, answers.speed, answers.used.get("radius"),
@@ -170,28 +203,38 @@ def _compared(wanted: scene.Scene, folder: Path) -> dict:
 
 
 def is_about(note: str, row: study.Point) -> bool:
-    """Whether a note is about a promised answer whose error is above what was asked: by its name, or as the
-    stated error is above it, too."""
+    """Whether a note is about a promised result whose error exceeds the requested accuracy.
+
+    The note names the result, or it is about estimated errors and the estimate of the result
+    exceeds the requested accuracy, too.
+    """
     above = [answer for answer in estimate.PROMISED if row[answer] > 1]
     named = notes.name(note) == "estimated errors" and any(row.get(f"{answer} stated", 0) > 1 for answer in above)
     return named or notes.number(note) in above
 
 
 def silent(table: pd.DataFrame) -> int:
-    """How many scenes are above what was asked without a warning, or a note on that answer."""
+    """The number of scenes whose error exceeds the requested accuracy without a warning or a note
+    on that result."""
     return int(((table.error > 1) & (table.warnings.fillna("") == "")).sum())
 
 
 def kept(table: pd.DataFrame) -> bool:
-    """Whether enough of the scenes that ended are within what was asked, and their median not far below."""
+    """Whether enough of the finished scenes reach the requested accuracy and their median error is
+    between NEAR and FAR."""
     ended = table.error.dropna()
     return len(ended) > 0 and (ended <= 1).sum() >= KEPT * len(ended) and NEAR <= ended.median() <= FAR
 
 
 def cover(table: pd.DataFrame, answers: Iterable[str] = estimate.PROMISED) -> pd.DataFrame:
-    """Of each of the answers how many cases there are (with an error, and one stated), the share within what is stated, and how many times
-    the stated error is the true one, in the median; and of all together. needed: what stated errors (estimate.BOUND) were to be multiplied
-    by to cover just enough: with other seeds than the page's that is how they are calibrated."""
+    """The coverage of the error estimates for each of the `answers` and for all together.
+
+    cases: number of cases with an error and an estimate; within: share of errors within the
+        estimate
+    times: median of estimate over error
+    needed: factor of the estimates (estimate.BOUND) that gives just the coverage KEPT. It
+        calibrates the estimates, with other seeds than the seeds of the page.
+    """
     cases = {name: table[[name, f"{name} stated"]].dropna().set_axis(["error", "stated"], axis=1) for name in answers}
     cases = {name: case[case.max(axis=1) > LEAST] for name, case in cases.items()}
     cases["all"] = pd.concat(cases.values())
@@ -201,13 +244,14 @@ def cover(table: pd.DataFrame, answers: Iterable[str] = estimate.PROMISED) -> pd
 
 
 def covered(table: pd.DataFrame) -> bool:
-    """Whether the stated errors hold: of every promised answer in enough cases, and not far too large."""
+    """Whether the estimates cover enough cases of every promised result and are not far too large.
+    """
     found = cover(table).set_index("answer")
     return bool((found.within.dropna() >= KEPT).all() and found.times["all"] <= WIDEST)
 
 
 def report(table: pd.DataFrame) -> str:
-    """The table and what it says."""
+    """The report: table, findings and verdict."""
     ended = table.error.dropna()
     shown = table.assign(warnings=table.warnings.fillna("").str.len() > 0)
     for name in estimate.PROMISED:

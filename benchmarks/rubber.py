@@ -1,4 +1,8 @@
-"""Disc and ball as nu -> 0.5: answers and cost with volume in the mean of elements and at points, NGSolve beside them."""
+"""Disc and ball for nu -> 0.5.
+
+Compares results and cost of the volumetric energy on element means (projected) and at points
+(plain), beside NGSolve.
+"""
 
 import itertools
 from pathlib import Path
@@ -14,22 +18,30 @@ from verification import commands
 
 from . import page, peers
 
-NUS = (0.3, 0.4, 0.45, 0.47, 0.49, 0.499, 0.4999, 0.5)    # 0.5: law = incompressible
+NUS = (0.3, 0.4, 0.45, 0.47, 0.49, 0.499, 0.4999, 0.5)  # 0.5: law = incompressible
 BASE = {"law": "neohookean", "speed": 4.0, "accuracy": 2e-3, "fields": 0}
 BODIES = {"disc": "disc-normal", "ball": "ball-axisymmetric"}
-LIMIT = 120.0                                       # seconds a run may take
-PLAIN = 0.45                                        # nu up to which both are the same (edp/core/law/material.idp)
-DEAREST = 1.5                                       # most processor time at the largest nu, over that at PLAIN
-BETTER = 4                                          # times smaller: the accuracy of the projected runs beside these
-SLACK = 2 * BASE["accuracy"]                         # both ends of a rise may be off by as much
-PEER_NU, FINE, PEER_DT, PEER_PENALTY, AGREE = 0.499, 0.5, 1e-5, 1e10, 5e-3   # beside NGSolve: sizes over peers.sized(1), [s], [Pa/m]
+LIMIT = 120.0  # longest time of a run [s]
+# Up to this nu both treatments of the volume are the same (edp/core/law/material.idp).
+PLAIN = 0.45
+# Largest ratio of the processor time at the largest nu to that at PLAIN.
+DEAREST = 1.5
+# Factor by which the accuracy of the finer projected runs is smaller.
+BETTER = 4
+SLACK = 2 * BASE["accuracy"]  # tolerance of a rise: both of its ends may be inaccurate
+# The runs beside NGSolve: nu, factor of the sizes in peers.sized(1), dt [s], penalty [Pa/m],
+# largest difference.
+PEER_NU, FINE, PEER_DT, PEER_PENALTY, AGREE = 0.499, 0.5, 1e-5, 1e10, 5e-3
 ANSWERS = {"contact [ms]": ("thresholded_contact_time", 1e3), "impulse": ("impulse", 1.0), "rebound [m/s]": ("rebound_vy", 1.0)}
 FORMATS = {"body": "", "volume": "", "nu": "g", "contact [ms]": ".3f", "finer [ms]": ".3f", "impulse": ".4f", "rebound [m/s]": ".4f",
            "energy": ".0e", "dofs": ".0f", "steps": ".0f", "iterations": ".0f", "factors": ".0f", "CPU [s]": ".2f", "outcome": ""}
 
 
 def main(argv: list[str]) -> int:
-    """Prints the table, writes rubber.csv and rubber.png; 0 if what is asked of the mean volume holds."""
+    """Prints the table and writes rubber.csv and rubber.png.
+
+    Returns 0 if the requirements on the projected volume hold.
+    """
     parser = commands.command("rubber", __doc__, page=True)
     parser.add_argument("--nus", metavar="NU", nargs="+", type=float, default=NUS, help="Poisson's ratios (default: %(default)s)")
     parser.add_argument("--limit", metavar="SECONDS", type=float, default=LIMIT, help="of a run (default %(default)g)")
@@ -44,7 +56,7 @@ def main(argv: list[str]) -> int:
 
 
 def compare(nus: list[float], limit: float, out: Path) -> pd.DataFrame:
-    """A row a run; up to PLAIN nothing is to be compared."""
+    """A row for each run. Up to PLAIN only the projected runs exist."""
     rows = []
     for body, scene in BODIES.items():
         points = [_point("projected", nu) for nu in nus] + [_point("plain", nu) for nu in nus if PLAIN < nu < 0.5]
@@ -69,7 +81,8 @@ def _row(body: str, found: dict) -> dict:
 
 
 def peer(body: str) -> list[dict]:
-    """NGSolve with plain quadratic elements and ours, both with the same sizes and step; nothing where it is not installed."""
+    """Results of NGSolve with plain quadratic elements and ours, with equal sizes and steps.
+    Returns [] if NGSolve is missing."""
     sizes = peers.sized(FINE, law="neohookean", nu=PEER_NU, speed=4.0, penalty=PEER_PENALTY, dt=PEER_DT)
     theirs, why = peers.run("ngsolve", "tuned", limit=600, scene=BODIES[body], **sizes)
     ours, failed = peers.ours(600, BODIES[body], **sizes)
@@ -85,7 +98,11 @@ def agrees(beside: list[dict]) -> bool:
 
 
 def holds(table: pd.DataFrame) -> bool:
-    """In the mean of elements: every run ends, energy to 1e-9, contact times fall and no answer jumps, at the cost asked for."""
+    """Whether the projected runs satisfy the requirements.
+
+    Every run finishes and conserves energy to 1e-9, the contact time falls with nu without jumps,
+    and the cost ratio is at most DEAREST.
+    """
     mine = table[table.volume == "projected"]
     good = (mine.outcome == "").all() and (mine.energy < 1e-9).all()
     for _, one in mine.groupby("body"):
@@ -95,17 +112,20 @@ def holds(table: pd.DataFrame) -> bool:
 
 
 def _dearer(one: pd.DataFrame) -> float:
-    """Processor time at the largest nu over that at PLAIN (the nearest there is)."""
+    """Processor time at the largest nu over that at the nu nearest to PLAIN."""
     return one["CPU [s]"].iloc[-1] / one["CPU [s]"].iloc[int(np.argmin(abs(one.nu.to_numpy() - PLAIN)))]
 
 
 def _rise(one: pd.DataFrame, name: str) -> str:
-    """The largest rise of an answer from one nu to the next, in words."""
+    """The largest rise of a result from one nu to the next, in words."""
     return f"{100 * max(0.0, one[name].pct_change().max()):.2f} % at most"
 
 
 def draw(table: pd.DataFrame, path: Path) -> None:
-    """Answers and processor time over 0.5 - nu; of J = 1 a line, with the accuracy that was asked for as a band about it."""
+    """Draws results and processor time over 0.5 - nu.
+
+    A line shows the value for J = 1, with the requested accuracy as a band about it.
+    """
     names = [*ANSWERS, "CPU [s]"]
     with plt.rc_context(STYLE):
         figure, grid = plt.subplots(len(BODIES), len(names), figsize=(12, 2.9 * len(BODIES)), squeeze=False)
@@ -132,7 +152,7 @@ def draw(table: pd.DataFrame, path: Path) -> None:
 
 
 def report(table: pd.DataFrame, beside: list[dict]) -> str:
-    """The table, what it says, and the verdict."""
+    """The report: table, findings and verdict."""
     mine = table[table.volume == "projected"]
     lines = [f"Impact on the plane at {BASE['speed']:g} m/s, neo-Hookean, accuracy {BASE['accuracy']:g}. projected: what lambda has beyond "
              f"nu = {PLAIN:g} acts on the mean volume of each element, nu = 0.5: law = incompressible;",

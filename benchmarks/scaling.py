@@ -1,5 +1,9 @@
-"""What a step costs over the number n of unknowns, by phase, and memory: the exponents b of c n^b, of one scene on ever finer meshes. A
-step's floor is what its iterations cannot do without, the forces of the bodies and solutions with the factors: phases assembly, solve."""
+"""Cost of a step and memory over the number of unknowns n.
+
+Each scene runs on several meshes; the exponents b of c n^b are fitted by phase. The lower bound of
+a step is the time that its iterations need at least: forces of the bodies and solutions with the
+factors, phases `assembly` and `solve`.
+"""
 
 import math
 import multiprocessing
@@ -21,8 +25,12 @@ from . import page
 
 @dataclass(frozen=True)
 class Case:
-    """A scene, its element sizes in the bulk and where it can touch [m], what divides them, the steps [s] and how many; and the largest
-    exponents that are asked of the time of a step and of memory."""
+    """A scene that is run on several meshes.
+
+    sizes: element sizes in the bulk and near contact [m]; finer: divisors of the sizes
+    dt: step [s]; steps: number of steps
+    asked, memory: largest permitted exponents of the time of a step and of the memory
+    """
 
     scene: str
     sizes: tuple[float, float]
@@ -34,26 +42,33 @@ class Case:
 
 
 CASES = {
-    "disc": Case("disc-normal-neohookean", (5e-3, 1e-3), (1, 2, 4, 9), 2e-5, 30, 1.2),   # svk loses ellipticity here on fine meshes
+    # Svk loses ellipticity on fine meshes.
+    "disc": Case("disc-normal-neohookean", (5e-3, 1e-3), (1, 2, 4, 9), 2e-5, 30, 1.2),
     "disc, friction": Case("disc-oblique", (5e-3, 1e-3), (1, 2, 4, 8), 2e-5, 30, 1.2),
     "ball": Case("ball", (22e-3, 7.2e-3), (1, 1.6, 2.4, 4), 5e-5, 20, 1.4),
     "ball, friction": Case("ball-oblique", (22e-3, 7.2e-3), (1, 1.6, 2.4, 3.4), 5e-5, 20, 1.4),
 }
-MOST_OVER_FLOOR = 4                        # asked of a step
-PHASES = ("assembly", "factor", "solve", "contact", "search", "audit", "output")   # what steps are made of (phase_seconds)
+MOST_OVER_FLOOR = 4  # permitted ratio of a step to its lower bound
+# The phases of a step, in `phase_seconds`.
+PHASES = ("assembly", "factor", "solve", "contact", "search", "audit", "output")
 
 
 def main(argv: list[str]) -> int:
-    """Prints seconds a step, memory and their exponents, writes scaling.csv; 0 if none is above what is asked."""
+    """Prints seconds of a step, memory and their exponents; writes scaling.csv.
+
+    Returns 0 if no exponent exceeds its bound.
+    """
     parser = commands.command("scaling", __doc__, page=True)
     parser.add_argument("--meshes", metavar="N", type=int, default=4, help="the coarsest N of each case (default: all four)")
     parser.add_argument("--cases", metavar="CASE", nargs="+", default=list(CASES), choices=CASES, help=", ".join(CASES))
     options = parser.parse_args(argv)
-    freefem.find()                         # what has to be built is built here, not in the first run
+    # Builds the kernels, if they are missing, before the first run.
+    freefem.find()
     rows, texts, slopes, phases, good = [], [], [], [], True
     for name in options.cases:
         case = CASES[name]
-        with multiprocessing.get_context("fork").Pool(1, maxtasksperchild=1) as one:   # each with the memory of its own children
+        # Each run has its own process, so that the memory of its children is measured alone.
+        with multiprocessing.get_context("fork").Pool(1, maxtasksperchild=1) as one:
             wanted = [(case, finer, options.out / name.replace(", ", "-")) for finer in case.finer[:options.meshes]]
             found = pd.DataFrame(one.starmap(_row, wanted, chunksize=1))
         exponents = {column: slope(found.unknowns, found[column]) for column in (*PHASES, "step", "memory")}
@@ -76,7 +91,7 @@ def main(argv: list[str]) -> int:
 
 
 def _row(case: Case, finer: float, out: Path) -> dict:
-    """One run, in a folder of its own, from a process of its own."""
+    """The row of one run, in its own folder and process."""
     bulk, contact = case.sizes
     given = {"mesh_size": bulk / finer, "contact_mesh_size": contact / finer, "dt": case.dt, "end_time": case.steps * case.dt, "fields": 0}
     folder = out / f"{finer:g}"
@@ -90,7 +105,8 @@ def _row(case: Case, finer: float, out: Path) -> dict:
 
 
 def slope(n: pd.Series, values: pd.Series) -> float:
-    """b of the line log values = a + b log n that is nearest; nan where a value is too small to be seen."""
+    """The slope b of the regression line log values = a + b log n. It is nan if a value is too
+    small to measure."""
     if len(n) < 2 or (values < 1e-4).any():
         return math.nan
     x, y = n.map(math.log), values.map(math.log)

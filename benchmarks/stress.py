@@ -1,4 +1,5 @@
-"""Hard parameter sets on a coarse mesh: each must end with its energy balance closed, or say why it cannot."""
+"""Difficult parameter sets on a coarse mesh. Each run must close its energy balance or explain its
+failure."""
 
 import itertools
 import random
@@ -10,17 +11,21 @@ from ffimpact.sweeps import study
 from verification import commands
 
 AXES = {"law": ("svk", "neohookean"), "nu": (0.0, 0.3, 0.45, 0.49, 0.4999), "speed": (0.5, 4.0, 10.0), "penalty": (1e9, 1e10, 1e12),
-        "exponent": (1.0, 1.5, 2.0), "dt": (0.0, 2e-5, 1e-4)}   # dt = 0: adaptive
-HELD = {"law": "incompressible", "nu": 0.5}                      # what neo-Hookean goes to
-BASE = {"mesh_size": 0.0125, "contact_mesh_size": 0.005, "accuracy": 1.25e-3, "fields": 0}   # the accuracy: of the adaptive step
-CLOSED = 1e-8               # largest energy drift of a finished run
-LIMIT = 120.0               # seconds a run may take
-READ = ("energy_drift", "max_penetration", "wall_seconds", "newton_iterations", "steps")   # of the summaries
-KINDS = ("closed", "open", "no step", "breakdown", "other")   # outcomes, in the words of the table
+        "exponent": (1.0, 1.5, 2.0), "dt": (0.0, 2e-5, 1e-4)}  # dt = 0: adaptive step
+# The neo-Hookean law at the largest nu also runs with these values.
+HELD = {"law": "incompressible", "nu": 0.5}
+# The accuracy controls the adaptive step.
+BASE = {"mesh_size": 0.0125, "contact_mesh_size": 0.005, "accuracy": 1.25e-3, "fields": 0}
+CLOSED = 1e-8  # largest energy drift of a finished run
+LIMIT = 120.0  # longest time of a run [s]
+# The columns of the summaries that are evaluated.
+READ = ("energy_drift", "max_penetration", "wall_seconds", "newton_iterations", "steps")
+KINDS = ("closed", "open", "no step", "breakdown", "other")  # outcomes as the table names them
 
 
 def main(argv: list[str]) -> int:
-    """Runs the sets, prints the outcomes; 0 if every set does what is required of it, else 1."""
+    """Runs the sets and prints the outcomes. Returns 0 if every set satisfies the requirements,
+    else 1."""
     parser = commands.command("stress", __doc__)
     parser.add_argument("--quick", metavar="N", type=whole, help="N of the sets, always the same ones")
     options = parser.parse_args(argv)
@@ -35,19 +40,21 @@ def main(argv: list[str]) -> int:
 
 
 def outcome(row: pd.Series) -> str:
-    """One of KINDS."""
+    """The outcome of a run, one of KINDS."""
     if row.exit == 0:
         return "closed" if row.energy_drift <= CLOSED else "open"
     return {11: "no step", 12: "breakdown"}.get(row.exit, "other")
 
 
 def holds(rows: pd.DataFrame) -> pd.Series:
-    """What is required: exit 0 with a closed balance, or exit 11 or 12 with a message."""
+    """Whether a run satisfies the requirements: exit 0 with a closed balance, or exit 11 or 12 with
+    a message."""
     return (rows.outcome == "closed") | (rows.outcome.isin(("no step", "breakdown")) & (rows.message != ""))
 
 
 def report(rows: pd.DataFrame) -> str:
-    """Counts of the outcomes, the extremes, every set that did not finish, and the verdict."""
+    """The report: counts of the outcomes, the extremes, every set that did not finish, and the
+    verdict."""
     counts = rows.groupby(["law", "nu", "speed"]).outcome.value_counts().unstack(fill_value=0)
     counts = counts.reindex(columns=KINDS, fill_value=0).reset_index()
     counts["worst drift"] = rows.groupby(["law", "nu", "speed"]).energy_drift.max().values
@@ -77,5 +84,5 @@ def _name(row: pd.Series) -> str:
 
 
 def _short(name: str, value) -> str:
-    """A value as it is read best; dt = 0 is adaptive."""
+    """A value in words; dt = 0 is adaptive."""
     return "adaptive" if name == "dt" and value == 0 else f"{value:g}" if isinstance(value, float) else value

@@ -1,15 +1,26 @@
-"""Damped impacts. A ball of Kelvin and Voigt's solid at low speed, against quasi-static theory: 1 - e over v^(1/5), its slope and its
-coefficient (Kuwabara, Kono 1987; Brilliantov, Spahn, Hertzsch, Poeschel 1996); the same ball with a Maxwell branch. A disc over its loss
-factor, and over the relaxation time of a Maxwell branch: restitution and contact time.
+"""Damped impacts of a ball and a disc.
 
-Quasi-static theory, F = k (x^(3/2) + 3/2 A x^(1/2) x'), k = 4/3 E* R^(1/2), E* = 4 mu (lambda + mu)/(lambda + 2 mu), of the approach x:
+The ball is a Kelvin-Voigt solid at low speed. Its 1 - e over v^(1/5), slope and coefficient are
+compared with quasi-static theory (Kuwabara, Kono 1987; Brilliantov, Spahn, Hertzsch, Poeschel
+1996). The same ball also has a Maxwell branch. The restitution and the contact time of the disc are
+computed over the loss factor, and over the relaxation time of a Maxwell branch.
+
+Quasi-static theory for the approach x: F = k (x^(3/2) + 3/2 A x^(1/2) x'), k = 4/3 E* R^(1/2), E* =
+4 mu (lambda + mu)/(lambda + 2 mu), and
+
   1 - e = 1.730 A (k/m)^(2/5) v^(1/5) + O(A^2)
-A = (eta d/dmu + zeta d/dlambda) ln E*: the rate at which Hertz' own motion dissipates is that of a flat punch as wide as the contact,
-2 b x'^2 (eta d/dmu + zeta d/dlambda) E*, as an elastic energy at given motion of the punch is least. Brilliantov et al. have
-A = zeta^2/(zeta + 2 eta) (1 - nu^2)(1 - 2 nu)/(E nu^2): the same for zeta/lambda = eta/mu, 0 for zeta = 0.
-A branch G, tau takes of Hertz' motion, to first order in G, by the same punches, of half-widths b at the two times,
-  D = G dE*/dmu times the double integral of exp(-|t - s|/tau) min(b(t), b(s)) x'(t) x'(s),
-as what a punch presses down by, and how far the surface bulges beside it, is the same for all moduli.
+
+with A = (eta d/dmu + zeta d/dlambda) ln E*. Reason: Hertz' motion dissipates at the same rate as a
+flat punch as wide as the contact, 2 b x'^2 (eta d/dmu + zeta d/dlambda) E*, because the elastic
+energy is a minimum for a prescribed motion of the punch. Brilliantov et al. have A = zeta^2/(zeta +
+2 eta) (1 - nu^2)(1 - 2 nu)/(E nu^2). This is the same for zeta/lambda = eta/mu, and 0 for zeta = 0.
+
+A branch with modulus G and relaxation time tau dissipates in Hertz' motion, to first order in G,
+
+  D = G dE*/dmu times the double integral of exp(-|t - s|/tau) min(b(t), b(s)) x'(t) x'(s).
+
+It follows from the same punches with the half-widths b at the two times, since the displacement
+under a punch and the bulge of the surface beside it do not depend on the moduli.
 """
 
 import itertools
@@ -31,26 +42,35 @@ YOUNG, NU, DENSITY, RADIUS = 7e6, 0.3, 1722.0, 0.05
 MU, LAMBDA = YOUNG / (2 * (1 + NU)), YOUNG * NU / ((1 + NU) * (1 - 2 * NU))
 MASS = DENSITY * 4 / 3 * math.pi * RADIUS**3
 SPRING = 4 / 3 * YOUNG / (1 - NU**2) * math.sqrt(RADIUS)  # k [N/m^(3/2)]
-TIME = 1e-4                                               # eta/mu, zeta/lambda [s]
-RELAXES = (0.01 * MU, 0.005)                              # G [Pa], tau [s] of the ball's branch
+TIME = 1e-4  # eta/mu, zeta/lambda [s]
+RELAXES = (0.01 * MU, 0.005)  # G [Pa], tau [s] of the branch of the ball
 KINDS = {"elastic": (0.0, 0.0), "both": (TIME * MU, TIME * LAMBDA), "shear": (TIME * MU, 0.0), "branch": RELAXES}
 COLOURS, WORDS = {"both": BLUE, "shear": ORANGE}, {"both": "η/μ = ζ/λ", "shear": "η alone"}
-SPEEDS = (1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0)               # m/s; sqrt(E/rho) is 64
-SLOW = 1e-2                                               # up to here the contact is small (b/R < 0.04) and long: theory is asked for
-STIFF = 30.0                                              # times the usual penalty: what it stores is not damped
+SPEEDS = (1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0)  # [m/s]; sqrt(E/rho) is 64
+# Largest speed that is compared with theory [m/s]. Up to this speed the contact is small (b/R <
+# 0.04) and long.
+SLOW = 1e-2
+# Factor of the usual penalty. The energy stored in the penalty is not damped.
+STIFF = 30.0
 LOSSES = (0.0, 0.01, 0.03, 0.1, 0.3, 1.0)
-TIMES = (0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0)            # relaxation time over the contact time without damping
-BRANCH = 0.5                                              # modulus of the branch over mu
+# Relaxation time over the contact time without damping.
+TIMES = (0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0)
+BRANCH = 0.5  # modulus of the branch over mu
 DISC = {"law": "neohookean", "nu": 0.45, "speed": 4.0, "young": YOUNG, "density": DENSITY, "radius": RADIUS, "fields": 0, "accuracy": 0.01}
-AGREE, STRAIGHT, CLOSED = 0.02, 0.005, 1e-9               # of 1 - e over theory; of its exponent from 1/5; largest balance
-LIMIT = 300.0                                             # seconds a run may take
+# Permitted deviations: of 1 - e relative to theory, of its exponent from 1/5, and of the energy
+# balance.
+AGREE, STRAIGHT, CLOSED = 0.02, 0.005, 1e-9
+LIMIT = 300.0  # longest time of a run [s]
 BALL_FORMATS = {"viscous": "", "speed": "g", "b/R": ".4f", "T/own": ".1f", "1 - e": ".5f", "theory": ".5f", "off [%]": "+.1f",
                 "first order": ".5f", "contact [ms]": ".3f", "theory [ms]": ".3f", "lost [%]": ".3f", "balance": ".0e"}
 DISC_FORMATS = {"loss": "g", "tau/T": "g", "e": ".4f", "contact [ms]": ".3f", "lost [%]": ".2f", "balance": ".0e"}
 
 
 def main(argv: list[str]) -> int:
-    """Runs what is not there yet, prints the tables, writes viscoelastic.csv and .png; 0 if slow balls agree and all balances close."""
+    """Runs all missing impacts, prints the tables, writes viscoelastic.csv and .png.
+
+    Returns 0 if slow balls agree with theory and all energy balances close.
+    """
     parser = commands.command("viscoelastic", __doc__, page=True)
     options = parser.parse_args(argv)
     tables = [make(options.out) for make in in_turn("viscoelastic", (balls, discs))]
@@ -63,23 +83,29 @@ def main(argv: list[str]) -> int:
 # ---- theory
 
 def coefficient(eta: float, zeta: float) -> float:
-    """A [s]."""
+    """The coefficient A [s]."""
     return eta * (1 / MU + 1 / (LAMBDA + MU) - 2 / (LAMBDA + 2 * MU)) + zeta * (1 / (LAMBDA + MU) - 1 / (LAMBDA + 2 * MU))
 
 
 def brilliantov(eta: float, zeta: float) -> float:
-    """A of Brilliantov et al. 1996 [s], with their viscosities 2 eta of shear and zeta + 2 eta/3 of volume."""
+    """The coefficient A of Brilliantov et al. 1996 [s], with their viscosities 2 eta of shear and
+    zeta + 2 eta/3 of volume."""
     return zeta**2 / (zeta + 2 * eta) * (1 - NU**2) * (1 - 2 * NU) / (YOUNG * NU**2)
 
 
 def first_order(a: float, speed: float) -> float:
-    """1 - e: (3 A/m v) times the integral of k x^(1/2) |x'| over the elastic motion, which is a beta function."""
+    """1 - e to first order in A.
+
+    This is (3 A/m v) times the integral of k x^(1/2) |x'| over the elastic motion, which is a beta
+    function.
+    """
     beta = math.gamma(0.6) * math.gamma(1.5) / math.gamma(2.1)
     return 3 * a * 0.4 * beta * 1.25**0.6 * (SPRING / MASS) ** 0.4 * speed**0.2
 
 
 def impact(a: float, speed: float, steps: int = 4000) -> tuple[float, float]:
-    """Restitution and contact time [s] of m x'' = -k (x^(3/2) + 3/2 A x^(1/2) x'), until the force is 0, by Runge and Kutta's method."""
+    """Restitution and contact time [s] of m x'' = -k (x^(3/2) + 3/2 A x^(1/2) x') until the force
+    is 0, by the Runge-Kutta method."""
     unit = (1.25 * MASS * speed**2 / SPRING) ** 0.4 / speed
     rate, state, t = SPRING / MASS, np.array([0.0, speed]), 0.0
 
@@ -97,7 +123,10 @@ def impact(a: float, speed: float, steps: int = 4000) -> tuple[float, float]:
 
 
 def lost_to_branch(speed: float, steps: int = 2000) -> float:
-    """The share of its energy that the ball loses to RELAXES: D of Hertz' motion x = x0 sin^(4/5), as x' = v (1 - (x/x0)^(5/2))^(1/2)."""
+    """The share of its energy that the ball loses to the branch RELAXES.
+
+    It is D for Hertz' motion x = x0 sin^(4/5), as x' = v (1 - (x/x0)^(5/2))^(1/2).
+    """
     depth = (1.25 * MASS * speed**2 / SPRING) ** 0.4
     ends = np.linspace(0, math.pi, steps + 1)
     middle, x = (ends[1:] + ends[:-1]) / 2, depth * np.abs(np.sin(ends)) ** 0.8
@@ -108,7 +137,7 @@ def lost_to_branch(speed: float, steps: int = 2000) -> float:
 
 
 def theory(kind: str, speed: float) -> tuple[float, float]:
-    """1 - e and contact time [s] of a kind."""
+    """1 - e and contact time [s] of a ball of the kind `kind`."""
     if kind == "branch":
         return 1 - math.sqrt(1 - lost_to_branch(speed)), impact(0, speed)[1]
     e, contact = impact(coefficient(*KINDS[kind]), speed)
@@ -118,7 +147,7 @@ def theory(kind: str, speed: float) -> tuple[float, float]:
 # ---- the runs
 
 def balls(out: Path) -> pd.DataFrame:
-    """A row a kind and speed."""
+    """A row for each kind and speed."""
     bar = math.sqrt(YOUNG / DENSITY)
     base = {"law": "neohookean", "young": YOUNG, "nu": NU, "density": DENSITY, "radius": RADIUS, "fields": 0, "accuracy": 0.002}
     cases = list(itertools.product(KINDS, SPEEDS))
@@ -138,7 +167,7 @@ def balls(out: Path) -> pd.DataFrame:
 
 
 def discs(out: Path) -> pd.DataFrame:
-    """A row a loss factor, and a relaxation time."""
+    """A row for each loss factor and each relaxation time."""
     viscous = study.study([{"loss": loss} for loss in LOSSES], out / "disc", DISC, LIMIT)
     contact = viscous.thresholded_contact_time.iloc[0]
     mu = YOUNG / (2 * (1 + DISC["nu"]))
@@ -150,29 +179,30 @@ def discs(out: Path) -> pd.DataFrame:
 
 
 def measured(run: pd.Series) -> dict[str, float]:
-    """What both tables have of a run."""
+    """The columns that both tables have in common."""
     work = run.get("viscous_work", 0.0)
     return {"e": run.restitution, "contact [ms]": 1e3 * run.thresholded_contact_time, "balance": run.energy_drift, "exit": run.exit,
             "lost [%]": 100 * (0.0 if pd.isna(work) else work) / run.energy_initial, "warnings": run.warnings}
 
 
-# ---- what is said of it
+# ---- report
 
 def exponents(ball: pd.DataFrame) -> dict[str, float]:
-    """Of 1 - e in v, slow impacts, by kind."""
+    """The exponents of 1 - e in v for slow impacts, by kind."""
     slow = {kind: ball[(ball.viscous == kind) & (ball.speed <= SLOW)] for kind in COLOURS}
     return {kind: float(np.polyfit(np.log(rows.speed), np.log(rows["1 - e"]), 1)[0]) for kind, rows in slow.items()}
 
 
 def holds(ball: pd.DataFrame, disc: pd.DataFrame) -> bool:
-    """Whether slow balls have theory's 1 - e and its exponent, and every run closes its balance."""
+    """Whether 1 - e of slow balls and its exponent agree with theory, and every energy balance
+    closes."""
     asked = ball[(ball.viscous != "elastic") & (ball.speed <= SLOW)]
     return bool((asked["off [%]"].abs() <= 100 * AGREE).all() and all(abs(each - 0.2) <= STRAIGHT for each in exponents(ball).values())
                 and (pd.concat([ball, disc]).balance < CLOSED).all())
 
 
 def report(ball: pd.DataFrame, disc: pd.DataFrame) -> str:
-    """Tables, what they say, and the verdict."""
+    """The report: tables, findings and verdict."""
     slow, fits = ball[(ball.viscous != "elastic") & (ball.speed <= SLOW)], exponents(ball)
     least, most = disc.loc[disc["tau/T"].notna(), "e"].idxmin(), max(disc.balance.max(), ball.balance.max())
     ours, theirs = ([each(*KINDS[kind]) for kind in COLOURS] for each in (coefficient, brilliantov))
@@ -205,8 +235,11 @@ def report(ball: pd.DataFrame, disc: pd.DataFrame) -> str:
 
 
 def draw(ball: pd.DataFrame, disc: pd.DataFrame, path: Path) -> None:
-    """1 - e of the ball over v^(1/5), and with the branch over v; restitution and contact time of the disc over loss factor and relaxation
-    time."""
+    """Draws 1 - e of the ball over v^(1/5), and with the branch over v.
+
+    Further panels show restitution and contact time of the disc over loss factor and relaxation
+    time.
+    """
     with plt.rc_context(STYLE):
         figure, ((viscous, branch), discs) = plt.subplots(2, 2, figsize=(9, 6.8))
         speeds = np.geomspace(min(SPEEDS), max(SPEEDS), 40)

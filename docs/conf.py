@@ -1,6 +1,6 @@
-"""The documentation as a site: `make docs`.
+"""Configuration of the documentation site, built by `make docs`.
 
-Pages are MyST Markdown; the gallery is made from examples/NN_*.py.
+Pages are MyST Markdown. The gallery comes from examples/NN_*.py.
 """
 
 import inspect
@@ -35,10 +35,8 @@ extensions = [
     *([] if find_spec("latex2mathml") else ["sphinx.ext.mathjax"]),
 ]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
-suppress_warnings = [
-    "toc.empty_glob",
-    "config.cache",
-]  # a folder that has no page yet; settings that are functions
+# Two warnings are expected: a folder without pages, and settings that are functions.
+suppress_warnings = ["toc.empty_glob", "config.cache"]
 
 myst_enable_extensions = ["colon_fence", "deflist", "dollarmath", "fieldlist"]
 myst_heading_anchors = 3
@@ -95,7 +93,7 @@ sphinx_gallery_conf = {
 }
 
 
-# ---- links to files of the program, which are no pages: their words
+# ---- links to files of the program, which have no page, become code
 
 FILES = re.compile(
     r"\[([^]\n]+)\]\((?:\.\./)*"
@@ -104,15 +102,15 @@ FILES = re.compile(
 
 
 def plain_links(app, name: str, source: list[str]) -> None:
-    """Links to files of the program become code."""
+    """Replaces links to files of the program by code."""
     source[0] = FILES.sub(lambda link: f"`{link[1].strip('`')}`", source[0])
 
 
-# ---- formulas as MathML, which a browser draws without a script and without a network
+# ---- formulas as MathML, which browsers draw without scripts and network access
 
 
 def formula(self, node) -> None:
-    """A formula in a line of text."""
+    """Writes an inline formula."""
     from latex2mathml.converter import convert
 
     self.body.append(convert(node.astext()))
@@ -120,7 +118,7 @@ def formula(self, node) -> None:
 
 
 def displayed_formula(self, node) -> None:
-    """A formula in a line of its own, with its number."""
+    """Writes a displayed formula with its number."""
     from latex2mathml.converter import convert
 
     number = get_node_equation_number(self, node) if node["number"] else ""
@@ -135,7 +133,11 @@ def displayed_formula(self, node) -> None:
 
 
 def signature(app, what: str, name: str, one: object, options, found: str, returns: str):
-    """Of a table of a scene the entries that are needed; what is left open follows in the table."""
+    """The signature of a class or function.
+
+    For a table of a scene it lists the required entries only; the page has a table of all entries
+    below.
+    """
     if inspect.isclass(one) and issubclass(one, models.Entries):
         needed = [entry for entry, field in one.model_fields.items() if field.is_required()]
         return f"(*, {', '.join([*needed, '...'])})", None
@@ -145,7 +147,11 @@ def signature(app, what: str, name: str, one: object, options, found: str, retur
 
 
 def docstring(app, what: str, name: str, one: object, options, lines: list[str]) -> None:
-    """Docstrings are plain text; that of a table of a scene is followed by its entries."""
+    """Converts a docstring, which is plain text, to reStructuredText.
+
+    The docstring of a table of a scene is followed by a table of its entries, that of an error by
+    its exit code.
+    """
     lines[:] = [literal(line) for line in lines]
     if inspect.isclass(one) and issubclass(one, models.Entries):
         lines += ["", *entries(one)]
@@ -154,7 +160,7 @@ def docstring(app, what: str, name: str, one: object, options, lines: list[str])
 
 
 def literal(line: str) -> str:
-    """A line of plain text as reStructuredText: marks outside of code are letters."""
+    """A line of plain text as reStructuredText. Markup characters outside of code are escaped."""
     parts = re.split(r"(`+[^`]*`+)", line)
     if line == "-":
         return r"\-"
@@ -165,7 +171,8 @@ def literal(line: str) -> str:
 
 
 def entries(model: type[models.Entries]) -> list[str]:
-    """A table of the entries of a model that its base does not have, and a link to the base."""
+    """A table of the entries of a model that differ from those of its base class, and a link to the
+    base class."""
     base = model.__mro__[1]
     common = base.model_fields if base in pages.BASES.values() else {}
     lines = [".. list-table::", "   :header-rows: 1", "   :widths: 22 10 24 44", ""]

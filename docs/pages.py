@@ -1,7 +1,7 @@
-"""Generates the parts of pages that the program itself knows.
+"""Generates the parts of pages that follow from the program.
 
-A part NAME stands between the marks `<!-- NAME -->` and `<!-- end of NAME -->` of any page:
-parameters, columns, warnings, exit codes, commands, equations, and the Python interface.
+A part NAME is between the marks `<!-- NAME -->` and `<!-- end of NAME -->` of any page: parameters,
+columns, warnings, exit codes, commands, equations, and the Python interface.
 """
 
 import argparse
@@ -37,11 +37,11 @@ EQUATION = re.compile(r"// ((?:\(\d+\)(?:, |–| ))*\(\d+\))(?::| |$)")
 
 
 KINDS = {"warn": "warning", "note": "note"}
-# with which an advice begins
+# Verbs with which advice begins.
 VERBS = (
     "take|compare|round|give|make|end|use|set|run|choose|lower|increase|reduce|raise|check|try|see"
 )
-# what to do where a sentence does not say it
+# Advice for warnings whose sentence has none.
 ADVICE = {
     "angular momentum": "take integrator=energy-momentum, or a smaller dt",
     "energy": "take integrator=energy-momentum, or a smaller dt",
@@ -50,7 +50,7 @@ ADVICE = {
     "rebound": "take the impulse, or a smaller gravity",
     "thresholded contact time": "take the error bar as it is, or contact_time",
 }
-# of what no call above has the words
+# Warnings that no call of warn or note contains as one sentence.
 OF_ESTIMATES = "".join(
     f"| {name} | {kind} | {words} | {advice} |\n"
     for name, kind, words, advice in (
@@ -99,7 +99,7 @@ OF_ESTIMATES = "".join(
 
 
 def main(argv: list[str]) -> int:
-    """Writes the pages below the source folder."""
+    """Writes the pages of the source folder."""
     argparse.ArgumentParser(prog="python docs/pages.py", description=__doc__).parse_args(argv)
     for path, text in pages().items():
         path.write_text(text)
@@ -108,7 +108,7 @@ def main(argv: list[str]) -> int:
 
 
 def pages() -> dict[Path, str]:
-    """The text of every page that has a part, by its file, with the part made anew."""
+    """The text of every page with generated parts, by file. The parts are generated again."""
     made = {schema.FILE: schema.text()}
     for path in [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]:
         text = path.read_text()
@@ -122,7 +122,7 @@ def pages() -> dict[Path, str]:
 
 
 def entries() -> str:
-    """All entries of a scene: table by table, with unit, what is accepted and meaning."""
+    """Tables of all entries of a scene with unit, accepted values and meaning."""
     text = "\n## Parameters of a run\nAt the top of a scene file, by `--set name=value`, "
     text += "as flags of the scripts, and in Python.\n"
     text += "\n| name | unit | default | accepted | meaning |\n|---|---|---|---|---|\n"
@@ -161,12 +161,12 @@ def entries() -> str:
 
 
 def first_line(model: type) -> str:
-    """What a class is, by its docstring."""
+    """The first line of the docstring of a class."""
     return (model.__doc__ or "").strip().split("\n")[0]
 
 
 def table_of(heading: str, words: str, model: type[models.Entries]) -> str:
-    """The entries of a model under a heading."""
+    """A heading with a table of the entries of a model."""
     return (
         f"\n## {heading}\n{words}\n\n| name | unit | accepted | meaning |\n|---|---|---|---|\n"
         + rows(model)
@@ -174,7 +174,7 @@ def table_of(heading: str, words: str, model: type[models.Entries]) -> str:
 
 
 def rows(model: type[models.Entries], but: Collection[str] = (), first: str = "") -> str:
-    """A row an entry."""
+    """The rows of a table of the entries of a model, without the entries in `but`."""
     text = ""
     for name, field in model.model_fields.items():
         if (told := entry_of(name, field)) and name not in but:
@@ -184,7 +184,8 @@ def rows(model: type[models.Entries], but: Collection[str] = (), first: str = ""
 
 
 def entry_of(name: str, field: FieldInfo) -> tuple[str, str, str] | None:
-    """Unit, what is accepted and meaning of an entry; None of one that holds tables."""
+    """Unit, accepted values and meaning of an entry. Returns None for an entry that contains
+    tables."""
     rule = next((one for one in field.metadata if isinstance(one, Rule)), None)
     if not rule:
         return None
@@ -193,7 +194,8 @@ def entry_of(name: str, field: FieldInfo) -> tuple[str, str, str] | None:
 
 
 def kinds(word: str, table: Mapping[str, type], common: type[models.Entries]) -> str:
-    """What each shape of a body or kind of an obstacle has beside what all have."""
+    """A table of the entries that each shape of a body or kind of an obstacle has in addition to
+    the common entries."""
     text = f"\n| {word}, entry | unit | accepted | meaning |\n|---|---|---|---|\n"
     for name, model in table.items():
         dimensions = ", ".join(one.name for one in model.dimensions)
@@ -203,7 +205,7 @@ def kinds(word: str, table: Mapping[str, type], common: type[models.Entries]) ->
 
 
 def results() -> str:
-    """Files, columns and numbers of a run."""
+    """Tables of the files, columns and numbers of a run."""
     told = [describe_results({}, script) for script in SCRIPTS]
     text, meanings = "", told[0]["meanings"] | {"points": POINT_COLUMNS}
     for file, table, lists in TABLES:
@@ -224,7 +226,8 @@ def results() -> str:
 
 
 def warnings() -> str:
-    """Every sentence of warnings.idp and estimate.py by its name: what it says, what to do."""
+    """A table of the warnings and notes of warnings.idp and estimate.py by name, with fact and
+    advice."""
     rows = {}
     for path in sorted((ROOT / "edp/core").rglob("*.idp")):
         for call in re.finditer(r"\b(warn|note)\((.*?)\);\n", path.read_text(), re.DOTALL):
@@ -246,7 +249,7 @@ def warnings() -> str:
 
 
 def split(words: str) -> tuple[str, str]:
-    """The fact and the advice of a sentence; the advice follows a colon or a full stop."""
+    """The fact and the advice of a sentence. The advice follows a colon or a full stop."""
     parts = re.split(
         rf"(?:: |\. (?=[A-Z]))(?=(?:… )?(?:{VERBS})\b)",
         words,
@@ -256,7 +259,7 @@ def split(words: str) -> tuple[str, str]:
 
 
 def _literal(expression: str) -> str:
-    """The string literals of an expression in FreeFEM, with ellipses between them."""
+    """The string literals of a FreeFEM expression, with ellipses between them."""
     parts = re.split(r'"((?:[^"\\]|\\.)*)"', expression.replace("string(", "("))
     text = "".join(
         part if k % 2 else ("…" if part.strip(" +()\n") else "") for k, part in enumerate(parts)
@@ -271,12 +274,12 @@ def _literal(expression: str) -> str:
 
 
 def equations(prefix: str = "") -> str:
-    """A table: number of the equation in the paper, the line of its file where it stands."""
+    """A table of the equations of the paper and the lines of the source files that contain them."""
     found = {}
     for path in sorted((ROOT / "edp/core").rglob("*.idp")):
         for number, line in enumerate(path.read_text().splitlines(), 1):
             if match := EQUATION.search(line):
-                if line[: match.start()].strip():  # code, not prose
+                if line[: match.start()].strip():  # a line of code, not a comment
                     found.setdefault(match[1], []).append(
                         (path, number, line[match.end() :].strip())
                     )
@@ -291,7 +294,7 @@ def equations(prefix: str = "") -> str:
 
 
 def exit_codes() -> str:
-    """What the program's exit codes mean, and the exceptions of Python that they are."""
+    """A table of the exit codes, their meanings and the Python exceptions."""
     kinds = [
         one
         for _, one in inspect.getmembers(failure, inspect.isclass)
@@ -315,7 +318,7 @@ def exit_codes() -> str:
 
 
 def commands() -> str:
-    """Every command with its arguments and options, as --help lists them."""
+    """Tables of all commands with their arguments and options, as --help lists them."""
     text = ""
     for name, parser in parsers():
         heading = f"ffimpact {name}".strip()
@@ -349,7 +352,7 @@ def parsers() -> Iterator[tuple[str, argparse.ArgumentParser]]:
 
 
 def caught(module: str) -> argparse.ArgumentParser:
-    """The parser that a module's main() makes."""
+    """The parser that the main() of a module builds."""
     found, print_help = [], argparse.ArgumentParser.print_help
     argparse.ArgumentParser.print_help = lambda self, file=None: found.append(self)
     try:
@@ -361,7 +364,7 @@ def caught(module: str) -> argparse.ArgumentParser:
 
 
 def sentences(description: str) -> str:
-    """A description as text; a block whose lines begin with spaces is an example."""
+    """A description as text. A block of indented lines is an example."""
     text = []
     for block in re.split(r"\n\s*\n", description.strip("\n")):
         if all(line.startswith("    ") for line in block.splitlines()):
@@ -373,7 +376,7 @@ def sentences(description: str) -> str:
 
 
 def spelled(action: argparse.Action) -> str:
-    """An argument as it is typed."""
+    """The syntax of an argument."""
     value = (
         action.metavar
         if isinstance(action.metavar, str)
@@ -389,7 +392,7 @@ def spelled(action: argparse.Action) -> str:
 
 
 def plain(parser: argparse.ArgumentParser, action: argparse.Action) -> str:
-    """The help of an argument, with its default filled in."""
+    """The help text of an argument with its default."""
     return " ".join(parser._get_formatter()._expand_help(action).split()) if action.help else ""
 
 
@@ -397,7 +400,7 @@ def plain(parser: argparse.ArgumentParser, action: argparse.Action) -> str:
 
 
 def exports() -> dict[str, list[str]]:
-    """The names that the package exports, by the page that has them."""
+    """The names that the package exports, by page."""
     found = {
         "functions": [],
         "results": [],
@@ -424,18 +427,19 @@ def exports() -> dict[str, list[str]]:
 
 
 BASES = {"materials": models.Material, "bodies": models.Body, "obstacles": models.Obstacle}
-MORE = {"results": ("plot.Plots", "result.Fields")}  # what results give that is not exported
+MORE = {"results": ("plot.Plots", "result.Fields")}  # classes of results that are not exported
+# The documented members; "" means all members.
 SHOWN_OF = {
     "Scene": "set, save, load",
     "Result": "",
     "Study": "",
     "plot.Plots": "",
     "result.Fields": "",
-}  # members; "": all
+}
 
 
 def interface(part: str) -> str:
-    """A part of the Python interface: a table of its names, and each with its signature."""
+    """A part of the Python interface: a table of its names, and every name with its signature."""
     names = [*exports()[part], *MORE.get(part, ())]
     text = (
         "```{eval-rst}\n.. autosummary::\n   :nosignatures:\n\n"
@@ -457,7 +461,8 @@ def interface(part: str) -> str:
 
 
 def run_times() -> str:
-    """Processor seconds of the programs for each case and error, from the measurement's table."""
+    """A table of the processor seconds of the programs for each case and error, from the
+    measurement."""
     table = pd.read_csv(ROOT / "docs/measurements/bench-levels.csv")
     programs = list(table.program.unique())
     text = f"| case, error | {' | '.join(programs)} |\n|---|{'---:|' * len(programs)}\n"
@@ -472,11 +477,11 @@ def cell(text: str) -> str:
 
 
 def words(accepted: str) -> str:
-    """What is accepted, its words apart so that a line may end between them."""
+    """The accepted values with spaces around the separators, so that a line can break there."""
     return re.sub(r"(?<=\S)\|(?=\S)", " | ", accepted)
 
 
-# what stands between two marks, made for a page in a folder
+# The functions that generate each part, for a page in a folder.
 PARTS: dict[str, Callable[[Path], str]] = {
     "parameters": lambda _: entries(),
     "columns": lambda _: results(),

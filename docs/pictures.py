@@ -1,4 +1,5 @@
-"""The animation of README.md and docs/index.md, from the film of disc-oblique: `make pictures`."""
+"""Writes the animation of README.md and docs/index.md from the film of disc-oblique: `make
+pictures`."""
 
 import sys
 from pathlib import Path
@@ -9,7 +10,7 @@ from ffimpact.places import RESULTS, ROOT
 
 FILM = Path("movies/disc-oblique/disc-oblique.gif")
 WIDTH = 460  # pixels
-DURATION = 90  # of a frame [ms]
+DURATION = 90  # duration of a frame [ms]
 
 
 def main() -> int:

@@ -1,10 +1,13 @@
-"""Counts words and pictures of the pages written by hand, and private terms (first column of the table of terms) that are left.
+"""Counts words and pictures of the handwritten pages, and private terms (first column of the table
+of terms) that are left.
 
-    python docs/words.py            # pages of docs/tutorial, how-to, explanation and README.md; messages of orchestrate/
-    python docs/words.py --where    # also each place
+    python docs/words.py            # totals
+    python docs/words.py --where    # also each position
 
-Code blocks and `code` do not count as text for the search of terms; words are those of `wc -w`. Terms that are also ordinary words
-(row, way, part, side ...) are counted apart: somebody has to look at them.
+The pages are those of docs/tutorial, how-to, explanation and README.md, and the messages of
+orchestrate/. Code blocks and `code` are not searched for terms. Words are counted as `wc -w` does.
+Terms that are also ordinary words (row, way, part, side ...) are counted separately and have to be
+checked by eye.
 """
 
 import ast
@@ -27,17 +30,20 @@ ORDINARY = {term: re.compile(pattern, re.IGNORECASE) for term, pattern in (
     ("copies", r"\bcopies\b"), ("way", r"\bways?\b"), ("bar", r"(?<!error )\bbars?\b"), ("hold", r"\bholds?\b"), ("rule", r"\brules?\b"), ("course", r"\bcourse\b"),
     ("far", r"\bfar\b"), ("says", r"\bsays?\b"))}
 PAGES = ("tutorial", "how-to", "explanation")
-MEASURED = {"comparison.md"}  # tables of measurements there
+# These pages consist of tables of measurements.
+MEASURED = {"comparison.md"}
 
 
 def prose(text: str) -> str:
-    """The text of a page without code, HTML comments and targets of links; as many lines as before."""
+    """The text of a page without code, HTML comments and targets of links. The number of lines
+    stays the same."""
     text = re.sub(r"(?s)```.*?```|<!--.*?-->", lambda found: "\n" * found[0].count("\n"), text)
     return re.sub(r"\]\([^)]*\)", "]", re.sub(r"`[^`\n]*`|\$[^$\n]+\$", "", text))
 
 
 def messages(path: Path) -> list[tuple[int, str]]:
-    """The sentences of a module that users may read: texts of three words or more that are not docstrings; with their lines."""
+    """The messages of a module with their lines: strings of three words or more that are not
+    docstrings."""
     tree = ast.parse(path.read_text())
     documented = {id(one.body[0].value) for one in ast.walk(tree) if isinstance(one, ast.Module | ast.ClassDef | ast.FunctionDef) and one.body
                   and isinstance(one.body[0], ast.Expr)}
@@ -46,18 +52,18 @@ def messages(path: Path) -> list[tuple[int, str]]:
 
 
 def pages() -> list[Path]:
-    """The pages written by hand."""
+    """The handwritten pages."""
     return [ROOT / "README.md", *(path for name in PAGES for path in sorted((ROOT / "docs" / name).glob("*.md"))
                                     if path.name not in MEASURED)]
 
 
 def lines(path: Path) -> list[tuple[str, str]]:
-    """The prose of a page, line by line with its place."""
+    """The lines of a page with their positions, without code."""
     return [(f"{path.relative_to(ROOT)}:{k}", line) for k, line in enumerate(prose(path.read_text()).splitlines(), 1)]
 
 
 def count(found: list[tuple[str, str]], terms: dict[str, re.Pattern], where: bool = False) -> Counter:
-    """How often each term is in lines, a list of place and text."""
+    """The number of occurrences of each term in `found`, a list of position and text."""
     total = Counter()
     for place, text in found:
         for term, pattern in terms.items():

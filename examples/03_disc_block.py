@@ -63,7 +63,7 @@ peer = "NGSolve, finer of two meshes"
 rows = []
 for law, result in runs.items():
     disc_v, block_v, errors = result["rebound_vy_1"], result["rebound_vy_2"], result.errors
-    of_block = mass / block * errors["rebound_vy_1"]  # the bodies exchange the same impulse
+    of_block = mass / block * errors["rebound_vy_1"]  # equal impulses on both bodies
     theirs, source, note = [(np.nan, np.nan)] * 2, "", "the paper prints no value"
     if law == "neo-Hookean":
         theirs, source, note = [(4.55505, 0.0213), (-0.57157, 0.0008)], peer, ""

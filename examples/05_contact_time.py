@@ -51,11 +51,11 @@ stiff, nu_plane = 7e6 / (1 - nu**2), nu / (1 - nu)
 
 
 def compressed(speed):
-    """Time of contact of a disc that is compressed without waves."""
+    """The contact time of a disc that is compressed without waves."""
     force = np.geomspace(1e-9, 0.3, 20001) * np.pi * stiff * radius
     depth = force / (np.pi * stiff) * (np.log(4 * np.pi * radius * stiff / force) - 1 - nu_plane)
     work = np.append(0, np.cumsum((force[1:] + force[:-1]) / 2 * np.diff(depth)))
-    turn = np.searchsorted(work, mass * speed**2 / 2)  # where the disc comes to rest
+    turn = np.searchsorted(work, mass * speed**2 / 2)  # the disc stops at this index
     rate = np.sqrt(speed**2 - 2 * work[:turn] / mass)
     steps = 2 / (rate[1:] + rate[:-1]) * np.diff(depth[:turn])
     return 2 * (depth[0] / speed + steps.sum() + mass * rate[-1] / force[turn])

@@ -26,7 +26,8 @@ bar = ff.SaintVenantKirchhoff(young=young, nu=0, density=1)
 
 
 def bounce(elements):
-    """The run with a number of elements along the bar, and the contact pressure of each step."""
+    """Runs the bar with a number of elements along it. Returns the run and the contact pressure of
+    each step."""
     size = length / elements
     strip = ff.Rectangle(width=3 * size, height=length, material=bar, mesh_size=size,
                          contact_mesh_size=size, position=(0, length / 2 + height))
@@ -86,7 +87,8 @@ plt.show()
 
 
 def measured(result, p):
-    """Instants of contact, mean pressure in the middle of the first contact, and its impulse."""
+    """Instants of contact, mean pressure in the middle of the first contact, and the impulse of
+    this contact."""
     t, dt = result.history.t - result.history.dt / 2, result.history.dt
     loaded = t[p > plateau / 2]
     early, late = loaded[loaded < 2.5], loaded[loaded > 2.5]

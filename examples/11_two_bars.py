@@ -25,7 +25,8 @@ bar = ff.NeoHookean(young=young, nu=0, density=density)
 
 
 def collision(elements):
-    """The run with a number of elements along the first bar, and the pressure of each step."""
+    """Runs the bars with a number of elements along the first one. Returns the run and the pressure
+    of each step."""
     size, bodies = length / elements, []
     for name, share, x, v in (("left", 1, -length / 2 - gap, speed), ("right", 0.9, length / 2, 0)):
         bodies.append(ff.Rectangle(name=name, width=length, height=3 * size, material=bar,
@@ -73,7 +74,8 @@ plt.show()
 
 
 def measured(result, p):
-    """Instants of contact, mean pressure, velocities after, share of the energy in each bar."""
+    """Instants of contact, mean pressure, final velocities, and the share of the energy in each
+    bar."""
     h = result.history
     t, last = h.t - h.dt / 2, h.iloc[-1]
     loaded, middle = t[p > plateau / 2], (t > 0.12) & (t < 0.28)

@@ -39,7 +39,7 @@ peak = 4 / 3 * stiff * np.sqrt(radius) * deepest**1.5
 lasts = 2.868 * (mass**2 / (radius * stiff**2 * speed)) ** 0.2
 finite = np.sqrt(deepest / radius) / 3
 
-share = np.sin(np.linspace(0, np.pi / 2, 400))  # of the largest depth; these steps suit its end
+share = np.sin(np.linspace(0, np.pi / 2, 400))  # share of the largest depth, with fine steps near 1
 rate = speed * np.sqrt(np.maximum(1 - share**2.5, 0))
 half = np.append(0, np.cumsum(np.diff(share) * deepest * 2 / (rate[1:] + rate[:-1])))
 time, depth = np.append(half, 2 * half[-1] - half[::-1]), deepest * np.append(share, share[::-1])

@@ -25,7 +25,7 @@ ratio = 2 * (1 - nu) / (2 - nu)
 
 
 def impact(psi):
-    """The slip before, and the run."""
+    """The initial slip velocity, and the run."""
     slip = psi * friction * normal / ratio
     ball = ff.Ball(radius=radius, material=rubber, position=(0, radius, 0),
                    velocity=(slip, -normal, 0))
@@ -46,7 +46,7 @@ runs = {psi: impact(psi) for psi in (1.2, 2.5, 5.0)}
 
 
 def theory(psi):
-    """The slip after the impact over the slip before, with the sign changed: β."""
+    """The slip velocity after over before the impact, with the opposite sign: β."""
     start = psi * friction * 1e-3 / ratio
     slip, speed, depth, deepest = start, 1e-3, 0.0, (15 / 16 * 1e-6) ** 0.4
     x = 1.05 * np.sqrt(deepest) * (np.arange(300) + 0.5) / 300

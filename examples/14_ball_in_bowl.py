@@ -23,7 +23,7 @@ ball = ff.Ball(radius=radius, material=material, position=(0, radius), velocity=
 
 
 def fall(fit):
-    """The run for a bowl of `fit` times the radius of the ball."""
+    """A run with a bowl of `fit` times the radius of the ball."""
     obstacle = ff.Plane()
     if np.isfinite(fit):
         obstacle = ff.Bowl(centre=(0, fit * radius), radius=fit * radius)
@@ -52,7 +52,7 @@ mass, stiff = 4 / 3 * np.pi * radius**3 * density, young / (1 - nu**2)
 
 
 def hertz(fit):
-    """Contact time, peak force, and radius of the contact over that of the ball."""
+    """Contact time, peak force, and contact radius over ball radius."""
     relative = radius / (1 - 1 / fit)
     depth = (15 * mass * speed**2 / (16 * stiff * np.sqrt(relative))) ** 0.4
     time = 2.868 * (mass**2 / (relative * stiff**2 * speed)) ** 0.2

@@ -23,7 +23,7 @@ density = mass / (4 / 3 * np.pi * radius**3)
 
 
 def superball(loss, young=5e6):
-    """The ball just above the plane; loss: tan delta of shear at its first mode."""
+    """The ball just above the plane. `loss` is tan delta of shear at its first mode."""
     rubber = ff.NeoHookean(young=young, nu=0.49, density=density, loss=loss)
     velocity = (speed * np.sin(angle), -speed * np.cos(angle), 0)
     ball = ff.Ball(

@@ -25,7 +25,7 @@ along, across = speed * np.cos(angle), speed * np.sin(angle)
 
 
 def superball(loss):
-    """The ball just above the plane; loss: tan delta of shear at its first mode."""
+    """The ball just above the plane. `loss` is tan delta of shear at its first mode."""
     rubber = ff.NeoHookean(young=5e6, nu=0.49, density=density, loss=loss)
     ball = ff.Ball(
         radius=radius,

@@ -45,7 +45,7 @@ angles = np.array([20, 30, 40, 50, 60])
 
 
 def thrown(angle):
-    """The golf ball thrown at an angle to the surface [degrees]."""
+    """The scene of the golf ball thrown at an angle to the surface [degrees]."""
     along, across = speed * np.cos(np.radians(angle)), speed * np.sin(np.radians(angle))
     return golf_ball(fitted, position=(0, 1.001 * radius, 0), velocity=(along, -across, 0))
 

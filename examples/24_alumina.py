@@ -48,7 +48,7 @@ angles = np.arctan(psi / factor)
 
 
 def thrown(angle):
-    """The sphere at an angle to the normal [rad]."""
+    """The scene of the sphere at an angle to the normal [rad]."""
     velocity = (speed * np.sin(angle), -speed * np.cos(angle), 0)
     return sphere(position=(0, 1.0001 * radius, 0), velocity=velocity)
 
@@ -68,7 +68,7 @@ ratio = 2 * (1 - nu) / (2 - nu)
 
 
 def theory(psi):
-    """beta of an elastic sphere for small contacts."""
+    """β of an elastic sphere for small contacts."""
     start = psi * friction * 1e-3 / ratio
     slip, approach, depth, dt = start, 1e-3, 0.0, 2e-3
     x = np.linspace(0, 0.06, 301)[1:] - 1e-4

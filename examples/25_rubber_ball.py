@@ -30,7 +30,7 @@ rubber = ff.MooneyRivlin(
 )
 heights, speeds = [0.2, 0.4, 0.8], [1.8254, 2.6935, 3.8859]
 ball = ff.Ball(radius=0.03, material=rubber, position=(0, 0.0301), velocity=(0, -speeds[0]))
-contact = ff.Contact(penalty=2e11)  # stiff beside the branch before it relaxes
+contact = ff.Contact(penalty=2e11)  # stiff relative to the unrelaxed branch
 scene = ff.Scene(
     title="rubber ball", bodies=[ball], obstacles=[ff.Plane()], contact=contact, accuracy=0.01
 )
@@ -84,7 +84,7 @@ rows = [
     for height, value, bar in zip(heights, restitutions, bars)
 ]  # fmt: skip
 for height, speed, run in zip(heights, speeds, study.results):
-    # 'energy_final' is that at the last contact, relaxation included
+    # 'energy_final' is the energy at the last contact, after the loss by relaxation.
     taken = run["energy_initial"] - run["energy_final"]
     lost = run.history.viscous_work.iloc[-1]
     change, bar = run["mass"] * (speed + run["rebound_vy"]), run["mass"] * run.errors["rebound_vy"]

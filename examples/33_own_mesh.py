@@ -22,7 +22,7 @@ import ffimpact as ff
 # groups, as here, all of them may.
 radius, hole, offset, size = 20.0, 4.0, 8.0, 2.0
 if gmsh.isInitialized():
-    gmsh.finalize()  # ends what another page has left
+    gmsh.finalize()  # ends a gmsh session of another page
 gmsh.initialize(interruptible=False)
 gmsh.option.setNumber("General.Terminal", 0)
 gmsh.model.add("button")

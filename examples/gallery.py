@@ -1,6 +1,7 @@
-"""python -m examples.gallery: runs the pages examples/NN_name.py, writes docs/gallery-numbers.csv.
+"""Runs the pages examples/NN_name.py and writes docs/gallery-numbers.csv: `python -m
+examples.gallery`.
 
-The runs go to results/gallery, where a second call finds them.
+The runs go to results/gallery, and a second call reuses them.
 """
 
 import argparse
@@ -29,7 +30,7 @@ def pages() -> list[Path]:
 
 
 def numbers(page: Path) -> pd.DataFrame:
-    """The table of a page, which is run in the working folder without a window."""
+    """Runs a page in the working folder without a window and returns its table."""
     matplotlib.use("Agg")
     try:
         with warnings.catch_warnings():
@@ -40,15 +41,17 @@ def numbers(page: Path) -> pd.DataFrame:
 
 
 def is_consistent(row: pd.Series) -> bool:
-    """|computed - reference| <= error + uncertainty; also true where there is no reference."""
+    """Whether |computed - reference| <= error + uncertainty, or there is no reference."""
     if pd.isna(row.reference):
         return True
     return bool(abs(row.computed - row.reference) <= row.error + row.uncertainty)
 
 
 def complaints(table: pd.DataFrame) -> list[str]:
-    """What is wrong with the table of a page, a line for each row. The note of a row that is not
-    consistent has to begin with "misses:" and give the reason."""
+    """The defects of the table of a page, a line for each.
+
+    The note of a row that is not consistent has to begin with "misses:" and give the reason.
+    """
     if list(table.columns) != COLUMNS:
         return [f"columns {', '.join(table.columns)} (accepted: {', '.join(COLUMNS)})"]
     found = [] if len(table) else ["no rows"]
@@ -66,7 +69,7 @@ def complaints(table: pd.DataFrame) -> list[str]:
 
 
 def main(argv: list[str]) -> int:
-    """Runs every page; Failure if a table is not consistent."""
+    """Runs every page. Raises Failure if a table is not consistent."""
     parser = argparse.ArgumentParser(prog="python -m examples.gallery", description=__doc__)
     parser.parse_args(argv)
     place = ROOT / "results/gallery"

@@ -1,1 +1,2 @@
-"""Tests by speed: unit/ needs no FreeFEM, run/ runs it, hostile/ is what make test leaves out; what they share is in support/."""
+"""Tests by speed: unit/ needs no FreeFEM, run/ runs it, hostile/ runs with `make robustness` only;
+support/ has shared helpers."""

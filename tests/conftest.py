@@ -1,4 +1,4 @@
-"""Shared by the tests: a stand-in for FreeFem++, and finished-looking folders made without it."""
+"""Fixtures of all tests: a substitute for FreeFem++, and result folders made without FreeFem++."""
 
 import shlex
 import signal
@@ -8,12 +8,14 @@ import pytest
 
 from tests.support import fake_freefem
 
-signal.signal(signal.SIGINT, signal.default_int_handler)   # a shell lets what it starts in the background ignore Ctrl-C, which tests send
+# A shell makes its background jobs ignore Ctrl-C, which tests send.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture
 def fake(tmp_path, monkeypatch):
-    """Puts the stand-in in the place of FreeFem++; fake(mode) picks what it does, fake.starts() counts its runs."""
+    """Replaces FreeFem++ by the substitute. fake(mode) selects its behaviour, fake.starts() counts
+    its runs."""
     program, count = tmp_path / "FreeFem++", tmp_path / "starts"
     program.write_text(f'#!/bin/sh\nexec {shlex.join([sys.executable, fake_freefem.__file__])} "$@"\n')
     program.chmod(0o755)

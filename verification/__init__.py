@@ -1,1 +1,2 @@
-"""Exact cases: scripts that print their numbers, closed forms that these must meet, and other programs (peers) on the same problem."""
+"""Verification: scripts print numbers, which are compared with closed-form solutions and other
+programs."""

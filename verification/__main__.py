@@ -1,4 +1,4 @@
-"""python -m verification: the exact solutions."""
+"""Runs all verification cases: `python -m verification`."""
 
 import sys
 

@@ -1,4 +1,8 @@
-"""V13, V14 and V19: two bars head-on, a bar that bounces under gravity, one whose stress relaxes; nu = 0 and strains so small that they are those of the linear bar."""
+"""V13, V14 and V19: collision of two bars, a bar that bounces under gravity, and a bar with stress
+relaxation.
+
+nu = 0, and the strains are so small that the linear theory of the bar holds.
+"""
 
 import math
 from collections.abc import Callable, Iterator
@@ -9,7 +13,7 @@ import numpy as np
 from .case import FRONT, Row
 from .measure import bodies
 
-SPEED = 1e-4                # over the wave speed
+SPEED = 1e-4  # speed over the wave speed
 
 
 def _bar(height: float, width: float, **more) -> dict:
@@ -18,14 +22,19 @@ def _bar(height: float, width: float, **more) -> dict:
 
 
 def _contacts(history: dict[str, np.ndarray]) -> np.ndarray:
-    """Times at which the normal force rises above or falls below a hundredth of its largest, in turn."""
+    """The times at which the normal force rises above or falls below 1 % of its maximum, in turn.
+    """
     touching = history["normal_force"] > 0.01 * history["normal_force"].max()
     return history["t"][np.flatnonzero(np.diff(touching.astype(int)))]
 
 
 def two_bars(folder: Path, elements: int, law: str = "neohookean") -> Iterator[Row]:
-    """V13, L = 10, E = rho = 1: two bars at +-v; contact 2 L/c, stress rho c v (middle 80 %), velocities exchanged. The second one has
-    elements of nine tenths of the first one's: its nodes lie elsewhere along the bar."""
+    """V13, L = 10, E = rho = 1: two bars collide with the velocities +v and -v.
+
+    Expected: contact time 2 L/c, stress rho c v (middle 80 % of the contact), exchanged velocities.
+    The elements of the second bar are 0.9 times as large as those of the first, so that nodes do
+    not coincide.
+    """
     size = 10 / elements
     left = _bar(3 * size, 10, position=[-5, 0], velocity=[SPEED, 0])
     right = _bar(3 * size, 10, position=[5, 0], velocity=[-SPEED, 0]) | {"mesh_size": 0.9 * size, "contact_mesh_size": 0.9 * size}
@@ -42,7 +51,10 @@ def two_bars(folder: Path, elements: int, law: str = "neohookean") -> Iterator[R
 
 
 def bouncing_bar(folder: Path, elements: int) -> Iterator[Row]:
-    """V14, L = 10, E = 900, rho = 1, g = 0.01, dropped from 0.005: contacts in [1, 5/3] and [11/3, 13/3]."""
+    """V14, L = 10, E = 900, rho = 1, g = 0.01, dropped from a height of 0.005.
+
+    Expected: contact in [1, 5/3] and [11/3, 13/3].
+    """
     size = 10 / elements
     run = bodies(folder, {"accuracy": 0.05, "law": "svk", "young": 900, "nu": 0, "density": 1, "gravity": 1e-2, "end_time": 4.6, "dt": size / 60,
                           "chatter": "continue", "body": [_bar(10, 3 * size, position=[0, 5.005])],
@@ -63,9 +75,14 @@ def _inverted(transform: Callable[[np.ndarray], np.ndarray], t: float, n: int = 
 
 
 def relaxing_bar(folder: Path, elements: int, share: float, tau: float) -> Iterator[Row]:
-    """V19, L = 10, E = rho = 1 and beside it a Maxwell branch of share E, tau: on a rigid plane it is in contact until the front is back, T = 2 L/c with
-    c^2 = 1 + share, under the stress v times the inverse transform of sqrt(E(s))/s, E(s) = 1 + share s tau/(1 + s tau): the front itself loses as much on its way
-    as the stress on the plane does, and leaves it with tension. Restitution: the impulse until then over rho L v, less 1."""
+    """V19, L = 10, E = rho = 1, with a parallel Maxwell branch of modulus share E and relaxation
+    time tau.
+
+    On a rigid plane the bar is in contact until the wave front returns, T = 2 L/c with c^2 = 1 +
+    share. The stress on the plane is v times the inverse transform of sqrt(E(s))/s with E(s) = 1 +
+    share s tau/(1 + s tau). The front decays on its way as the stress on the plane does, and leaves
+    the plane with tension. The restitution is the impulse until T over rho L v, minus 1.
+    """
     size, contact = 10 / elements, 20 / math.sqrt(1 + share)
     run = bodies(folder, {"accuracy": 0.05, "law": "neohookean", "young": 1, "nu": 0, "density": 1, "dt": size / 4, "chatter": "continue", "end_time": 1.5 * contact,
                           "body": [_bar(10, 3 * size, position=[0, 5], velocity=[0, -SPEED], relaxation_modulus=share / 2, relaxation_time=tau)],

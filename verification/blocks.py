@@ -1,4 +1,5 @@
-"""V16: two blocks with unlike meshes, pressed together (pressed.edp): the same pressure everywhere."""
+"""V16: two blocks with different meshes are pressed together (pressed.edp). The pressure must be
+uniform."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -6,11 +7,16 @@ from pathlib import Path
 from .case import Row
 from .measure import measure, prepared
 
-PENALTY = 10                # times E / length; the unevenness goes with penalty times element size over E
+# Penalty in E / length. The deviation of the pressure is proportional to penalty times element size
+# over E.
+PENALTY = 10
 
 
 def pressed(folder: Path, elements: int) -> Iterator[Row]:
-    """Two blocks of 1 x 0.5, E = 1, between planes that press them by 0.3 %; elements of 1/elements, and seven tenths of it above."""
+    """Two blocks of 1 x 0.5 with E = 1 between two planes that compress them by 0.3 %.
+
+    Elements have the size 1/elements below and 0.7 times this size above.
+    """
     def block(y: float, size: float) -> dict:
         return {"shape": "rectangle", "width": 1, "height": 0.5, "position": [0, y], "mesh_size": size, "contact_mesh_size": size}
     planes = [{"kind": "plane", "point": [0, 0], "normal": [0, 1]},

@@ -1,4 +1,5 @@
-"""A case and its numbers: what `make verify` runs on fine meshes and judges, and the tests run coarse."""
+"""A verification case and its numbers. `make verify` runs cases on fine meshes, the tests on coarse
+ones."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -6,19 +7,23 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 
-FRONT = 2 / 3               # order of a second-order scheme where a front passes: it smears it over h^(2/3)
+# Order of a second-order scheme at a wave front, which it smears over h^(2/3).
+FRONT = 2 / 3
 LAWS = {"svk": "SVK", "neohookean": "neo-Hookean"}
 
 
 @dataclass(frozen=True)
 class Row:
-    """A number of a case at one size. Its error is relative; where 0 is expected the number itself."""
+    """A number of a case at one size. Its error is relative, or absolute if 0 is expected."""
 
-    what: str                    # "group: which"; a group is drawn in one colour
+    # "group: name". A group is drawn in one colour.
+    what: str
     size: float
     value: float
     expected: float
-    order: float | None = None   # of the error, where theory gives one: drawn, and asked for where the case is judged by it
+    # Theoretical order of the error, if there is one. It is drawn, and required of cases that are
+    # judged by order.
+    order: float | None = None
 
     @property
     def error(self) -> float:
@@ -27,22 +32,27 @@ class Row:
 
 @dataclass(frozen=True)
 class Case:
-    """A case of the table of checks: its numbers, from coarse to fine, and what is asked of them.
+    """A case in the table of checks: its numbers, from coarse to fine, and the requirements.
 
-    by_order: the observed order between the two finest sizes, within `tolerance` of the expected one. Otherwise: every number
-    at its finest size within the relative `tolerance`, and the largest error there below the largest at the coarsest size.
+    With `by_order`, the observed order between the two finest sizes must be within `tolerance` of
+    the expected order. Otherwise every number must be within the relative `tolerance` at its finest
+    size, and the largest error at that size must be smaller than the largest error at the coarsest
+    size.
     """
 
     name: str
     title: str
-    axis: str                                    # label of the size
+    axis: str  # label of the size axis
     tolerance: float
-    rows: Callable[[Path], Iterator[Row]] | tuple[Callable[[Path], Iterator[Row]], ...]   # runs the case, or its parts at the same time; a folder for their files
+    # Functions that run the case or its parts, in a folder for their files. Parts can run at the
+    # same time.
+    rows: Callable[[Path], Iterator[Row]] | tuple[Callable[[Path], Iterator[Row]], ...]
     by_order: bool = False
-    beside: Callable[[plt.Axes, Path], None] | None = None   # draws a second panel from those files
-    note: str = ""                               # what the reader of the figure should know
+    beside: Callable[[plt.Axes, Path], None] | None = None  # draws a second panel from these files
+    note: str = ""  # remark for the reader of the figure
 
     @property
     def parts(self) -> tuple[Callable[[Path], Iterator[Row]], ...]:
-        """What can run at the same time; their rows, one after another, are those of the case."""
+        """The functions that can run at the same time. Their rows in sequence are the rows of the
+        case."""
         return self.rows if isinstance(self.rows, tuple) else (self.rows,)

@@ -1,4 +1,4 @@
-"""All cases of `make verify`, with the tolerances that were fixed before they were run."""
+"""All cases of `make verify`. The tolerances were fixed before the cases were run."""
 
 import tomllib
 from collections.abc import Iterator
@@ -23,7 +23,10 @@ from .sliding_block import block
 
 
 def independent(folder: Path) -> Iterator[Row]:
-    """disc-normal and ball-axisymmetric over `accuracy`, against the converged values of NGSolve and GetFEM (reference/converged.toml)."""
+    """V12: disc-normal and ball-axisymmetric for several values of `accuracy`.
+
+    Expected are the converged results of NGSolve and GetFEM (reference/converged.toml).
+    """
     for peers in tomllib.loads((REFERENCE / "converged.toml").read_text())["run"]:
         script = peers["script"]
         body = script.partition("-")[0]

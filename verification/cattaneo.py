@@ -1,5 +1,9 @@
-"""The slip annulus: a cylinder pressed on the plane, then pushed along it by less than friction holds (cattaneo.edp): Cattaneo and Mindlin. It sticks in |x| < c and slips in
-the rings beside: c = b sqrt(1 - Q/(mu P)), q = mu p0 [sqrt(1 - x^2/b^2) - (c/b) sqrt(1 - x^2/c^2)]."""
+"""Partial slip of Cattaneo and Mindlin: a cylinder is pressed on the plane, then sheared below
+gross slip (cattaneo.edp).
+
+It sticks in |x| < c and slips in the strips c < |x| < b: c = b sqrt(1 - Q/(mu P)), q = mu p0
+[sqrt(1 - x^2/b^2) - (c/b) sqrt(1 - x^2/c^2)].
+"""
 
 import math
 from collections.abc import Iterator
@@ -17,23 +21,31 @@ from ffimpact.report.figures import BLACK, BLUE, GREY, ORANGE
 from .case import Row
 from .measure import measure
 
-NU, FRICTION, WIDTH = 0.45, 0.1, 0.02       # b over the radius, to aim at; R = E = rho = 1
+# WIDTH is the intended half-width b over the radius. R = E = rho = 1.
+NU, FRICTION, WIDTH = 0.45, 0.1, 0.02
 STIFFNESS = 1 / (1 - NU**2)
-DEPTH = WIDTH**2 / 4 * (2 * math.log(4 / WIDTH) - 1)     # of the plane, of that half-width [m]
-SPEED, STEPS, STEP = 4e-7, 10, 20.0          # of the plane [m/s]; steps, their length [s]
-CREEP = 3e-3                  # slip velocity over the speed of the plane
+# Displacement of the plane for this half-width [m].
+DEPTH = WIDTH**2 / 4 * (2 * math.log(4 / WIDTH) - 1)
+# Speed of the plane [m/s], number of steps and their length [s].
+SPEED, STEPS, STEP = 4e-7, 10, 20.0
+CREEP = 3e-3  # slip velocity over the speed of the plane
 SHARES = (0.2, 0.1, 0.05)
 
 
 def held(path: Path, share: float) -> None:
-    """A disc of radius 1 with elements of share * b where it touches, its upper half of the circle clamped."""
+    """Writes a disc of radius 1 with elements of share * b near contact. The upper half of the
+    circle is clamped."""
     disc = mesh.disc(1, 0.2, share * WIDTH, half=False, contact_arc=1.5 * WIDTH)
     upper = disc.points[disc.edges].mean(axis=1)[:, 1] > 1
     mesh.write(replace(disc, labels=np.where(upper, 3, 1)), path)
 
 
 def sheared(folder: Path, share: float) -> tuple[dict[str, float], pd.DataFrame]:
-    """What cattaneo.edp prints and the tractions. The penalty grows as in V6."""
+    """The numbers that cattaneo.edp prints, and the tractions.
+
+    The penalty is inversely proportional to the element size, as in V6. Raises Failure if the disc
+    is not at rest.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     held(folder / "disc.msh", share)
     found = measure("cattaneo", mesh=folder / "disc.msh", law="neohookean", young=1, nu=NU, density=1, radius=1, height=DEPTH, speed=SPEED, dt=STEP,
@@ -45,26 +57,30 @@ def sheared(folder: Path, share: float) -> tuple[dict[str, float], pd.DataFrame]
 
 
 def exact(x: np.ndarray, b: float, c: float) -> np.ndarray:
-    """q/(mu p0)."""
+    """The exact tangential traction q/(mu p0)."""
     return np.sqrt(np.maximum(1 - (x / b) ** 2, 0)) - c / b * np.sqrt(np.maximum(1 - (x / c) ** 2, 0))
 
 
 def widths(found: dict[str, float]) -> tuple[float, float, float]:
-    """b and c [m], p0 [Pa] of the forces P and Q that were measured."""
+    """b and c [m], and p0 [Pa], for the computed forces P and Q."""
     b = 2 * math.sqrt(found["normal"] / (math.pi * STIFFNESS))
     return b, b * math.sqrt(1 - found["along"] / (FRICTION * found["normal"])), 2 * found["normal"] / (math.pi * b)
 
 
 def by_edge(table: pd.DataFrame, b: float, c: float, p0: float) -> pd.DataFrame:
-    """Means over the edges of x, q/(mu p0) and its exact value, and their lengths: the three points of an edge are more than its motion can
-    make stick all at once, and share the traction at random."""
+    """Means over each edge of x, q/(mu p0) and its exact value, and the lengths of the edges.
+
+    An edge has three contact points. Its degrees of freedom cannot make all of them stick, so that
+    they share the traction at random.
+    """
     at = table.assign(q=table.q / (FRICTION * p0), exact=exact(table.x, b, c))
     sums = at[["x", "q", "exact"]].mul(at.length, axis=0).assign(length=at.length).groupby(at.edge).sum()
     return sums[["x", "q", "exact"]].div(sums.length, axis=0).assign(length=sums.length).sort_values("x")
 
 
 def annulus(folder: Path, share: float) -> Iterator[Row]:
-    """Over c and mu p0: half the length of outline that sticks, |v_T| < slip_velocity, and the root of the mean square error of q in |x| < b."""
+    """Half of the length that sticks, |v_T| < slip_velocity, over c; and the root mean square error
+    of q in |x| < b over mu p0."""
     found, table = sheared(folder, share)
     b, c, p0 = widths(found)
     edges = by_edge(table, b, c, p0)
@@ -78,7 +94,7 @@ def annuli(folder: Path) -> Iterator[Row]:
 
 
 def shear(axes: plt.Axes, folder: Path) -> None:
-    """q and mu p over x of the finest mesh, edge by edge, and the exact ones."""
+    """Draws q and mu p over x on the finest mesh, edge by edge, and the exact curves."""
     table = pd.read_csv(folder / f"{SHARES[-1]:g}/tractions.csv")
     b, c, p0 = widths({"normal": (table.p * table.length).sum(), "along": (table.q * table.length).sum()})
     x, edges = np.linspace(-b, b, 801), by_edge(table, b, c, p0)

@@ -1,5 +1,5 @@
-"""Options and end of the commands of verification/ and benchmarks/, and the line that says what
-measured a page."""
+"""The command line and the report that the commands of verification/ and benchmarks/ have in
+common, and the line that names the source of a page's numbers."""
 
 import argparse
 import platform
@@ -17,7 +17,8 @@ from ffimpact.sweeps import study
 
 
 def command(name: str, doc: str, page: bool = False, folder: str = "") -> argparse.ArgumentParser:
-    """The command line of a study for finish(): --out, its result folder; --page, if it has one."""
+    """The command line of a study, for finish(): --out for its result folder and, if `page` is set,
+    --page."""
     parser = argparse.ArgumentParser(prog=program(name), description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", metavar="DIR", type=lambda text: result_folder(Path(text)), default=str(RESULTS / (folder or name)),
                         help="the result folder")
@@ -29,20 +30,21 @@ def command(name: str, doc: str, page: bool = False, folder: str = "") -> argpar
 
 
 def program(name: str) -> str:
-    """How a study is called."""
+    """The command that starts a study."""
     return "python -m verification" if name == "verify" else f"python -m benchmarks {name}"
 
 
 def finish(options: argparse.Namespace, rows: pd.DataFrame, text: str, good: bool,
            files: str = "csv") -> int:
-    """Saves the table of a study, prints its report and where its `files` are; the exit code."""
+    """Saves the table of a study, prints its report and the names of its `files`. Returns the exit
+    code."""
     study.save(rows, options.out / f"{options.table}.csv")
     print(f"{text}\n{shown(options.out)}/{options.table}.{files}")
     return 0 if good else 1
 
 
 def measured(command: list[str]) -> str:
-    """Which command measured what follows, its words behind `python -m ffimpact`; at which commit, when, and on which machine."""
+    """A line with the command, commit, date and machine of a measurement."""
     model = re.search(r"^model name\s*: (.*)", Path("/proc/cpuinfo").read_text(), re.MULTILINE)
     return (f"Measured by `{program(command[0])} {shlex.join(command[1:])}` "
             f"at commit {run.commit(10)}, {date.today()}, on {study.CORES} cores, "

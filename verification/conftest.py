@@ -1,4 +1,4 @@
-"""The runs of the verification cases, each set of flags once."""
+"""Fixtures that run the verification scripts. Each set of flags runs once."""
 
 from functools import cache
 from itertools import count
@@ -10,13 +10,15 @@ from . import measure as runs
 
 @pytest.fixture(scope="session")
 def measure():
-    """measure(script, name=value, ...): what verification/<script>.edp prints with these flags."""
+    """measure(script, name=value, ...): the numbers that verification/<script>.edp prints with
+    these flags."""
     return runs.measure
 
 
 @pytest.fixture(scope="session")
 def disc(tmp_path_factory):
-    """disc(name=value, ...): edp/disc-plane.edp run without Python with these flags; disc(script="disc-block", ...) another."""
+    """disc(name=value, ...): a run of edp/disc-plane.edp with these flags, without Python;
+    disc(script="disc-block", ...) runs another script."""
     @cache
     def go(**given) -> runs.Outcome:
         return runs.disc(tmp_path_factory.mktemp("disc"), **given)
@@ -25,12 +27,12 @@ def disc(tmp_path_factory):
 
 @pytest.fixture
 def march(tmp_path):
-    """march(tables, name=value, ...): edp/bodies.edp run for the scene in these tables."""
+    """march(tables, name=value, ...): a run of edp/bodies.edp for the scene in these tables."""
     numbers = count()
     return lambda tables, **given: runs.bodies(tmp_path / str(next(numbers)), tables, **given)
 
 
 @pytest.fixture
 def steps(tmp_path):
-    """steps(tables): what bodies-steps.edp prints of the scene in these tables."""
+    """steps(tables): the numbers that bodies-steps.edp prints for the scene in these tables."""
     return lambda tables: runs.measure("bodies-steps", **runs.prepared(tmp_path, tables))

@@ -1,6 +1,11 @@
-"""V18: the first microseconds of a disc on the plane. As long as the contact spreads faster than waves run, every column above it is a bar on a wall of
-its own: pressure rho U v over the half-width b = sqrt(2 R v t), F = 2 rho U v b, up to t = R v/(2 c_L^2). U is the speed of the plane shock,
-rho U v = -P(1 - v/U), P(lambda) the law's nominal stress of a column squeezed to lambda without widening; c_L, where v is small."""
+"""V18: the first microseconds of the impact of a disc on the plane.
+
+As long as the contact spreads faster than waves, every column above it is a bar of its own on a
+wall. The pressure is rho U v over the half-width b = sqrt(2 R v t), hence F = 2 rho U v b, until t
+= R v/(2 c_L^2). U is the speed of the plane shock, rho U v = -P(1 - v/U), where P(lambda) is the
+nominal stress of a column that is compressed to lambda without lateral strain. For small v, U =
+c_L.
+"""
 
 import math
 from collections.abc import Iterator
@@ -15,17 +20,20 @@ from ffimpact.report.figures import BLACK, BLUE, ORANGE
 from .case import Row
 from .measure import disc, outcome
 
-RADIUS, YOUNG, NU, DENSITY = 0.05, 7e6, 0.45, 1722                          # the rubber of the paper
+RADIUS, YOUNG, NU, DENSITY = 0.05, 7e6, 0.45, 1722  # the rubber of the paper
 LAME, SHEAR = YOUNG * NU / ((1 + NU) * (1 - 2 * NU)), YOUNG / (2 * (1 + NU))
-WAVE = math.sqrt((LAME + 2 * SHEAR) / DENSITY)                              # c_L [m/s]
-SPEEDS = (8, 0.8)                                                           # [m/s]
-SHARES = (0.1, 0.05, 0.025)                                                 # elements over b
+WAVE = math.sqrt((LAME + 2 * SHEAR) / DENSITY)  # c_L [m/s]
+SPEEDS = (8, 0.8)  # [m/s]
+SHARES = (0.1, 0.05, 0.025)  # element size over b
 
 
 def touch(folder: Path, speed: float, share: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Ends of the steps since the first touch [s], their lengths and mean forces [N/m], up to R v/(2 c_L^2): neo-Hookean, elements of
-    share * b near the contact, steps of a quarter of their transit, penalty 20 rho c_L^2/h: it lags by a
-    twentieth of a transit."""
+    """Times since the onset of contact [s] at the ends of the steps, their lengths [s] and mean
+    forces [N/m], up to R v/(2 c_L^2).
+
+    Neo-Hookean law; elements of share * b near contact; steps of a quarter of their transit time;
+    penalty 20 rho c_L^2/h, which delays the force by a twentieth of a transit time.
+    """
     width = RADIUS * speed / WAVE
     size, until = share * width, width / (2 * WAVE)
     folder.mkdir(parents=True, exist_ok=True)
@@ -36,14 +44,17 @@ def touch(folder: Path, speed: float, share: float) -> tuple[np.ndarray, np.ndar
 
 
 def since_touch(folder: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The same of a run that is there."""
+    """The same for an existing run in `folder`."""
     history = outcome(folder / "run").history
     start = history["t"][np.flatnonzero(history["normal_force"] > 0)[0] - 1]
     return history["t"] - start, history["dt"], history["normal_force"]
 
 
 def shock(speed: float) -> float:
-    """U [m/s] at the velocity jump `speed`, neo-Hookean: P = mu (l - 1/l) + lambda ln(l)/l of the stretch l = 1 - v/U; by fixed-point iteration."""
+    """U [m/s] for the velocity jump `speed`, by fixed-point iteration.
+
+    Neo-Hookean: P = mu (l - 1/l) + lambda ln(l)/l with the stretch l = 1 - v/U.
+    """
     U = WAVE
     for _ in range(100):
         stretch = 1 - speed / U
@@ -52,13 +63,16 @@ def shock(speed: float) -> float:
 
 
 def force(speed: float, t: np.ndarray | float, wave: float) -> np.ndarray | float:
-    """F [N/m] at t [s] after the touch with this wave speed."""
+    """F [N/m] at the time t [s] after the onset of contact, for this wave speed [m/s]."""
     return 2 * DENSITY * wave * speed * np.sqrt(2 * RADIUS * speed * t)
 
 
 def early(folder: Path, speed: float, share: float) -> Iterator[Row]:
-    """Force at R v/(2 c_L^2), from the history in the second half by least squares of F ~ sqrt(t) (it ripples as points touch one by one), and
-    the impulse until then."""
+    """The force at R v/(2 c_L^2), and the impulse until then.
+
+    The force is a least-squares fit of F ~ sqrt(t) to the second half of the time history, since it
+    ripples as single points come into contact.
+    """
     ends, steps, forces = touch(folder, speed, share)
     until, middles = RADIUS * speed / (2 * WAVE**2), ends - steps / 2
     late, whole = (middles > until / 2) & (middles < until), (ends > 0) & (ends <= until)
@@ -78,7 +92,8 @@ def touches(folder: Path) -> Iterator[Row]:
 
 
 def forces(axes: plt.Axes, folder: Path) -> None:
-    """F over the time since the touch, of the finest meshes: over 2 rho c_L v b at its end."""
+    """Draws F on the finest meshes over the time since the onset of contact, relative to 2 rho c_L
+    v b at the end."""
     t = np.linspace(0, 1, 200)
     axes.plot(t, np.sqrt(t), color=BLACK, linewidth=1, label="$2\\rho c_L v\\sqrt{2Rvt}$")
     for speed, colour in zip(SPEEDS, (ORANGE, BLUE)):

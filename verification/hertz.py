@@ -1,4 +1,8 @@
-"""Hertz: V6, a cylinder and a ball pressed on the plane (hertz.edp); V7, the impact of a ball on it; V15, of two balls (two-balls.edp)."""
+"""Contact and impact of Hertz.
+
+V6: a cylinder and a ball are pressed on the plane (hertz.edp); V7: impact of a ball on the plane;
+V15: impact of two balls (two-balls.edp).
+"""
 
 import math
 from collections.abc import Iterator
@@ -15,12 +19,16 @@ from .case import Row
 from .measure import Outcome, disc, measure, outcome
 
 BALL = dict(law="neohookean", young=1e8, nu=0.3, density=2500, radius=0.01)
-NARROW = 0.005              # half-width b over the radius: the small load
+NARROW = 0.005  # half-width b over the radius, for a small load
 
 
 def hertz(folder: Path, share: float, law: str = "neohookean", nu: float = 0.3, body: str = "cylinder") -> Iterator[Row]:
-    """A cylinder, or ball, of radius 1 and E = 1 on the plane, elements of share * b: half-width and largest pressure of the fitted
-    ellipse. The penalty grows as they shrink, k = 10 E*/h: what it gives way is an error of first order like the others."""
+    """V6: half-width and largest pressure of the fitted ellipse for a cylinder or ball of radius 1
+    and E = 1 on the plane.
+
+    Elements have the size share * b = h. The penalty k = 10 E*/h grows with refinement, so that its
+    error is of first order as the others. Raises Failure if the body is not at rest.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     stiffness, ball = 1 / (1 - nu**2), body == "ball"
     load = 4 / 3 * stiffness * NARROW**3 if ball else math.pi * stiffness * NARROW**2 / 4
@@ -34,13 +42,18 @@ def hertz(folder: Path, share: float, law: str = "neohookean", nu: float = 0.3, 
 
 
 def peak(nu: float, body: str = "cylinder") -> float:
-    """Hertz' p0 at the half-width b of these: b E*/(2 R) of a cylinder, 2 b E*/(pi R) of a ball."""
+    """Hertz' p0 for the half-width b = NARROW: b E*/(2 R) for a cylinder, 2 b E*/(pi R) for a ball.
+    """
     return NARROW / (1 - nu**2) * (2 / math.pi if body == "ball" else 0.5)
 
 
 def profile(folder: Path, share: float, nu: float = 0.3, body: str = "cylinder") -> Iterator[Row]:
-    """Of the tractions that hertz() has left in `folder`, against the exact ellipse p = p0 sqrt(1 - (x/b)^2), over p0: root of the mean square
-    of the difference over |x| < b, and the largest one at any contact point with |x| < 0.9 b (at its end the exact slope is infinite)."""
+    """Errors of the tractions in `folder`, written by hertz(), relative to the exact ellipse p = p0
+    sqrt(1 - (x/b)^2), over p0.
+
+    Returns the root mean square of the difference over |x| < b, and its maximum over the contact
+    points with |x| < 0.9 b, since the exact slope is infinite at the end.
+    """
     rows = pd.read_csv(folder / "pressure.csv")
     inside = rows[rows.x < NARROW]
     off = inside.p / peak(nu, body) - np.sqrt(1 - (inside.x / NARROW) ** 2)
@@ -56,7 +69,8 @@ def pressed(folder: Path) -> Iterator[Row]:
 
 
 def ellipse(axes: plt.Axes, folder: Path) -> None:
-    """The tractions at the contact points of the cylinder over x, for the coarsest and finest mesh, and the exact ellipse."""
+    """Draws the tractions at the contact points of the cylinder on the coarsest and the finest
+    mesh, and the exact ellipse."""
     sizes = sorted((float(path.name) for path in (folder / "cylinder").iterdir()), reverse=True)
     x = np.linspace(0, 1, 400)
     axes.plot(x, np.sqrt(1 - x**2), color=BLACK, linewidth=1, label="exact")
@@ -69,25 +83,31 @@ def ellipse(axes: plt.Axes, folder: Path) -> None:
 
 
 def impact(mass: float, radius: float, stiffness: float, speed: float) -> tuple[float, float, float]:
-    """Hertz' impact of a mass [kg] on a plane, or of two with their reduced mass, radius and stiffness E* [Pa]: contact time [s], largest
-    force [N], radius of the contact [m]."""
+    """Hertz' impact of a mass [kg] on a plane: contact time [s], largest force [N], contact radius
+    [m].
+
+    For two bodies, the arguments are the reduced mass and radius and the stiffness E* [Pa] of the
+    pair.
+    """
     depth = (15 * mass * speed**2 / (16 * stiffness * math.sqrt(radius))) ** 0.4
     return 2.868 * (mass**2 / (radius * stiffness**2 * speed)) ** 0.2, 4 / 3 * stiffness * math.sqrt(radius) * depth**1.5, math.sqrt(radius * depth)
 
 
 def ball(folder: Path, speed: float, **more) -> Iterator[Row]:
-    """A ball on the plane over the contact's radius beside its own: Hertz' half-space is its limit, the difference of first order."""
+    """A ball on the plane, over contact radius / ball radius. Hertz' half-space is the limit; the
+    difference is of first order."""
     return _compare("ball", disc(folder, script="ball-axisymmetric", speed=speed, **(BALL | more)), speed, 1, BALL | more)
 
 
 def balls(folder: Path, speed: float, **more) -> Iterator[Row]:
-    """Two equal balls that approach with this speed, head-on."""
+    """Central impact of two equal balls that approach each other at this speed."""
     measure("two-balls", speed=speed, out=folder, **(BALL | more))
     return _compare("two balls", outcome(folder), speed, 0.5, BALL | more)
 
 
 def _compare(what: str, found: Outcome, speed: float, share: float, of: dict) -> Iterator[Row]:
-    """share: 1 of a ball on the plane, 1/2 of two, whose mass, radius and E* are halved."""
+    """Compares a run with impact(). `share` is 1 for a ball on the plane, and 1/2 for two balls,
+    whose mass, radius and E* are halved."""
     mass = 4 / 3 * math.pi * of["radius"] ** 3 * of["density"]
     time, force, width = impact(share * mass, share * of["radius"], share * of["young"] / (1 - of["nu"] ** 2), speed)
     size = width / of["radius"]

@@ -1,4 +1,7 @@
-"""V4 and V8: a block falls through the whole march of a scene (impact.edp): waves in a bar, a rigid body on the penalty."""
+"""V4 and V8: a block falls on a plane, through the whole time integration of a scene (impact.edp).
+
+V4 tests waves in a bar, V8 a rigid body on the penalty.
+"""
 
 import math
 from collections.abc import Iterator
@@ -11,15 +14,18 @@ from ffimpact.output.results import read_history, read_summary
 from .case import FRONT, Row
 from .measure import measure
 
-DENSITY, WIDTH, LENGTH = 1722, 2e-3, 0.05          # of the falling block, SI; the width is that of impact.edp
+# Density [kg/m3], width [m] and length [m] of the falling block. impact.edp has the same width.
+DENSITY, WIDTH, LENGTH = 1722, 2e-3, 0.05
 
 
 def bar(folder: Path, elements: int) -> Iterator[Row]:
-    """A bar falls on a stiff plane, v << c: contact 2L/c, stress rho c v (mean of its middle 80 %), restitution 1."""
+    """V4: a bar falls on a stiff plane with v << c. Expected: contact time 2L/c, stress rho c v
+    (mean over the middle 80 %), restitution 1."""
     speed, young = 0.05, 7e6
     c = math.sqrt(young / DENSITY)
+    # The end of the bar chatters on a nearly rigid plane.
     measure("impact", nu=0, radius=LENGTH, density=DENSITY, speed=speed, young=young, penalty=1e12, mesh_size=LENGTH / elements,
-            dt=LENGTH / elements / c / 2, chatter="continue", out=folder)   # its end chatters on a plane that is all but rigid
+            dt=LENGTH / elements / c / 2, chatter="continue", out=folder)
     summary, history = read_summary(folder), read_history(folder)
     time = summary["contact_time"]
     plateau = (history["t"] > 0.1 * time) & (history["t"] < 0.9 * time)
@@ -30,7 +36,11 @@ def bar(folder: Path, elements: int) -> Iterator[Row]:
 
 
 def rigid(folder: Path, exponent: float, speed: float, dt: float) -> Iterator[Row]:
-    """A nearly rigid body of mass M on F = K d^m: depth [(m+1) M v^2/(2K)]^(1/(m+1)), contact time, restitution 1."""
+    """V8: a nearly rigid body of mass M on F = K d^m.
+
+    Expected: depth [(m+1) M v^2/(2K)]^(1/(m+1)), the contact time of the closed form, restitution
+    1.
+    """
     measure("impact", nu=0, radius=LENGTH, density=DENSITY, speed=speed, young=1e12, penalty=1e7, exponent=exponent,
             mesh_size=LENGTH / 4, dt=dt, out=folder)
     summary, power = read_summary(folder), 1 / (exponent + 1)

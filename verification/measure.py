@@ -1,5 +1,8 @@
-"""Runs the FreeFEM scripts beside it, which print lines "name value", and the disc scene as users do without
-Python. For the tests and for `make verify`."""
+"""Runs the FreeFEM scripts of this folder, which print lines "name value", and the disc scene
+without Python.
+
+The tests and `make verify` use it.
+"""
 
 import re
 import tempfile
@@ -21,7 +24,8 @@ from . import solids
 
 SCRIPTS = Path(__file__).resolve().parent
 LINE = re.compile(r"^([a-zA-Z]\w*) (\S+)$", re.MULTILINE)
-LIMIT = 600                 # s; the longest run, a slow ball of V17, takes 150 s of an idle core
+# Longest time of a run [s]. The longest run, a slow ball of V17, takes 150 s on an idle core.
+LIMIT = 600
 
 
 @dataclass(frozen=True)
@@ -34,8 +38,12 @@ class Outcome:
 
 @cache
 def measure(script: str, **given: Value | Path) -> dict[str, float]:
-    """What verification/<script>.edp prints with these flags; every call once. Failure if it does not finish."""
-    said = _start(f"{script}.edp", given, SCRIPTS)   # includes start from the folder that FreeFem++ is started in
+    """The numbers that verification/<script>.edp prints with these flags. Each call runs once.
+
+    Raises Failure if the script does not finish.
+    """
+    # FreeFem++ resolves includes relative to the folder in which it starts.
+    said = _start(f"{script}.edp", given, SCRIPTS)
     values = dict(LINE.findall(said))
     if values.pop("done", None) != "1":
         raise Failure(f"{script}: did not finish: {_end(said)}")
@@ -43,7 +51,7 @@ def measure(script: str, **given: Value | Path) -> dict[str, float]:
 
 
 def disc(folder: Path, script: str = "disc-plane", **given: Value | Path) -> Outcome:
-    """edp/<script>.edp with these flags, run into `folder`."""
+    """A run of edp/<script>.edp with these flags in `folder`."""
     _start(f"edp/{script}.edp", given | {"out": folder})
     return outcome(folder)
 
@@ -54,21 +62,23 @@ def outcome(folder: Path) -> Outcome:
 
 
 def bodies(folder: Path, tables: dict, **given: Value | Path) -> Outcome:
-    """The script of bodies for the scene in these tables (ffimpact.scene), with more flags, run into `folder`/run."""
+    """A run of the script of bodies for the scene in these tables (ffimpact.scene), with further
+    flags, in `folder`/run."""
     out = folder / "run"
     _start(f"edp/{dimension.of(tables).script}.edp", prepared(folder, tables) | given | {"out": out})
     return outcome(out)
 
 
 def solid_bodies(folder: Path, scene: solids.Scene, **given: Value | Path) -> Outcome:
-    """edp/bodies-3d.edp for a scene in three dimensions (solids.py), with more flags, run into `folder`/run."""
+    """A run of edp/bodies-3d.edp for a scene in three dimensions (solids.py), with further flags,
+    in `folder`/run."""
     out = folder / "run"
     _start("edp/bodies-3d.edp", solids.write(scene, folder) | given | {"out": out})
     return outcome(out)
 
 
 def prepared(folder: Path, tables: dict) -> dict[str, Value | Path]:
-    """The flags of a scene of bodies in these tables; its mesh and bodies are written into `folder`."""
+    """The flags of the scene in these tables. Writes its mesh and its bodies to `folder`."""
     scene = read_scene(tables, ROOT, "scene")
     made = assembly.assemble(scene)
     folder.mkdir(parents=True, exist_ok=True)
@@ -78,7 +88,8 @@ def prepared(folder: Path, tables: dict) -> dict[str, Value | Path]:
 
 
 def _start(script: str, given: dict[str, Value | Path], folder: Path = ROOT) -> str:
-    """What FreeFem++ prints; Failure unless it ends with exit code 0 in LIMIT seconds."""
+    """The output of FreeFem++. Raises Failure unless it ends with exit code 0 within LIMIT seconds.
+    """
     with tempfile.NamedTemporaryFile("r", errors="replace") as log:
         try:
             with freefem.limited(LIMIT):
@@ -92,5 +103,5 @@ def _start(script: str, given: dict[str, Value | Path], folder: Path = ROOT) -> 
 
 
 def _end(said: str) -> str:
-    """The last words of FreeFem++, on one line."""
+    """The end of the output of FreeFem++ on one line."""
     return " ".join(said.split())[-300:]

@@ -1,7 +1,10 @@
-"""Natural modes of the free disc (plane strain; Love 1892, Lamb) and of the free sphere (Lamb 1882), in closed form; omega in units of c_s/R.
+"""Natural modes of the free disc (plane strain; Love 1892, Lamb) and of the free sphere (Lamb 1882)
+in closed form.
 
-Of the disc: displacement grad(phi) + curl(psi e_z), phi = A J_n(h r) cos(n theta), psi = B J_n(k r) sin(n theta), h = omega/c_p, k = omega/c_s; of the
-sphere's spheroidal modes: grad(phi) + curl curl(r psi) with spherical functions; its torsional ones: curl(r psi). The surface is free of traction.
+omega is in units of c_s/R. Displacement of the disc: grad(phi) + curl(psi e_z) with phi = A J_n(h
+r) cos(n theta), psi = B J_n(k r) sin(n theta), h = omega/c_p, k = omega/c_s. Spheroidal modes of
+the sphere: grad(phi) + curl curl(r psi) with spherical functions; torsional modes: curl(r psi). The
+surface is free of traction.
 """
 
 from collections.abc import Callable
@@ -9,7 +12,8 @@ from math import pi, sqrt
 
 import numpy as np
 
-STEPS = 100                   # of the trapezoidal rule, which is exact to round-off for these arguments
+# Intervals of the trapezoidal rule, which is exact to round-off for these arguments.
+STEPS = 100
 
 
 def bessel(n: int, x: np.ndarray) -> np.ndarray:
@@ -19,7 +23,7 @@ def bessel(n: int, x: np.ndarray) -> np.ndarray:
 
 
 def spherical(n: int, x: np.ndarray) -> np.ndarray:
-    """j_n(x), upwards from sin(x)/x (n of a few, x > n/2)."""
+    """j_n(x), by upward recurrence from sin(x)/x. n must be small and x > n/2."""
     before, now = np.cos(x) / x, np.sin(x) / x
     for k in range(n):
         before, now = now, (2 * k + 1) / x * now - before
@@ -27,7 +31,7 @@ def spherical(n: int, x: np.ndarray) -> np.ndarray:
 
 
 def wave_ratio(nu: float) -> float:
-    """c_s/c_p."""
+    """The ratio of wave speeds c_s/c_p."""
     return sqrt((1 - 2 * nu) / (2 * (1 - nu)))
 
 
@@ -45,7 +49,11 @@ def roots(of: Callable[[np.ndarray], np.ndarray], end: float, start: float = 0.3
 
 
 def disc(nu: float, end: float) -> np.ndarray:
-    """omega R/c_s of all modes of the disc below `end`, sorted, those with n > 0 (and the torsional ones with n = 0) as often as they occur: twice (once)."""
+    """omega R/c_s of all modes of the disc below `end`, sorted.
+
+    Each mode appears as often as it occurs: twice for n > 0, once for n = 0 and for the torsional
+    modes with n = 0.
+    """
     ratio, found = wave_ratio(nu), []
 
     def free(n: int) -> Callable[[np.ndarray], np.ndarray]:
@@ -63,22 +71,25 @@ def disc(nu: float, end: float) -> np.ndarray:
 
 
 def spheroidal(nu: float, n: int, end: float) -> np.ndarray:
-    """omega R/c_s of the sphere's spheroidal modes of order n below `end`."""
+    """omega R/c_s of the spheroidal modes of order n of the sphere below `end`."""
     ratio = wave_ratio(nu)
 
     def determinant(k: np.ndarray) -> np.ndarray:
         h = ratio * k
         less = n * n - n - k**2 / 2
-        a = less * spherical(n, h) + 2 * h * spherical(n + 1, h)                       # sigma_rr/(2 mu) of phi, of psi: at r = 1
+        # sigma_rr/(2 mu) of phi and of psi at r = 1.
+        a = less * spherical(n, h) + 2 * h * spherical(n + 1, h)
         if n == 0:
             return a
         b = n * (n + 1) * ((n - 1) * spherical(n, k) - k * spherical(n + 1, k))
-        c = (n - 1) * spherical(n, h) - h * spherical(n + 1, h)                        # sigma_rt/(2 mu)
+        c = (n - 1) * spherical(n, h) - h * spherical(n + 1, h)  # sigma_rt/(2 mu)
         d = (n * n - 1 - k**2 / 2) * spherical(n, k) + k * spherical(n + 1, k)
         return a * d - b * c
-    return roots(determinant, end, max(1.0, 0.8 * n))         # below, upward recurrence is round-off
+    # At smaller arguments the upward recurrence loses all digits.
+    return roots(determinant, end, max(1.0, 0.8 * n))
 
 
 def torsional(n: int, end: float) -> np.ndarray:
-    """omega R/c_s of the sphere's torsional modes of order n below `end`: (n - 1) j_n(k) = k j_{n+1}(k)."""
+    """omega R/c_s of the torsional modes of order n of the sphere below `end`: (n - 1) j_n(k) = k
+    j_{n+1}(k)."""
     return roots(lambda k: (n - 1) * spherical(n, k) - k * spherical(n + 1, k), end, max(1.0, 0.8 * n))

@@ -1,9 +1,13 @@
-"""V17: a ball hits the plane obliquely, in three dimensions: the rigid limit, and the elastic ball of Maw, Barber and Fawcett (1976).
+"""V17: oblique impact of a ball on the plane in three dimensions.
 
-What the elastic ball is judged by is no proof of 5 % where it mostly sticks. At psi_1 = 0.6 the slip that is lost, 1 + beta, is 3.7 % above theory with the
-elements used here, half the contact's radius, but 6.9 % with elements of a third of it: two errors partly cancel. Either way it falls with the
-contact's radius (a ball is no half-space), about as its power 0.6 to 0.8: 15.9, 7.3, 3.7 % at 0.2, 0.02, 0.002 m/s, 22, 12.2, 6.9 % on the finer elements.
-At psi_1 = 1.2 it is 10.2, 5.1, 5.1, 2.0 % at 0.2, 0.02, 0.01, 0.002 m/s: how the elements lie on so small a contact is worth some per cent.
+The limits are a rigid ball, and the elastic ball of Maw, Barber and Fawcett (1976). Agreement
+within 5 % does not prove an error of 5 % where the elastic ball mostly sticks. At psi_1 = 0.6 the
+lost slip 1 + beta is 3.7 % above theory for elements of half the contact radius, as here, but 6.9 %
+for elements of a third of it: two errors partly cancel. In both cases the deviation falls with the
+contact radius, about as its power 0.6 to 0.8, since a ball is not a half-space: 15.9, 7.3 and 3.7 %
+at 0.2, 0.02 and 0.002 m/s, and 22, 12.2 and 6.9 % on the finer elements. At psi_1 = 1.2 it is 10.2,
+5.1, 5.1 and 2.0 % at 0.2, 0.02, 0.01 and 0.002 m/s; the position of the elements on so small a
+contact changes it by some per cent.
 """
 
 import math
@@ -22,32 +26,42 @@ from .case import Row
 from .measure import disc
 from .rigid_disc import STIFF, leaves
 
-INERTIA = 2.5               # R^2/k^2 of a ball, k its radius of gyration
+# R^2/k^2 of a ball with the radius of gyration k.
+INERTIA = 2.5
 RADIUS = STIFF["radius"]
-# nearly rigid, on the penalty alone: it sinks in by 1.3 % of its radius, some forty times as deep as the pressure dents it
+# A nearly rigid ball on the penalty. Its penetration is 1.3 % of the radius, about forty times the
+# indentation by the pressure.
 RIGID = STIFF | dict(penalty=3e10, law="neohookean", fields=0)
-# elastic, nu near 1/2, where a rigid plane acts as one of the same material
+# Elastic ball. For nu near 1/2 a rigid plane acts as a plane of the same material.
 NU, FRICTION, YOUNG, DENSITY = 0.45, 0.1, 7e6, 1722
 MASS = 4 / 3 * math.pi * RADIUS**3 * DENSITY
 ELASTIC = dict(script="ball-plane", law="neohookean", nu=NU, young=YOUNG, density=DENSITY, radius=RADIUS, accuracy=0.1, fields=0)
-# v_n [m/s] for each psi: as small (and dear) as the tolerance needs; that the error falls with the contact is asked where it is largest.
+# v_n [m/s] for each psi, as small (and expensive) as the tolerance requires. Where the error is
+# largest, two speeds test that it falls with the contact radius.
 SPEEDS = {0.6: (0.2, 0.002), 1.2: (0.002,), 2.0: (0.02,), 3.0: (0.2,), 5.0: (0.2,)}
 
 
 def rigid(folder: Path, angle: float, friction: float, **more) -> tuple[dict, float, float, float]:
-    """The summary of an impact at 1 m/s and this angle [degrees] to the plane, the speeds along and across it before, mu (1 + e) v_n/v_t."""
+    """The summary of an impact at 1 m/s at this angle [degrees] to the plane.
+
+    Also returns the initial speeds along and across the plane, and mu (1 + e) v_n/v_t.
+    """
     found = disc(folder, "ball-plane", **RIGID | dict(angle=angle, friction_static=friction) | more).summary
     along, across = math.cos(math.radians(angle)), math.sin(math.radians(angle))
     return found, along, across, friction * (across + found["rebound_vy"]) / along
 
 
 def springs(psi: ArrayLike, nu: float) -> np.ndarray:
-    """Share 1 + beta of the slip v_s that an elastic ball loses and regains in the other direction, beta = -v_s'/v_s, over
-    psi = 2 (1 - nu) v_s/(mu (2 - nu) v_n) > 0, a number or an array of any shape.
+    """The share 1 + beta of the slip v_s that an elastic ball loses and regains in the other
+    direction, beta = -v_s'/v_s.
 
-    Theory of Maw, Barber and Fawcett: Hertz in the normal direction, partial slip of Cattaneo and Mindlin along the plane. Both are those of a
-    row of independent springs under a parabola x^2/R (Popov, Hess 2015), of stiffness E* dx along the normal and, G*/E* = 2 (1 - nu)/(2 - nu), G* dx along the
-    plane, each with Coulomb's law; the springs carry the ball. Units: R, E*, the mass and v_n are 1, small: 10^-3.
+    The argument is psi = 2 (1 - nu) v_s/(mu (2 - nu) v_n) > 0, a number or an array of any shape.
+
+    Theory of Maw, Barber and Fawcett: Hertz in the normal direction, partial slip of Cattaneo and
+    Mindlin along the plane. Both follow from a row of independent springs under a parabola x^2/R
+    (Popov, Hess 2015), with the stiffness E* dx along the normal and G* dx along the plane, G*/E* =
+    2 (1 - nu)/(2 - nu), each with Coulomb's law. The springs carry the ball. In units in which R,
+    E* and the mass are 1, v_n is small: 10^-3.
     """
     normal, friction, count, steps = 1e-3, 0.1, 400, 6000
     ratio = 2 * (1 - nu) / (2 - nu)
@@ -56,7 +70,7 @@ def springs(psi: ArrayLike, nu: float) -> np.ndarray:
     deepest = (15 / 16 * normal**2) ** 0.4
     dt = 1.2 * 2.87 * normal**-0.2 / steps
     x = 1.05 * math.sqrt(deepest) * (np.arange(count) + 0.5) / count
-    width, stretched = 2 * (x[1] - x[0]), np.zeros((*start.shape, count))        # both halves of the row
+    width, stretched = 2 * (x[1] - x[0]), np.zeros((*start.shape, count))  # both halves of the row
     while depth >= 0:
         depth += dt * speed
         pressed = np.maximum(depth - x**2, 0)
@@ -68,12 +82,17 @@ def springs(psi: ArrayLike, nu: float) -> np.ndarray:
 
 
 def slides_throughout(psi: ArrayLike, nu: float, inertia: ArrayLike = INERTIA) -> ArrayLike:
-    """Whether the theory has a ball slide all the time: beyond 4 chi - 1, chi = (1 - nu)(1 + R^2/k^2)/(2 - nu); `inertia`: R^2/k^2."""
+    """Whether the ball slides throughout by theory: psi_1 > 4 chi - 1, chi = (1 - nu)(1 +
+    R^2/k^2)/(2 - nu).
+
+    `inertia` is R^2/k^2.
+    """
     return psi > 4 * (1 - nu) * (1 + inertia) / (2 - nu) - 1
 
 
 def lost_slip(folder: Path, psi: float, normal: float, **more) -> tuple[float, dict]:
-    """1 + beta of the elastic ball in three dimensions that comes with v_n = `normal` [m/s]; its summary."""
+    """1 + beta of the elastic ball in three dimensions with v_n = `normal` [m/s], and the summary
+    of the run."""
     start = psi * FRICTION * (2 - NU) / (2 * (1 - NU)) * normal
     flags = dict(speed=math.hypot(start, normal), angle=math.degrees(math.atan2(normal, start)), friction_static=FRICTION, slip_velocity=1e-3 * normal)
     found = disc(folder, **ELASTIC | flags | more).summary
@@ -81,7 +100,7 @@ def lost_slip(folder: Path, psi: float, normal: float, **more) -> tuple[float, d
 
 
 def elastic(folder: Path, psi: float) -> Iterator[Row]:
-    """Over the largest radius of the contact beside the ball's."""
+    """Lost slip over the largest contact radius over the ball radius."""
     for normal in SPEEDS[psi]:
         *_, radius = hertz.impact(MASS, RADIUS, YOUNG / (1 - NU**2), normal)
         lost = lost_slip(folder / f"{psi:g}", psi, normal)[0]
@@ -91,7 +110,8 @@ def elastic(folder: Path, psi: float) -> Iterator[Row]:
 
 
 def stiff(folder: Path, angle: float) -> Iterator[Row]:
-    """Over the largest radius of the circle in which the plane cuts the ball, beside the ball's."""
+    """Speed and spin over the radius of the intersection of plane and ball at the largest depth,
+    over the ball radius."""
     depth = (3 * MASS / (2 * math.pi * RADIUS * RIGID["penalty"])) ** (1 / 3)
     found, along, _, lost = rigid(folder / f"rigid-{angle:g}", angle, 0.2)
     (centre, rim), words, size = leaves(lost, INERTIA), f"rigid, {angle}°", math.sqrt(2 * depth / RADIUS)
@@ -99,11 +119,12 @@ def stiff(folder: Path, angle: float) -> Iterator[Row]:
     yield Row(f"{words}: spin", size, -found["rebound_spin"] * RADIUS / along, rim)
 
 
-REBOUNDS = (*(partial(elastic, psi=psi) for psi in SPEEDS), *(partial(stiff, angle=angle) for angle in (20, 60)))   # they can run at the same time
+# The impacts can run at the same time.
+REBOUNDS = (*(partial(elastic, psi=psi) for psi in SPEEDS), *(partial(stiff, angle=angle) for angle in (20, 60)))
 
 
 def curve(axes: plt.Axes, folder: Path) -> None:
-    """beta over psi_1: theory, and the runs."""
+    """Draws beta over psi_1: theory and runs."""
     psi = np.linspace(0.1, 6, 40)
     axes.plot(psi, springs(psi, NU) - 1, color=BLACK, linewidth=1, label="theory")
     runs = np.concatenate([np.loadtxt(path, delimiter=",", ndmin=2) for path in sorted(folder.glob("elastic-*.csv"))])

@@ -1,4 +1,5 @@
-"""V5: the clamped rod against a wall (rod.edp), whose exact solution has a contact in every period."""
+"""V5: the clamped rod against a wall (rod.edp), whose exact solution has a contact in every period.
+"""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -8,7 +9,8 @@ from .measure import measure
 
 
 def rod(elements: int) -> Iterator[Row]:
-    """A clamped rod meets the wall, t in units of L/c; strains of 5e-5, and a penalty of 1000 E/L."""
+    """A clamped rod comes into contact with the wall; t in units of L/c, strains of 5e-5, penalty
+    1000 E/L."""
     found = measure("rod", young=1, density=1, nu=0, speed=1e-4, penalty=1e3, mesh_size=1 / elements, dt=0.5 / elements)
     for what, value, expected in (
             ("contact begins", found["start"], 1), ("contact ends", found["leave"], 2),

@@ -1,4 +1,4 @@
-"""Scenes of bodies in tables, as ffimpact.scene reads them: discs of radius 0.05 m, coarse."""
+"""Scenes of bodies as tables for ffimpact.scene: discs of radius 0.05 m on coarse meshes."""
 
 RADIUS = 0.05
 SOFT = {"law": "neohookean", "young": 7e6, "nu": 0.45, "density": 1722, "accuracy": 0.05}
@@ -10,7 +10,7 @@ def disc(x: float, y: float, vx: float, vy: float, **more) -> dict:
 
 
 def scene(*bodies: dict, obstacles: tuple[dict, ...] = (), friction: float = 0, **more) -> dict:
-    """The tables of a scene; `more` stands at its top."""
+    """The tables of a scene. `more` holds entries of the top level."""
     contact = {"friction_static": friction} | {key: more.pop(key) for key in ("penalty", "exponent", "slip_velocity") if key in more}
     return SOFT | more | {"body": list(bodies), "obstacle": list(obstacles), "contact": contact}
 

@@ -1,4 +1,5 @@
-"""V9: a stiff block on the plane (sliding-block.edp): sliding to a stop, starting to slide on an incline, creeping below that."""
+"""V9: a stiff block on the plane (sliding-block.edp) slides to a stop, starts to slide on an
+incline, and creeps below that angle."""
 
 import math
 from collections.abc import Iterator
@@ -9,24 +10,27 @@ from .measure import measure
 
 GRAVITY = 10
 BLOCK = dict(young=1e9, nu=0.3, penalty=1e9, gravity=GRAVITY, radius=0.005)
-MASS = 1722 * 0.1 * 0.01   # kg/m
-# speed over the slip velocity at which phi of the regularization is a share of 1
+MASS = 1722 * 0.1 * 0.01  # kg/m
+# Speed over the slip velocity at which phi of the regularisation equals `share`.
 CREEP = {"linear": lambda share: share, "sqrt": lambda share: share / math.sqrt(1 - share**2), "tanh": math.atanh, "linear-printed": lambda share: 2 * share}
 
 
 def stop_time(speed: float, dynamic: float) -> float:
-    """s until a block at `speed` has stopped."""
+    """The time [s] until a block with the initial speed `speed` stops."""
     return speed / (dynamic * GRAVITY)
 
 
 def stop_way(speed: float, dynamic: float) -> float:
-    """m that it slides until then."""
+    """The distance [m] that it slides."""
     return speed**2 / (2 * dynamic * GRAVITY)
 
 
 def block(folder: Path) -> Iterator[Row]:
-    """A block at 1 m/s stops; on an incline it starts to slide at tan alpha = mu_e, and below it creeps. The slip velocity goes
-    with the step."""
+    """A block with 1 m/s stops. On an incline it starts to slide at tan alpha = mu_e and creeps
+    below.
+
+    The slip velocity is proportional to the step.
+    """
     top = math.atan(1.05 * 0.7)
     for dt in (8e-3, 4e-3, 2e-3, 1e-3):
         found = measure("sliding-block", speed=1, angle=0, end_time=0.24, friction_static=0.7, friction_dynamic=0.5,

@@ -1,4 +1,7 @@
-"""Meshes and scene files of bodies in three dimensions for the cases, as edp/bodies-3d.edp reads them: bricks and balls of tetrahedra, one region a body."""
+"""Meshes and scene files of bodies in three dimensions for edp/bodies-3d.edp.
+
+The bodies are bricks and balls of tetrahedra, with one region for each body.
+"""
 
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -10,18 +13,23 @@ from ffimpact.mesh.mesh import AXIS, FREE, boundary
 from ffimpact.mesh.solid_mesh import DEPTH, right_handed
 from ffimpact.scenes.assembly import stack
 
-CORNERS = ((0, 1, 3, 7), (0, 3, 2, 7), (0, 2, 6, 7), (0, 6, 4, 7), (0, 4, 5, 7), (0, 5, 1, 7))    # a cell as six tetrahedra around its diagonal
-MATERIAL = ("neohookean", 7e6, 0.3, 1722.0)                                                       # law, young [Pa], nu, density [kg/m3]
+# A cube as six tetrahedra around its diagonal.
+CORNERS = ((0, 1, 3, 7), (0, 3, 2, 7), (0, 2, 6, 7), (0, 6, 4, 7), (0, 4, 5, 7), (0, 5, 1, 7))
+MATERIAL = ("neohookean", 7e6, 0.3, 1722.0)  # law, young [Pa], nu, density [kg/m3]
 
 
 @dataclass
 class Body:
-    """points (n, 3) [m], cells (m, 4) of positive volume, centre in the mesh; its start: shift [m], velocity [m/s], spin [rad/s]; spheres of its surface."""
+    """A body: points (n, 3) [m], cells (m, 4) of positive volume and the centre in the mesh.
+
+    Initial state: shift [m], velocity [m/s], spin [rad/s]. `spheres` are the spheres of its
+    surface.
+    """
 
     points: np.ndarray
     cells: np.ndarray
     centre: np.ndarray
-    spheres: tuple[tuple, ...] = ()                # centre and radius
+    spheres: tuple[tuple, ...] = ()  # centre and radius
     material: tuple = MATERIAL
     shift: tuple = (0, 0, 0)
     velocity: tuple = (0, 0, 0)
@@ -30,17 +38,23 @@ class Body:
 
 @dataclass
 class Scene:
-    """bodies; obstacles (kind, numbers, velocity); pairs (a, b, penalty, friction_static, friction_dynamic); the ball that stands for the bodies."""
+    """A scene: bodies, obstacles (kind, numbers, velocity) and pairs (a, b, penalty,
+    friction_static, friction_dynamic).
+
+    `ball` is the ball that represents the bodies.
+    """
 
     bodies: list[Body]
     obstacles: list[tuple] = field(default_factory=list)
     pairs: list[tuple] = field(default_factory=list)
-    ball: tuple = (0.05, 7e6, 0.3, 1722.0, 2.0, 90.0, 0.0)       # radius, young, nu, density, speed, angle, spin
-    copies: int = 1                                # 2: the half z >= 0 of every body, 4: of that the half x >= 0
+    # Radius, young, nu, density, speed, angle, spin.
+    ball: tuple = (0.05, 7e6, 0.3, 1722.0, 2.0, 90.0, 0.0)
+    # Symmetry factor. 2: the half z >= 0 of every body; 4: the half x >= 0 of that.
+    copies: int = 1
 
 
 def grid(low, high, counts) -> tuple[np.ndarray, np.ndarray]:
-    """Points and tetrahedra of a brick from corner to corner, counts cells along x, y, z."""
+    """Points and tetrahedra of a brick between two corners, with `counts` cubes along x, y, z."""
     axes = [np.linspace(a, b, n + 1) for a, b, n in zip(low, high, counts)]
     points = np.stack(np.meshgrid(*axes, indexing="ij"), -1)
     number = np.arange(points[..., 0].size).reshape(points.shape[:3])
@@ -54,8 +68,14 @@ def brick(low, high, counts, **start) -> Body:
 
 
 def ball(centre, radius: float, count, copies: int = 1, turn: float = 0.0, focus: int = 0, **start) -> Body:
-    """A quarter of a ball (copies = 4) of cubes pushed out radially, `count` along a radius (x, y, z: three numbers); the half and the whole ball are that
-    with its mirror images, turned about y by an angle. focus -1 or 1: cubes get smaller, quadratically, towards the lower or upper end of the y axis."""
+    """A ball of tetrahedra, made of cubes that are moved radially, with `count` cubes along a
+    radius (one number, or one each for x, y, z).
+
+    copies: 4: a quarter of the ball; 2 and 1: the half and the whole ball by mirror images
+    turn: angle of a rotation about y
+    focus: -1 or 1: the size of the cubes falls quadratically towards the lower or upper end of the
+        y axis
+    """
     points, cells = grid((0, -1, 0), (1, 1, 1), np.broadcast_to(count, 3) * (1, 2, 1))
     if focus:
         points[:, ::2] *= points[:, ::2]
@@ -69,7 +89,8 @@ def ball(centre, radius: float, count, copies: int = 1, turn: float = 0.0, focus
 
 
 def mirrored(points: np.ndarray, cells: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndarray]:
-    """A mesh on one side of a plane through 0 with its mirror image, which shares the points on the plane."""
+    """A mesh on one side of a plane through 0 together with its mirror image. They share the points
+    on the plane."""
     off = np.flatnonzero(points[:, axis] > 1e-12)
     image = np.arange(len(points))
     image[off] = len(points) + np.arange(len(off))
@@ -78,7 +99,7 @@ def mirrored(points: np.ndarray, cells: np.ndarray, axis: int) -> tuple[np.ndarr
 
 
 def write(scene: Scene, folder: Path) -> dict[str, Path]:
-    """mesh.mesh and scene.dat in `folder`: the flags -mesh and -bodies."""
+    """Writes mesh.mesh and scene.dat to `folder`. Returns the flags -mesh and -bodies."""
     folder.mkdir(parents=True, exist_ok=True)
     meshes = [_mesh(body, scene.copies) for body in scene.bodies]
     solid_mesh.write(*stack(meshes, np.zeros((len(meshes), 3))), folder / "mesh.mesh")
@@ -87,7 +108,8 @@ def write(scene: Scene, folder: Path) -> dict[str, Path]:
 
 
 def _mesh(body: Body, copies: int) -> solid_mesh.SolidMesh:
-    """With its boundary: on x = 0 and z = 0 the planes of what is computed, a half or a quarter."""
+    """The mesh of a body with its boundary. The faces on x = 0 and z = 0 are planes of symmetry of
+    a half or a quarter."""
     faces = boundary(body.cells)
     on_x, _, on_z = (np.abs(body.points[faces]) < 1e-12).all(axis=1).T
     return solid_mesh.SolidMesh(body.points, body.cells, faces, np.select([on_z & (copies > 1), on_x & (copies > 2)], [DEPTH, AXIS], FREE))

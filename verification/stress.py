@@ -1,4 +1,4 @@
-"""The stress of a homogeneous deformation in closed form, and the snapshots that are to have it."""
+"""The stress of a homogeneous deformation in closed form, and its comparison with snapshots."""
 
 from pathlib import Path
 
@@ -10,11 +10,11 @@ from ffimpact.output.fields import write_fields
 
 YOUNG, NU = 7e6, 0.4
 LAMBDA, MU = YOUNG * NU / ((1 + NU) * (1 - 2 * NU)), YOUNG / (2 * (1 + NU))
-F = np.array([[1.2, 0.3, 0], [-0.1, 0.7, 0], [0, 0, 1]])   # of homogeneous.edp
+F = np.array([[1.2, 0.3, 0], [-0.1, 0.7, 0], [0, 0, 1]])  # as in homogeneous.edp
 
 
 def cauchy(law: str, F: np.ndarray = F) -> np.ndarray:
-    """sigma = F S F^T / J [Pa], (3, 3), of the laws (5) and (6) in three dimensions."""
+    """sigma = F S F^T / J [Pa], (3, 3), for the laws (5) and (6) in three dimensions."""
     C, J = F.T @ F, np.linalg.det(F)
     if law == "svk":
         E = (C - np.eye(3)) / 2
@@ -29,7 +29,8 @@ def assert_stress(largest: dict, folder: Path, sigma: np.ndarray, F: np.ndarray)
     write_fields(folder)
     found, principal = vtu.read(folder / "fields/0000.vtu").fields, np.linalg.eigvalsh(sigma)
     mises, count = np.sqrt(((principal - np.roll(principal, 1)) ** 2).sum() / 2), len(found["jacobian"])
-    assert count > 20 and found["cauchy_stress"] == pytest.approx(np.tile(sigma[[0, 1, 2, 0, 1, 0], [0, 1, 2, 1, 2, 2]], (count, 1)), rel=1e-7)   # xx yy zz xy yz xz
+    # xx yy zz xy yz xz
+    assert count > 20 and found["cauchy_stress"] == pytest.approx(np.tile(sigma[[0, 1, 2, 0, 1, 0], [0, 1, 2, 1, 2, 2]], (count, 1)), rel=1e-7)
     assert found["von_mises"] == pytest.approx(np.full(count, mises), rel=1e-7)
     assert found["jacobian"] == pytest.approx(np.full(count, np.linalg.det(F)), rel=1e-7)
     assert largest["mises"] == pytest.approx(mises, rel=1e-10)

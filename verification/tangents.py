@@ -1,4 +1,4 @@
-"""Scenes and laws whose tangents are checked, and the comparison of kernels and scripts."""
+"""Laws and mesh sizes of the tests of tangents, and the comparison of kernels and scripts."""
 
 COARSE = {"disc": {"accuracy": 0.1}, "ball": {"accuracy": 0.1}, "3d": {"mesh_size": 0.025, "contact_mesh_size": 0.015}}
 MOONEY = {"law": "mooney-rivlin", "law_parameters": "0.3"}
@@ -6,6 +6,10 @@ OGDEN = {"law": "ogden", "law_parameters": "1.3,0.5,5,0.2,-2,0.3"}
 
 
 def kernels_are_the_scripts(found: dict, factor: bool = True) -> None:
-    """Deformation, forces, tangent and, where it has one, its factor, as kernels.idp prints them: to round-off, where there is a compiler."""
+    """Asserts that kernels and scripts agree to round-off in the numbers that kernels.idp prints,
+    if there is a compiler.
+
+    These are deformation, forces and tangent and, with `factor`, its factorisation.
+    """
     names = ["deformed", "forces", "product", *(["solve", "response", "compliance"] if factor else [])]
     assert not found["built"] or max(found[name] for name in names) < 1e-12 and (found["refused"] == 0 or not factor)

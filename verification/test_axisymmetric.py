@@ -1,4 +1,5 @@
-"""V2, V7 and V15 of bodies of revolution: their operators, the impact of a ball and of two."""
+"""V2, V7 and V15 of bodies of revolution: their operators, and the impacts of one ball and of two
+balls."""
 
 import math
 
@@ -13,8 +14,12 @@ KEPT = ("energy", "radial", "axial", "even")
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("degree", [1, 2])
 def test_homogeneous_strain_is_exact(measure, tmp_path, law, degree):
-    """F = diag(1.2, 0.7, 1.2) of radius, axis and hoop: stresses, energy and inner forces are those of the volume of the elements to round-off, a ball
-    that is moved along its axis has none; volume and mass of curved elements are those of the ball."""
+    """F = diag(1.2, 0.7, 1.2) with the radial, axial and circumferential components.
+
+    Stresses, energy and internal forces agree to round-off with those of the volume of the
+    elements. A ball that moves along its axis has no internal forces. Volume and mass of curved
+    elements agree with the ball.
+    """
     found = measure("homogeneous-ball", law=law, degree=degree, accuracy=0.02, out=tmp_path)
     assert max(abs(found[name]) for name in KEPT) < 1e-12 and found["resting"] < 1e-13
     assert found["mass"] == pytest.approx(found["volume"], rel=1e-4)
@@ -23,7 +28,8 @@ def test_homogeneous_strain_is_exact(measure, tmp_path, law, degree):
 
 
 def test_impact_of_hertz(tmp_path):
-    """Contact time and largest force of a slow ball within 2 %, nearer than those of a faster one; two balls likewise."""
+    """Contact time and largest force of a slow ball agree within 2 % and better than those of a
+    faster one; the same for two balls."""
     for impact in (hertz.ball, hertz.balls):
         fast, slow = (list(impact(tmp_path / f"{impact.__name__}-{speed:g}", speed)) for speed in (1, 0.01))
         assert all(row.error < 0.02 for row in slow)
@@ -32,7 +38,8 @@ def test_impact_of_hertz(tmp_path):
 
 @pytest.mark.robustness
 def test_two_balls_are_one_on_a_plane(disc, tmp_path):
-    """Each at half the speed, their common tangent plane is at rest: one of them against it, with twice the penalty."""
+    """Two balls, each at half the speed, agree with one ball on a plane with twice the penalty,
+    since their common tangent plane is at rest."""
     sizes = dict(mesh_size=3e-3, contact_mesh_size=3e-4)
     hertz.balls(tmp_path, 1, penalty=2e12, **sizes)
     pair = hertz.outcome(tmp_path).summary
@@ -48,7 +55,11 @@ def test_two_balls_are_one_on_a_plane(disc, tmp_path):
 @pytest.mark.parametrize("flags", [{"law": "neohookean"}, {"law": "svk", "speed": 3}, {"law": "neohookean", "friction_static": 0.4, "friction_dynamic": 0.2},
                                    {"law": "neohookean", "gravity": 50, "height": 0.01, "exponent": 1.5}, {"law": "neohookean", "degree": 1}], ids=str)
 def test_balance_of_energy_and_momentum(disc, flags):
-    """Kinetic, elastic and contact energy, what friction took and gravity gave: constant to 1e-9 in every step; the impulse is the change of momentum."""
+    """The energy balance of kinetic, elastic and contact energy, friction work and work of gravity
+    closes to 1e-9 in every step.
+
+    The impulse is the change of momentum.
+    """
     found = disc(script="ball-axisymmetric", accuracy=0.02, **flags)
     summary, history = found.summary, found.history
     assert summary["energy_drift"] < 1e-9 and summary["momentum_drift"] < 1e-9

@@ -1,4 +1,5 @@
-"""The ball in three dimensions: operators, laws, energies and momenta, and impacts on the plane, on coarse meshes."""
+"""The ball in three dimensions on coarse meshes: operators, laws, energies, momenta, and impacts on
+the plane."""
 
 import numpy as np
 import pytest
@@ -14,8 +15,11 @@ VOLUME = 4 / 3 * np.pi * 0.05**3
 
 @pytest.mark.parametrize("law", LAWS)
 def test_homogeneous_deformation_is_exact(measure, law):
-    """V1: F, P, energy and the smallest stretch of x = F X at every quadrature point of the curved ball, to round-off; the work excess of finite
-    steps is that of their energies."""
+    """V1: F, P, energy and smallest stretch of x = F X are exact to round-off at every quadrature
+    point of the curved ball.
+
+    The discrete-gradient correction of finite steps agrees with the energies.
+    """
     found = measure("homogeneous-3d", law=law, symmetry="full", **COARSE)
     assert found["gradient"] < 1e-13 and found["stress"] < 1e-12 and found["energy"] < 1e-12 and found["stretch"] < 1e-12
     assert found["excess"] < 1e-13 and (found["largest"] > 0.1 or law == "svk")
@@ -24,7 +28,8 @@ def test_homogeneous_deformation_is_exact(measure, law):
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("degree", [1, 2])
 def test_snapshot_has_the_stress_of_the_closed_form(measure, tmp_path, law, degree):
-    """V1: Cauchy stress (all six components), von Mises stress and det F of the same motion in the file, to its 9 digits."""
+    """V1: all six components of Cauchy stress, von Mises stress and det F of the same motion are
+    exact in the file, to its 9 digits."""
     largest = measure("homogeneous-3d", law=law, degree=degree, young=YOUNG, nu=NU, symmetry="full", out=tmp_path, **COARSE)
     F = np.array([[1.2, 0.3, -0.1], [-0.1, 0.7, 0.2], [0.15, -0.05, 1.1]])
     assert_stress(largest, tmp_path, cauchy(law, F), F)
@@ -33,8 +38,11 @@ def test_snapshot_has_the_stress_of_the_closed_form(measure, tmp_path, law, degr
 @pytest.mark.few(1)
 @pytest.mark.parametrize("symmetry", ["quarter", "half", "full"])
 def test_mass_surface_and_contact_points_are_those_of_the_sphere(measure, symmetry):
-    """Of all copies: mass 4/3 pi R^3 rho and surface to 2e-3 on a coarse mesh and to an eighth of that on one with half the size; points on the
-    sphere."""
+    """With the symmetry factor, mass 4/3 pi R^3 rho and surface are exact to 2e-3 on a coarse mesh,
+    and 8 times better for half the size.
+
+    The contact points lie on the sphere.
+    """
     coarse = measure("homogeneous-3d", law="svk", symmetry=symmetry, **COARSE)
     fine = measure("homogeneous-3d", law="svk", symmetry=symmetry, mesh_size=0.0125, contact_mesh_size=0.0075)
     assert abs(coarse["mass"]) < 2e-3 and abs(fine["mass"]) < abs(coarse["mass"]) / 8
@@ -45,8 +53,11 @@ def test_mass_surface_and_contact_points_are_those_of_the_sphere(measure, symmet
 @pytest.mark.robustness
 @pytest.mark.parametrize("law", LAWS)
 def test_order_in_space(measure, law):
-    """V1: the L2 error of a manufactured motion with sines falls with the cube of the element size on curved tetrahedra, the mass with its fourth power;
-    the size by the number of elements, as the meshes are not nested."""
+    """V1: the L2 error of a manufactured motion with sines falls with h^3 on curved tetrahedra, the
+    error of the mass with h^4.
+
+    h is computed from the number of elements, as the meshes are not nested.
+    """
     coarse, fine = (measure("manufactured-3d", law=law, mesh_size=h, contact_mesh_size=h, dt=0.005, end_time=0.025, tolerance=1e-12, **SOFT) for h in (0.35, 0.175))
     finer = np.log2(fine["elements"] / coarse["elements"]) / 3
     assert coarse["state"] == fine["state"] == 0 and fine["smallest"] < 0.95
@@ -57,8 +68,11 @@ def test_order_in_space(measure, law):
 @pytest.mark.parametrize("turns", [10, pytest.param(100, marks=pytest.mark.robustness)])
 @pytest.mark.parametrize("law", LAWS)
 def test_spinning_ball_keeps_energy_and_momenta(measure, law, turns):
-    """V3: a vibrating free half ball (z >= 0) over so many turns of 30 steps each: energy, momentum and angular momentum to 1e-10; turning and moving a
-    deformed body changes neither its energy nor det F."""
+    """V3: a vibrating free half ball (z >= 0) keeps energy, momentum and angular momentum to 1e-10
+    over several turns of 30 steps.
+
+    A rigid motion of a deformed body changes neither its energy nor det F.
+    """
     found = measure("spinning-3d", law=law, spin=200, exponent=3, tolerance=5e-14, mesh_size=0.035, contact_mesh_size=0.035, symmetry="half",
                     end_time=2 * np.pi * turns / 200)
     assert found["state"] == 0 and found["strain"] > 0.02 and found["turns"] == turns
@@ -70,13 +84,17 @@ def test_spinning_ball_keeps_energy_and_momenta(measure, law, turns):
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("nu", [0, 0.3, 0.45])
 def test_ellipticity_is_the_least_of_all_directions(measure, law, nu):
-    """A hundred random states: the smallest eigenvalue of the acoustic tensor as in the textbook is in none of 20,000 directions below that of
-    the program, which looks in the principal planes of C, and comes within the spacing of the directions of it."""
+    """The smallest eigenvalue of the acoustic tensor in 20,000 directions, for a hundred random
+    states, confirms the program.
+
+    No direction gives a smaller value than the program, which searches the principal planes of C;
+    the difference is within the spacing of the directions.
+    """
     found = measure("ellipticity-3d", law=law, nu=nu, **COARSE)
     closed = np.array([found[f"closed{i}"] for i in STATES])
     entries = np.array([[found[f"C{name}_{i}"] for i in STATES] for name in ("11", "12", "13", "12", "22", "23", "13", "23", "33")])
     golden = np.arange(20000) + 0.5
-    height, turn = 1 - golden / 20000, np.pi * (1 + 5**0.5) * golden                       # half a sphere, evenly
+    height, turn = 1 - golden / 20000, np.pi * (1 + 5**0.5) * golden  # evenly over half a sphere
     N = np.stack([np.sqrt(1 - height**2) * np.cos(turn), np.sqrt(1 - height**2) * np.sin(turn), height])
     least, largest = acoustic(entries.T.reshape(-1, 3, 3), nu, law, N).T
     assert (-1e-10 * largest <= least - closed).all() and (least - closed <= 1e-3 * largest).all()
@@ -88,7 +106,8 @@ IMPACT = {"law": "neohookean", "accuracy": 0.1, "mesh_size": 0.025, "contact_mes
 
 @pytest.mark.parametrize("law", LAWS)
 def test_impact_keeps_the_energy_and_its_impulse_is_the_change_of_momentum(disc, law):
-    """The whole contact at 2 m/s: energy to 1e-9, impulse and momentum to 1e-9, the centre of mass on its axis."""
+    """A whole contact at 2 m/s keeps the energy to 1e-9. Impulse and change of momentum agree to
+    1e-9. The centre of mass stays on its axis."""
     run = disc(script="ball-plane", **IMPACT | {"law": law, "speed": 2})
     s, h = run.summary, run.history
     mass = 2 * s["energy_initial"] / 2**2
@@ -101,7 +120,7 @@ def test_impact_keeps_the_energy_and_its_impulse_is_the_change_of_momentum(disc,
 
 @pytest.mark.robustness
 def test_quarter_half_and_full_are_one_run(disc):
-    """On meshes that are mirror images of each other, to what the iteration leaves open."""
+    """Quarter, half and whole ball on mirrored meshes agree to the tolerance of the iterations."""
     quarter, *others = (disc(script="ball-plane", symmetry=symmetry, end_time=0.001, **IMPACT).history for symmetry in ("quarter", "half", "full"))
     for other in others:
         for name in ("normal_force", "kinetic", "elastic", "contact", "vy", "y", "contact_size", "min_stretch"):
@@ -112,8 +131,12 @@ def test_quarter_half_and_full_are_one_run(disc):
 
 @pytest.mark.parametrize("law, speed", [("neohookean", 8), ("svk", 4)])
 def test_impact_is_that_of_a_body_of_revolution(disc, law, speed):
-    """Against the axisymmetric ball, which knows nothing of tetrahedra: contact time between thresholds, impulse, rebound, and the force history (means
-    over a fiftieth of the contact, L2) to 4 %; St. Venant-Kirchhoff at a speed at which it keeps ellipticity."""
+    """Impact of the ball agrees with that of the axisymmetric ball.
+
+    Contact time between thresholds, impulse, rebound, and the force history (means over a fiftieth
+    of the contact, L2 norm) agree to 4 %. For St. Venant-Kirchhoff the speed is low enough for
+    ellipticity.
+    """
     given = {"law": law, "speed": speed, "penalty": 1e10, "accuracy": 0.01}
     runs = [disc(script="ball-plane", **given), disc(script="ball-axisymmetric", **given | {"accuracy": 0.005})]
     solid, revolved = (run.summary for run in runs)
@@ -130,7 +153,11 @@ def test_impact_is_that_of_a_body_of_revolution(disc, law, speed):
 @pytest.mark.parametrize("regularization", ["linear", "linear-printed", "sqrt", "tanh"])
 @pytest.mark.parametrize("transition", ["jump", "smooth"])
 def test_friction_in_space_is_the_law_in_every_direction(measure, regularization, transition):
-    """Along z = 0 it is the law in the plane to round-off, turned it turns; forces, drag and coupling are derivatives of each other to 1e-6."""
+    """Along z = 0 friction agrees with the plane law to round-off, and rotates with the slip
+    direction.
+
+    Stiffness, drag and coupling are derivatives of the forces to 1e-6.
+    """
     found = measure("friction-3d", friction_static=0.7, friction_dynamic=0.5, regularization=regularization, friction_transition=transition,
                     symmetry="full", **COARSE)
     assert found["plane"] < 1e-13 and found["turned"] < 1e-13
@@ -142,14 +169,16 @@ OBLIQUE = {"law": "neohookean", "accuracy": 0.2, "speed": 8, "angle": 45, "spin"
 
 
 def test_oblique_impact_with_friction_keeps_its_balances(disc):
-    """Static and dynamic friction and spin, half the ball: energy with the work of friction and both momenta to 1e-9."""
+    """Half of a ball with static and dynamic friction and spin: energy with friction work and both
+    momenta are balanced to 1e-9."""
     s = disc(script="ball-plane", friction_static=0.7, friction_dynamic=0.5, end_time=0.001, **OBLIQUE).summary
     assert s["energy_drift"] < 1e-9 and s["momentum_drift"] < 1e-9 and s["friction_work"] > 0.1
     assert s["skipped"] and "half of the body (symmetry)" in s["skipped"]
 
 
 def test_half_and_full_are_one_run_with_friction(disc):
-    """With one coefficient, where a step has one solution."""
+    """Half and whole ball agree for one coefficient of friction, for which a step has one solution.
+    """
     half, full = (disc(script="ball-plane", symmetry=symmetry, friction_static=0.5, end_time=0.001, **OBLIQUE) for symmetry in ("half", "full"))
     for name in ("normal_force", "friction_force", "friction_work", "vx", "vy", "spin", "elastic"):
         assert full.history[name] == pytest.approx(half.history[name], rel=1e-6, abs=1e-6 * abs(half.history[name]).max()), name
@@ -158,8 +187,12 @@ def test_half_and_full_are_one_run_with_friction(disc):
 
 @pytest.mark.robustness
 def test_gross_slip_is_that_of_the_rigid_ball(disc):
-    """V10: a slow grazing ball slides throughout: the impulse along the plane is mu times the normal one, but for what the outward spreading of the
-    contact turns aside; the spin is 5/2 mu (1 + e) v_n/R, but for the approach by which the lever is shorter: 3 %."""
+    """V10: a slow ball at grazing incidence slides throughout.
+
+    The tangential impulse is mu times the normal impulse, except for the part that the outward
+    spreading of the contact deflects. The spin is 5/2 mu (1 + e) v_n/R to 3 %, as the indentation
+    shortens the lever.
+    """
     run = disc(script="ball-plane", law="neohookean", accuracy=0.05, speed=1, angle=20, nu=0.3, friction_static=0.1)
     s, h = run.summary, run.history
     normal = -h["vy"][0]

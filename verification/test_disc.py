@@ -1,4 +1,4 @@
-"""V12 and what the conservation laws, symmetry and flight demand of the disc against the plane."""
+"""V12 and conservation laws, symmetry and flight of the disc on the plane."""
 
 import math
 
@@ -13,14 +13,18 @@ COARSE = dict(mesh_size=0.025, contact_mesh_size=0.0079, accuracy=0.03)
 MASS = 1722 * math.pi * 0.05**2
 
 
-# ---- V12: NGSolve and GetFEM, written independently on the same equations
+# ---- V12: NGSolve and GetFEM, written independently for the same equations
 
 FINE = dict(speed=8, nu=0.45, mesh_size=3.6e-3, contact_mesh_size=1.1e-3, accuracy=5e-4)
 
 
 def test_public_point_at_default_accuracy(disc):
-    """Impulse, rebound and energy of the public point are met to the 0.5 % that the default promises, and the contact time between
-    thresholds of the finer run below; the exact one hangs on the vibration at the last touch, and scatters by 0.8 % on any such mesh."""
+    """At the default accuracy impulse, rebound and energy of the public reference agree to its 0.5
+    %.
+
+    The contact time between thresholds agrees with the finer run below. The exact contact time
+    depends on the vibration at the end of contact and scatters by 0.8 % on such meshes.
+    """
     found = disc(speed=8, nu=0.45).summary
     assert found["impulse"] == pytest.approx(208.20, rel=5e-3)
     assert found["rebound_vy"] == pytest.approx(7.394, rel=5e-3)
@@ -29,10 +33,14 @@ def test_public_point_at_default_accuracy(disc):
 
 
 def test_public_point_at_a_finer_setting(disc):
-    """Finer elements and steps: impulse and rebound are inside the error bars of the independent programs, the exact contact time, of
-    one interval, to 0.5 % more."""
+    """With finer elements and steps, impulse and rebound are within the error bars of the
+    independent programs.
+
+    The exact contact time, of one interval, agrees to 0.5 % and its error bar.
+    """
     found = disc(**FINE).summary
-    assert abs(found["contact_time"] - 4.67e-3) < 5e-3 * 4.67e-3 + 2e-5   # the point's own error bar is 2e-5 s
+    # The error bar of the reference is 2e-5 s.
+    assert abs(found["contact_time"] - 4.67e-3) < 5e-3 * 4.67e-3 + 2e-5
     assert found["contact_intervals"] == 1
     assert found["impulse"] == pytest.approx(208.20, abs=0.03)
     assert found["rebound_vy"] == pytest.approx(7.394, abs=0.002)
@@ -40,8 +48,11 @@ def test_public_point_at_a_finer_setting(disc):
 
 
 def test_force_history_is_that_of_getfem(disc, tmp_path):
-    """On the same mesh and with the same step the normal force over time is within 2 % in L2 of GetFEM's, which was run once
-    (the file says how); `make bench` runs it again where it is installed."""
+    """On the same mesh with the same step the normal force agrees with GetFEM within 2 % in the L2
+    norm.
+
+    The file describes the GetFEM run; `make bench` repeats it if GetFEM is installed.
+    """
     mesh.write(mesh.disc(0.05, 8e-3, 2.5e-3, half=True), tmp_path / "half.msh")
     found = disc(speed=8, nu=0.45, dt=5e-5, mesh=tmp_path / "half.msh")
     theirs = np.genfromtxt(parameters.ROOT / "benchmarks/programs/getfem-normal-svk.csv", delimiter=",", names=True, skip_header=3)
@@ -55,8 +66,11 @@ def test_force_history_is_that_of_getfem(disc, tmp_path):
 # ---- balances
 
 def test_laws_agree_at_small_strains(disc):
-    """Strains of 1e-4 to 1e-6: both laws are Hooke's there, their answers differ by the strain, and both close their balance;
-    the neo-Hookean energy would be made of round-off if its differences cancelled."""
+    """At strains of 1e-4 to 1e-6 both laws are Hooke's law: their results differ by the strain, and
+    both balances close.
+
+    Cancellation in its differences would reduce the neo-Hookean energy to round-off.
+    """
     for speed, differ in ((1e-2, 1e-4), (1e-4, 2e-6)):
         svk, neo = (disc(law=law, speed=speed, nu=0.45, dt=4e-5, **COARSE).summary for law in ("svk", "neohookean"))
         assert neo["impulse"] == pytest.approx(svk["impulse"], rel=differ)
@@ -65,7 +79,8 @@ def test_laws_agree_at_small_strains(disc):
 
 @pytest.mark.parametrize("law", ["svk", "neohookean"])
 def test_energy_is_kept_at_default_settings(disc, law):
-    """Kinetic + elastic + contact energy stays within 1e-9 of the energy at the start over the whole impact."""
+    """Kinetic, elastic and contact energy together stay within 1e-9 of the initial energy over the
+    whole impact."""
     result = disc(law=law, nu=0.45)
     assert result.summary["energy_drift"] < 1e-9
     total = sum(result.history[name] for name in ("kinetic", "elastic", "contact"))
@@ -74,7 +89,7 @@ def test_energy_is_kept_at_default_settings(disc, law):
 
 
 def test_energy_is_kept_under_gravity(disc):
-    """With a heavy body force the balance counts its work."""
+    """With a large body force the balance includes its work."""
     result = disc(gravity=500, **COARSE)
     assert result.summary["energy_drift"] < 1e-9
     h = result.history
@@ -85,14 +100,15 @@ def test_energy_is_kept_under_gravity(disc):
 @pytest.mark.parametrize("law", ["svk", "neohookean"])
 @pytest.mark.parametrize("integrator", ["energy-momentum", "midpoint"])
 def test_force_is_the_change_of_momentum(disc, law, integrator):
-    """The normal force is the integral of density times acceleration (the paper's definition) in every step."""
+    """In every step the normal force is the integral of density times acceleration (the definition
+    of the paper)."""
     h = disc(law=law, integrator=integrator, **COARSE).history
     change = np.diff(h["momentum_y"]) / np.diff(h["t"])
     assert abs(change - h["normal_force"][1:]).max() < 1e-6 * h["normal_force"].max()
 
 
 def test_impulse_is_the_change_of_momentum(disc):
-    """The impulse is mass times the change of the velocity of the centre of mass."""
+    """The impulse is mass times the change of velocity of the centre of mass."""
     result = disc(**COARSE)
     h, s = result.history, result.summary
     assert s["impulse"] == pytest.approx(h["momentum_y"][-1] - h["momentum_y"][0], rel=1e-9)
@@ -101,7 +117,8 @@ def test_impulse_is_the_change_of_momentum(disc):
 
 
 def test_oblique_impact_without_friction_keeps_the_tangential_motion(disc):
-    """Without friction the plane changes neither the momentum along it nor the normal motion of the same normal speed."""
+    """Without friction the tangential momentum is constant, and the normal motion depends on the
+    normal speed only."""
     oblique = disc(angle=60, speed=8 / math.sin(math.pi / 3), **COARSE)
     h = oblique.history
     assert abs(h["momentum_x"] / h["momentum_x"][0] - 1).max() < 1e-10
@@ -111,12 +128,13 @@ def test_oblique_impact_without_friction_keeps_the_tangential_motion(disc):
     assert oblique.summary["contact_time"] == pytest.approx(normal.summary["contact_time"], rel=1e-3)
 
 
-# ---- what is skipped changes nothing
+# ---- skipped flight changes nothing
 
 @pytest.mark.few(1)
 @pytest.mark.parametrize("angle, turns", [(90, 0), (60, 0), (70, -1)], ids=["normal", "oblique", "one turn"])
 def test_flight_is_skipped_without_a_trace(disc, angle, turns):
-    """Dropped from 0.3 m the disc does after touch what it does when started at touch with the speed of the fall."""
+    """A disc dropped from 0.3 m moves after the onset of contact as a disc that starts at this
+    instant with the speed of the fall."""
     gravity, height, speed = 30.0, 0.3, 6.0
     sine, cosine = math.sin(math.radians(angle)), math.cos(math.radians(angle)) * (angle != 90)
     down = math.hypot(speed * sine, math.sqrt(2 * gravity * height))
@@ -133,20 +151,24 @@ def test_flight_is_skipped_without_a_trace(disc, angle, turns):
 # ---- time
 
 def test_contact_time_is_no_multiple_of_the_step(disc):
-    """With a fixed step the contact time is interpolated: it moves by a fraction of the step when the step is halved."""
+    """With a fixed step the contact time is interpolated: halving the step changes it by a fraction
+    of the step."""
     steps = [2e-5, 1e-5, 5e-6]
     times = [disc(dt=dt, nu=0.3, penalty=1e9, **COARSE).summary["contact_time"] for dt in steps]
-    assert max(abs(time / dt - round(time / dt)) for time, dt in zip(times, steps)) > 0.02   # one may be near a multiple by chance
+    # One of them may be near a multiple by chance.
+    assert max(abs(time / dt - round(time / dt)) for time, dt in zip(times, steps)) > 0.02
     assert abs(times[0] - times[1]) < 0.5 * steps[0] and abs(times[1] - times[2]) < 0.5 * steps[1]
 
 
 @pytest.mark.few(2)
-# Bands for rebound, contact time and the energy that is left, about three times the error of the scheme at this step.
+# Tolerances of rebound, contact time and final energy: about three times the error of the scheme at
+# this step.
 @pytest.mark.parametrize("law", ["svk", "neohookean"])
 @pytest.mark.parametrize("integrator, rebound, contact, energy", [
     ("midpoint", 1e-4, 5e-4, 1e-4), ("newmark", 1e-4, 5e-4, 1e-4), ("bdf2", 1e-3, 2e-3, 1e-3), ("backward-euler", 3e-2, 5e-2, 0.15)])
 def test_integrators_agree_at_small_steps(disc, law, integrator, rebound, contact, energy):
-    """Every implicit integrator tends to the answer of the conserving one."""
+    """With small steps every implicit integrator gives the results of the energy-momentum
+    integrator."""
     settings = dict(law=law, dt=1e-5, penalty=1e9, **COARSE)
     reference, found = disc(**settings).summary, disc(integrator=integrator, **settings).summary
     assert found["rebound_vy"] == pytest.approx(reference["rebound_vy"], rel=rebound)
@@ -158,14 +180,16 @@ def test_integrators_agree_at_small_steps(disc, law, integrator, rebound, contac
 @pytest.mark.few(3)
 @pytest.mark.parametrize("accuracy", [0.3, 0.2, 0.1, 0.06, 0.04])
 def test_contact_starts_at_the_touch(disc, accuracy):
-    """Started at touch, where round-off decides the sign of the gap, the first instant of contact is never missed."""
+    """A run that starts at contact, where round-off decides the sign of the gap, does not miss the
+    onset of contact."""
     found = disc(accuracy=accuracy, speed=8, end_time=0.006).summary
     assert 0 <= found["contact_start"] < 1e-5
     assert found["contact_time"] == pytest.approx(4.67e-3, rel=0.03)
 
 
 def test_contact_at_any_point_of_the_outline(disc):
-    """After half a turn in flight the last point of the outline touches first, and the contact is solved there too."""
+    """After half a turn in flight the last point of the outline comes into contact first, and the
+    contact is computed there, too."""
     found = disc(speed=6, height=0.3, spin=math.pi * 6 / 0.3, symmetry="full", dt=4e-5, **COARSE).summary
     assert found["contact_start"] == pytest.approx(0.05, rel=2e-3)
     assert found["rejected_steps"] == 0 and found["energy_drift"] < 1e-9

@@ -1,5 +1,8 @@
-"""Ellipticity: the smallest eigenvalue of the acoustic tensor over all directions, against directions tried one by one, the
-program's own stress and the limits that are known in closed form."""
+"""Ellipticity: the smallest eigenvalue of the acoustic tensor over all directions.
+
+It is compared with a search over many directions, with the stress of the program and with limits in
+closed form.
+"""
 
 import numpy as np
 import pytest
@@ -8,17 +11,21 @@ STATES = range(100)
 
 
 def in_plane(count: int) -> np.ndarray:
-    """(2, count) directions, evenly over half a turn."""
+    """Directions (2, count), evenly over half a turn."""
     angle = np.pi * np.arange(count) / count
     return np.stack([np.cos(angle), np.sin(angle)])
 
 
 def acoustic(C: np.ndarray, nu: float, law: str, N: np.ndarray) -> np.ndarray:
-    """(n, 2): smallest and largest eigenvalue of Q(N) over mu among the directions N (d, directions), of the states C (n, d, d), from Q as in
-    the textbook: svk (N.S N) I + (lambda + mu) FN (x) FN + mu F F^T, neo-Hookean mu I + (lambda (1 - ln J) + mu) g (x) g."""
+    """Smallest and largest eigenvalue (n, 2) of Q(N) over mu among the directions N (d,
+    directions), for the states C (n, d, d).
+
+    Q is as in textbooks: svk (N.S N) I + (lambda + mu) FN (x) FN + mu F F^T, neo-Hookean mu I +
+    (lambda (1 - ln J) + mu) g (x) g.
+    """
     ratio, one, found = 2 * nu / (1 - 2 * nu), np.eye(len(N)), []
     for c in C:
-        F = np.linalg.cholesky(c).T                                     # F^T F = C: any will do
+        F = np.linalg.cholesky(c).T  # any F with F^T F = C will do
         if law == "svk":
             S = ratio * (np.trace(c) - len(N)) / 2 * one + c - one
             FN = F @ N
@@ -32,7 +39,7 @@ def acoustic(C: np.ndarray, nu: float, law: str, N: np.ndarray) -> np.ndarray:
 
 
 def states(found: dict) -> np.ndarray:
-    """C (100, 2, 2) of ellipticity.edp."""
+    """The states C (100, 2, 2) of ellipticity.edp."""
     a, b, c = (np.array([found[f"C{name}_{i}"] for i in STATES]) for name in ("11", "22", "12"))
     return np.moveaxis(np.array([[a, c], [c, b]]), 2, 0)
 
@@ -41,11 +48,13 @@ def states(found: dict) -> np.ndarray:
 @pytest.mark.parametrize("law", ["svk", "neohookean"])
 @pytest.mark.parametrize("nu", [0, 0.1, 0.25, 0.3, 0.45, 0.499])
 def test_closed_form_is_the_least_of_all_directions(measure, law, nu):
-    """Stretches from 0.05 to 2.5: the closed form is below every one of 2,000 directions, and by no more than their spacing makes."""
+    """For stretches from 0.05 to 2.5 the closed form is below all of 2,000 directions, by no more
+    than their spacing explains."""
     found = measure("ellipticity", law=law, nu=nu)
     closed, C = np.array([found[f"closed{i}"] for i in STATES]), states(found)
     tried = acoustic(C, nu, law, in_plane(2000))[:, 0]
-    largest = np.array([np.trace(c) for c in C]) / (1 - 2 * nu)         # of the size of Q's largest eigenvalue
+    # Magnitude of the largest eigenvalue of Q.
+    largest = np.array([np.trace(c) for c in C]) / (1 - 2 * nu)
     if law == "neohookean":
         largest = 1 + abs(closed) + 1 / (1 - 2 * nu)
     assert (closed <= tried + 1e-12 * largest).all()
@@ -58,8 +67,12 @@ def test_closed_form_is_the_least_of_all_directions(measure, law, nu):
 @pytest.mark.parametrize("nu", [0.1, 0.45])
 @pytest.mark.parametrize("body", ["", "-axisymmetric"])
 def test_closed_form_is_that_of_the_stress_of_the_program(measure, law, nu, body):
-    """The same states: the least second derivative of the energy along a (x) N, from differences of the program's own stress; of bodies of
-    revolution in the meridian plane, with stretches of the hoops from 0.3 to 2."""
+    """The closed form agrees with the smallest second derivative of the energy along a (x) N for
+    the same states.
+
+    The derivative comes from differences of the program's own stress. For bodies of revolution it
+    is in the meridian plane, with circumferential stretches from 0.3 to 2.
+    """
     found = measure(f"ellipticity{body}", law=law, nu=nu)
     closed, tried = (np.array([found[f"{name}{i}"] for i in STATES]) for name in ("closed", "found"))
     scale = 1 + abs(closed) + (np.array([np.trace(c) for c in states(found)]) if law == "svk" else 0)
@@ -68,15 +81,19 @@ def test_closed_form_is_that_of_the_stress_of_the_program(measure, law, nu, body
 
 @pytest.mark.parametrize("nu", [0, 0.1, 0.25, 0.3, 0.45, 0.49])
 def test_limits_of_ellipticity(nu):
-    """Equal compression in the plane loses ellipticity at J = 1/(2 (1 - nu)). Uniaxial strain loses it in a shear along the axes
-    at sqrt(nu/(1 - nu)), a little earlier in an oblique one, and for every nu before the limit point 1/sqrt(3)."""
+    """Equibiaxial compression in the plane loses ellipticity at J = 1/(2 (1 - nu)).
+
+    Uniaxial strain loses it in shear along the axes at sqrt(nu/(1 - nu)), in an oblique direction a
+    little earlier, and for every nu before the limit point 1/sqrt(3).
+    """
     least = lambda L1, L2: acoustic(np.array([np.diag([L1**2, L2**2])]), nu, "svk", in_plane(20_000))[0, 0]   # noqa: E731
     equal, aligned = np.sqrt(1 / (2 * (1 - nu))), np.sqrt(nu / (1 - nu))
     assert least(equal, equal) == pytest.approx(0, abs=1e-10)
     S22 = (1 / (1 - 2 * nu) + 1) * (aligned**2 - 1) / 2
-    assert S22 + 1 == pytest.approx(0, abs=1e-12)                       # Q_11 over mu at N = e_2
+    assert S22 + 1 == pytest.approx(0, abs=1e-12)  # Q_11 over mu at N = e_2
     low, high = 0.3, 1.0
     for _ in range(40):
         low, high = ((low + high) / 2, high) if least(1, (low + high) / 2) < 0 else (low, (low + high) / 2)
     assert high > aligned and high > 1 / np.sqrt(3)
-    assert high == pytest.approx({0: 0.586, 0.3: 0.706, 0.45: 0.906}.get(nu, high), abs=5e-4)   # as svk.idp says
+    # Values of svk.idp.
+    assert high == pytest.approx({0: 0.586, 0.3: 0.706, 0.45: 0.906}.get(nu, high), abs=5e-4)

@@ -1,4 +1,4 @@
-"""V20, V21: how long free flights are, and a body that strikes with several corners in turn."""
+"""V20, V21: duration of free flights, and a body that strikes with several corners in sequence."""
 
 import math
 
@@ -15,7 +15,8 @@ def square(**more) -> dict:
 
 @pytest.mark.parametrize("height, gravity, velocity", [(1e4, 9.81, 0), (1e3, 0, -1), (1, 9.81, 10)])
 def test_a_flat_face_lands_when_the_closed_form_says(march, height, gravity, velocity):
-    """A square that falls far, or is thrown up, is above the floor until its time of flight, to 1e-9 of it."""
+    """A square that falls far, or is thrown upwards, reaches the floor at its time of flight, to a
+    relative error of 1e-9."""
     body = square(position=[0, height + 0.05], velocity=[0, velocity], mesh_size=0.05, contact_mesh_size=0.05)
     time = (velocity + math.sqrt(velocity**2 + 2 * gravity * height)) / gravity if gravity else -height / velocity
     found = march(scene(body, obstacles=(plane(),), gravity=gravity, end_time=time * (1 + 1e-6)))
@@ -25,8 +26,13 @@ def test_a_flat_face_lands_when_the_closed_form_says(march, height, gravity, vel
 
 @pytest.mark.robustness
 def test_a_square_strikes_with_three_corners(march):
-    """A square of 0.1 m dropped at 20 degrees at 2 m/s touches again and again until it is gone: impulse, rebound and spin of a run of 0.06 s at accuracy
-    0.002. The energy stays to 1e-9; what the impulses do is momentum, and their moments about the centre the spin."""
+    """A square of 0.1 m dropped at 20 degrees with 2 m/s comes into contact repeatedly until it
+    rebounds.
+
+    Impulse, rebound and spin agree with a run of 0.06 s at accuracy 0.002. The energy is constant
+    to 1e-9, the impulses equal the change of momentum, and their moments about the centre the
+    change of spin.
+    """
     body = square(position=[0, 0.08], angle=20, velocity=[0, -2])
     found = march(scene(body, obstacles=(plane(),), **RUBBER, accuracy=1.25e-3))
     s, history = found.summary, found.history

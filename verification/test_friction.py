@@ -1,4 +1,5 @@
-"""The disc with friction: balances of energy, momentum and angular momentum, symmetry, integrators, body forces."""
+"""The disc with friction: balances of energy, momentum and angular momentum, symmetry, integrators,
+body forces."""
 
 import math
 
@@ -10,14 +11,16 @@ from tests.support.triangles import whole_of
 
 COARSE = dict(mesh_size=0.025, contact_mesh_size=0.0079, accuracy=0.03, slip_velocity=0.1)
 RUBBING = dict(friction_static=0.7, friction_dynamic=0.5)
-OBLIQUE = dict(law="neohookean", speed=12, angle=60) | RUBBING | COARSE   # the paper's case (3.1), on a coarse mesh
+# Section 3.1 of the paper, on a coarse mesh.
+OBLIQUE = dict(law="neohookean", speed=12, angle=60) | RUBBING | COARSE
 MASS = 1722 * math.pi * 0.05**2
 
 
 # ---- balances
 
 def check_balances(result):
-    """Energy at every step, friction that only takes energy, forces that are the change of momentum (the paper's definition)."""
+    """Checks energy in every step, non-negative friction work, and forces against the change of
+    momentum (the definition of the paper)."""
     h = result.history
     assert abs(h["balance"]).max() < 1e-8 * h["kinetic"][0]
     total = h["kinetic"] + h["elastic"] + h["contact"] + h["friction_work"] - h["external_work"]
@@ -35,8 +38,10 @@ def check_balances(result):
     *(("neohookean", 12, transition, regularization) for transition in ("jump", "smooth") for regularization in ("linear", "linear-printed", "sqrt", "tanh")),
     ("svk", 6, "jump", "linear"), ("svk", 6, "smooth", "tanh")])
 def test_energy_and_momentum_are_accounted_for(disc, law, speed, transition, regularization):
-    """At every step the energy that is left and the work of friction add up to the energy at the start within 1e-8,
-    friction never gives energy back, and both force columns are the change of momentum."""
+    """In every step energy and friction work add up to the initial energy within 1e-8.
+
+    Friction never returns energy, and both columns of forces are the change of momentum.
+    """
     result = disc(**OBLIQUE | dict(law=law, speed=speed, regularization=regularization, friction_transition=transition))
     check_balances(result)
     s = result.summary
@@ -46,15 +51,19 @@ def test_energy_and_momentum_are_accounted_for(disc, law, speed, transition, reg
 
 @pytest.mark.robustness
 def test_balances_hold_at_a_finer_setting(disc):
-    """The same at a better accuracy and a smaller slip velocity."""
+    """The same with a better accuracy and a smaller slip velocity."""
     check_balances(disc(**OBLIQUE | dict(mesh_size=8e-3, contact_mesh_size=2.5e-3, accuracy=3e-3, slip_velocity=0.01)))
 
 
 @pytest.mark.parametrize("law", ["svk", "neohookean"])
 @pytest.mark.parametrize("integrator", ["energy-momentum", "midpoint"])
 def test_each_step_obeys_the_momentum_principles(measure, law, integrator):
-    """In every step of a spinning, falling, rubbing disc the change of momentum, of angular momentum about a fixed point
-    and of the friction work are those of the tractions of single points, which obey Coulomb's law."""
+    """In every step of a spinning, falling disc with friction, the tractions of single points
+    satisfy the momentum balances.
+
+    Their sums give the changes of momentum, of angular momentum about a fixed point and of friction
+    work. They obey Coulomb's law.
+    """
     found = measure("rubbing-disc", law=law, integrator=integrator, speed=6, spin=40, angle=50, gravity=300, body_force_x=100,
                     dt=4e-5, end_time=6e-3, mesh_size=0.02, contact_mesh_size=0.006, tolerance=2e-14, **RUBBING)
     assert found["state"] == 0 and 50 < found["touched"] < found["steps"] and found["spun"] < -10
@@ -64,7 +73,8 @@ def test_each_step_obeys_the_momentum_principles(measure, law, integrator):
 
 @pytest.mark.parametrize("spin, sense", [(-400, 1), (400, -1)])
 def test_friction_acts_against_the_slip(disc, spin, sense):
-    """A disc that spins and falls straight is driven the way its lowest point does not go, and its spin is slowed."""
+    """Friction accelerates a spinning disc with vertical velocity against the motion of its lowest
+    point, and slows its spin."""
     result = disc(**OBLIQUE | dict(angle=90, speed=6, spin=spin))
     check_balances(result)
     assert sense * result.summary["rebound_vx"] > 1 and abs(result.summary["rebound_spin"]) < 300
@@ -74,7 +84,8 @@ def test_friction_acts_against_the_slip(disc, spin, sense):
 
 @pytest.mark.parametrize("angle", [90, 60])
 def test_coefficients_of_zero_are_no_friction(disc, angle):
-    """With both coefficients zero every number of the history is that of the run that was not told about friction."""
+    """With both coefficients zero, every number of the history equals that of a run without
+    friction entries."""
     settings = COARSE | dict(law="neohookean", speed=6, angle=angle)
     without, zero = disc(**settings).history, disc(friction_static=0, friction_dynamic=0, regularization="tanh", **settings).history
     assert without.keys() == zero.keys()
@@ -84,7 +95,8 @@ def test_coefficients_of_zero_are_no_friction(disc, angle):
 
 
 def test_friction_fades_with_its_coefficient(disc):
-    """With a coefficient of 1e-6 the impact is the frictionless one but for 1e-5, and loses 1e-6 of the impulse along the plane."""
+    """With a coefficient of 1e-6 the impact agrees with the frictionless one to 1e-5 and loses 1e-6
+    of the impulse along the plane."""
     settings = dict(law="neohookean", speed=6, angle=60)
     without = disc(**settings | COARSE).summary
     little = disc(friction_static=1e-6, friction_dynamic=1e-6, **settings | COARSE).summary
@@ -94,7 +106,7 @@ def test_friction_fades_with_its_coefficient(disc):
 
 
 def test_nothing_rubs_where_nothing_slides(measure, tmp_path):
-    """A rigid body that falls straight (V8) does with friction what it does without."""
+    """A rigid body that falls vertically (V8) behaves the same with and without friction."""
     histories = []
     for friction in (0, 0.7):
         measure("impact", nu=0, radius=0.05, mesh_size=0.0125, speed=1, young=1e12, penalty=1e7, dt=4e-5, friction_static=friction,
@@ -107,11 +119,13 @@ def test_nothing_rubs_where_nothing_slides(measure, tmp_path):
 
 
 @pytest.mark.few(2)
-# With the jump from static to dynamic the solver's round-off decides when a point that is about to slip does so: the
-# law itself leaves open what friction does then, so only the motion is compared there.
+# With the jump from static to dynamic friction, round-off in the solver decides when a point that
+# is about to slip does so. The law itself does not determine the friction then, so that only the
+# motion is compared.
 @pytest.mark.parametrize("regularization, static, band", [("linear", 0.5, 1e-5), ("sqrt", 0.5, 1e-5), ("linear", 0.7, 2e-2)])
 def test_half_a_rubbing_disc_is_the_whole_disc(disc, tmp_path, regularization, static, band):
-    """At a normal impact friction holds both halves back alike: half and whole give the same history on a mirrored mesh."""
+    """At a normal impact friction acts symmetrically: half and whole disc give the same history on
+    a mirrored mesh."""
     part = mesh.disc(0.05, 0.015, 0.006, True)
     mesh.write(part, tmp_path / "half.msh")
     mesh.write(whole_of(part), tmp_path / "full.msh")
@@ -121,7 +135,8 @@ def test_half_a_rubbing_disc_is_the_whole_disc(disc, tmp_path, regularization, s
     assert half.summary["friction_work"] > 5e-3 * half.summary["energy_initial"]
     of_friction = () if static > 0.5 else ("friction_work", "sliding_fraction")
     for name in ("normal_force", "kinetic", "elastic", "contact", "y", "vy", "max_penetration", "contact_size", *of_friction):
-        a, b = half.history[name], np.interp(half.history["t"], full.history["t"], full.history[name])   # a jump may cost a step more
+        # A jump of mu may cost a further step.
+        a, b = half.history[name], np.interp(half.history["t"], full.history["t"], full.history[name])
         assert abs(a - b).max() < band * abs(a).max(), name
     assert abs(half.history["friction_force"]).max() == 0
     even = 1e-6 if static == 0.5 else band
@@ -132,9 +147,10 @@ def test_half_a_rubbing_disc_is_the_whole_disc(disc, tmp_path, regularization, s
 
 
 def test_two_ways_are_mirror_images(disc):
-    """Spinning the other way at a normal impact gives the mirror image of the motion."""
+    """At a normal impact the opposite spin gives the mirror image of the motion."""
     left, right = (disc(**OBLIQUE | dict(angle=90, speed=6, spin=spin)).summary for spin in (400, -400))
-    assert left["rebound_vx"] == pytest.approx(-right["rebound_vx"], rel=0.01)   # the mesh itself is not a mirror image
+    # The mesh itself is not symmetric.
+    assert left["rebound_vx"] == pytest.approx(-right["rebound_vx"], rel=0.01)
     assert left["rebound_spin"] == pytest.approx(-right["rebound_spin"], rel=0.01)
     assert left["friction_work"] == pytest.approx(right["friction_work"], rel=0.03)
 
@@ -142,12 +158,13 @@ def test_two_ways_are_mirror_images(disc):
 # ---- integrators
 
 @pytest.mark.few(1)
-# Bands for the rebound along and across the plane and the spin, for the work of friction, and for the energy balance.
-# Backward Euler loses 7 % of the energy at this step, and 9 % of the friction work with it.
+# Tolerances of rebound (both components and spin), friction work and energy balance. Backward Euler
+# loses 7 % of the energy at this step, and 9 % of the friction work.
 @pytest.mark.parametrize("integrator, rebound, work, balance", [
     ("midpoint", 1e-3, 5e-3, 1e-4), ("newmark", 1e-3, 5e-3, 2e-4), ("bdf2", 3e-3, 1e-2, 3e-3), ("backward-euler", 3e-2, 0.15, 0.15)])
 def test_integrators_agree_at_small_steps(disc, integrator, rebound, work, balance):
-    """With friction, too, every implicit integrator tends to the answer of the conserving one."""
+    """With friction, too, every implicit integrator converges to the results of the energy-momentum
+    integrator."""
     settings = OBLIQUE | dict(dt=1e-5, penalty=1e9)
     reference, found = disc(**settings).summary, disc(integrator=integrator, **settings).summary
     for name in ("rebound_vx", "rebound_vy", "rebound_spin"):
@@ -158,8 +175,11 @@ def test_integrators_agree_at_small_steps(disc, integrator, rebound, work, balan
 
 
 def test_explicit_steps_agree(disc):
-    """Central differences agree with the conserving integrator within the error of the lumped mass on this mesh (3 %, of the work 10 %), and
-    find the same sticking."""
+    """Central differences agree with the energy-momentum integrator to 3 % (the friction work to 10
+    %), the error of the lumped mass on this mesh.
+
+    The sticking time agrees, too.
+    """
     settings = OBLIQUE | dict(penalty=1e9, slip_velocity=1)
     reference, found = disc(dt=1e-5, **settings).summary, disc(integrator="central-difference", **settings).summary
     for name, band in (("rebound_vx", 0.03), ("rebound_vy", 0.03), ("rebound_spin", 0.03), ("friction_work", 0.1), ("sticking_time", 0.05)):
@@ -170,7 +190,8 @@ def test_explicit_steps_agree(disc):
 # ---- body forces
 
 def test_flight_under_a_body_force_is_a_parabola(disc):
-    """Far above the plane gravity and body force give the exact parabola, and the balance counts their work."""
+    """High above the plane gravity and body force give the exact parabola, and the balance includes
+    their work."""
     bx, by, g, speed, time = -7.0, 3.0, 12.0, 4.0, 0.1
     result = disc(height=5, speed=speed, angle=30, spin=11, gravity=g, body_force_x=bx, body_force_y=by, end_time=time, **COARSE)
     h = result.history
@@ -182,13 +203,15 @@ def test_flight_under_a_body_force_is_a_parabola(disc):
     assert h["vx"][-1] == pytest.approx(vx + bx * time, rel=1e-10)
     assert h["vy"][-1] == pytest.approx(vy + (by - g) * time, rel=1e-10)
     assert h["spin"][-1] == pytest.approx(11, rel=1e-10)
-    assert h["external_work"][-1] == pytest.approx(MASS * (bx * x + (by - g) * y), rel=1e-2)   # the mesh lacks some area
+    # The mesh lacks some area.
+    assert h["external_work"][-1] == pytest.approx(MASS * (bx * x + (by - g) * y), rel=1e-2)
     assert h["external_work"][-1] == pytest.approx(h["kinetic"][-1] - h["kinetic"][0], rel=1e-10)
     assert abs(h["balance"]).max() < 1e-10 * h["kinetic"][0]
 
 
 def test_rebound_under_a_body_force_is_a_parabola(disc):
-    """Step by step, after a frictional impact, the centre of the vibrating disc follows its parabola exactly."""
+    """After an impact with friction, the centre of the vibrating disc follows its parabola exactly
+    in every step."""
     bx, by, g = -150.0, 60.0, 260.0
     result = disc(**OBLIQUE | dict(speed=6, gravity=g, body_force_x=bx, body_force_y=by, end_time=9e-3))
     h = result.history
@@ -206,7 +229,7 @@ def test_rebound_under_a_body_force_is_a_parabola(disc):
 
 
 def test_body_force_and_gravity_add_up(disc):
-    """A body force towards the plane is gravity: the same histories, with friction."""
+    """A body force towards the plane has the effect of gravity: equal histories, with friction."""
     settings = OBLIQUE | dict(speed=6)
     a, b = disc(gravity=400, **settings).history, disc(body_force_y=-400, **settings).history
     for name in a:

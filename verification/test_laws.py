@@ -1,4 +1,5 @@
-"""Laws with numbers of their own, Mooney-Rivlin and Ogden (edp/core/law), in every dimension: what holds for them holds for any in the list of laws.idp."""
+"""Mooney-Rivlin and Ogden laws (edp/core/law) in every dimension, as examples of laws with
+parameters of their own."""
 
 import re
 
@@ -8,14 +9,17 @@ import pytest
 from verification import stress
 from verification.test_residual_and_tangent import MOONEY, OGDEN
 
-TERMS = ((1.3, 0.5), (5.0, 0.2), (-2.0, 0.3))                    # exponents and shares of OGDEN
-NEOHOOKEAN = {"mooney-rivlin": "0", "ogden": "2,1"}              # law_parameters with which they are neo-Hookean
+TERMS = ((1.3, 0.5), (5.0, 0.2), (-2.0, 0.3))  # exponents and shares of OGDEN
+NEOHOOKEAN = {"mooney-rivlin": "0", "ogden": "2,1"}  # law_parameters that make them neo-Hookean
 NU = 0.45
 SCRIPTS = {"disc-plane": {"accuracy": 0.1}, "ball-axisymmetric": {"accuracy": 0.1}, "ball-plane": {"accuracy": 0.2, "mesh_size": 0.03, "contact_mesh_size": 0.015}}
 
 
 def test_stress_is_that_of_the_formula(measure, tmp_path):
-    """sigma of x = F X is F S F^T/J, S = mu [(1-b) I + b (I1 I - C)] + (l ln J - mu (1+b)) C^-1, l = lambda - 2 b mu, to the file's 9 digits."""
+    """sigma of x = F X is F S F^T/J to the 9 digits of the file.
+
+    S = mu [(1-b) I + b (I1 I - C)] + (l ln J - mu (1+b)) C^-1 with l = lambda - 2 b mu.
+    """
     largest = measure("homogeneous", degree=2, young=stress.YOUNG, nu=stress.NU, accuracy=0.1, out=tmp_path, **MOONEY)
     F, mu, b = stress.F, stress.MU, float(MOONEY["law_parameters"])
     C, J, I = F.T @ F, np.linalg.det(F), np.eye(3)
@@ -24,7 +28,7 @@ def test_stress_is_that_of_the_formula(measure, tmp_path):
 
 
 def energy(law: str, L: np.ndarray, nu: float) -> float:
-    """W over mu of principal stretches L."""
+    """W over mu for the principal stretches L."""
     ratio, J = 2 * nu / (1 - 2 * nu), np.prod(L)
     if law == "mooney-rivlin":
         b, I1, I2 = 0.3, np.sum(L**2), np.sum((J / L) ** 2)
@@ -33,13 +37,13 @@ def energy(law: str, L: np.ndarray, nu: float) -> float:
 
 
 def slope(law: str, of, x: float, nu: float) -> float:
-    """dW/dx over mu of the stretches of(x), by differences of eighth order with a step of 0.01."""
+    """dW/dx over mu for the stretches of(x), by differences of eighth order with a step of 0.01."""
     weights = {1: 4 / 5, 2: -1 / 5, 3: 4 / 105, 4: -1 / 280}
     return sum(w * (energy(law, of(x + 0.01 * k), nu) - energy(law, of(x - 0.01 * k), nu)) for k, w in weights.items()) / 0.01
 
 
 def free(law: str, of, nu: float) -> float:
-    """The stretch a of free sides, where W(of(a)) is least, by bisection of its slope."""
+    """The stretch a of free sides, at which W(of(a)) is least, by bisection of its slope."""
     low, high = 0.15, 3.0
     for _ in range(60):
         a = (low + high) / 2
@@ -49,8 +53,13 @@ def free(law: str, of, nu: float) -> float:
 
 @pytest.mark.parametrize("given", [MOONEY, OGDEN], ids=lambda given: given["law"])
 def test_curves_of_tension_and_shear_are_those_of_the_formula(measure, given):
-    """P = dW/dL where the sides are free, half of it in equibiaxial tension, and dW/dg in shear, at stretches 0.5 to 2.75 and shears to 2.25, as the energy of the principal
-    stretches has them, to 1e-6; energies to 1e-12; equal stretches (L = 1, g = 0; two are equal in all of tension) leave no stress and nothing that is not a number."""
+    """Tension and shear curves agree with derivatives of the energy in principal stretches.
+
+    P = dW/dL with free sides, half of it in equibiaxial tension, and dW/dg in shear agree to 1e-6
+    for stretches 0.5 to 2.75 and shears to 2.25; energies to 1e-12. Without deformation (L = 1, g =
+    0) there is no stress; equal stretches, two of which are equal in all of tension, give finite
+    numbers.
+    """
     found, law = measure("curves", nu=NU, mesh_size=0.025, contact_mesh_size=0.015, **given), given["law"]
     for i in range(10):
         L, g = 0.5 + 0.25 * i, 0.25 * i
@@ -66,7 +75,8 @@ def test_curves_of_tension_and_shear_are_those_of_the_formula(measure, given):
 @pytest.mark.parametrize("numbers, said", [("2", "shares that add up to 0"), ("2,0.5,4,0.4", "shares that add up to 0.9"), ("0,1", "the exponent 0 with share 1"),
                                            ("2,1.5,-2,-0.5", "the exponent -2 with share -0.5"), ("1,1,1,1,1,1,1,1", "is not what ogden takes (accepted: one to three")])
 def test_bad_terms_are_refused(disc, numbers, said):
-    """Exponents without shares, of 0 or too many, shares below 0 or without the sum 1: one line."""
+    """Exponents without shares, zero or too many exponents, negative shares or a sum other than 1
+    raise one line."""
     with pytest.raises(Exception, match=re.escape(said)):
         disc(law="ogden", law_parameters=numbers, accuracy=0.2)
 
@@ -75,7 +85,8 @@ def test_bad_terms_are_refused(disc, numbers, said):
 @pytest.mark.parametrize("own", [MOONEY, OGDEN], ids=lambda given: given["law"])
 @pytest.mark.parametrize("script", SCRIPTS)
 def test_impact_keeps_the_energy(disc, script, own):
-    """Energy to 1e-9 and momentum to round-off; other than neo-Hookean, which it is with the numbers for that."""
+    """Energy is constant to 1e-9 and momentum to round-off. Results differ from neo-Hookean, unless
+    the parameters make the law neo-Hookean."""
     runs = {law: disc(script=script, speed=5, nu=0.45, **SCRIPTS[script], **given).summary
             for law, given in {"own": own, "none": own | {"law_parameters": NEOHOOKEAN[own["law"]]}, "neo-Hookean": {"law": "neohookean"}}.items()}
     assert all(run["energy_drift"] < 1e-9 and run["momentum_drift"] < 1e-12 for run in runs.values())

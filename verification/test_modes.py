@@ -1,4 +1,5 @@
-"""Natural modes of the free disc and ball against Love's and Lamb's closed forms, and the energy in them against that of the vibration."""
+"""Natural modes of the free disc and ball against Love's and Lamb's closed forms, and their energy
+against the vibration energy."""
 
 import math
 
@@ -23,13 +24,14 @@ def of(tmp_path, name: str, values: dict) -> tuple[pd.DataFrame, run.Record]:
 
 
 def reduced(table: pd.DataFrame) -> np.ndarray:
-    """omega R/c_s."""
+    """The eigenvalues omega R/c_s of a table of modes."""
     shear = math.sqrt(7e6 / (2 * (1 + NU)) / 1722)
     return 2 * math.pi * table.frequency.to_numpy() * 0.05 / shear
 
 
 def test_frequencies_of_the_disc(tmp_path):
-    """The first twelve modes of the whole disc to 0.5 %, pairs as pairs; of its half those that mirror."""
+    """The first twelve modes of the whole disc agree to 0.5 %, with double modes as pairs; the half
+    disc has its symmetric modes."""
     found, exact = reduced(of(tmp_path, "disc-normal", FINE | {"symmetry": "full", "modes": 12})[0]), modes.disc(NU, 6)
     assert len(found) == 12 and found == pytest.approx(exact[:12], rel=5e-3)
     half = reduced(of(tmp_path, "disc-normal", FINE | {"modes": 6})[0])
@@ -38,7 +40,8 @@ def test_frequencies_of_the_disc(tmp_path):
 
 
 def test_frequencies_of_the_ball(tmp_path):
-    """As a body of revolution it has one spheroidal mode of each order, to 0.5 %, and no torsional one; in three dimensions these, too."""
+    """The body of revolution has one spheroidal mode of each order, to 0.5 %, and no torsional
+    modes; the ball in three dimensions has both."""
     exact = np.sort(np.concatenate([modes.spheroidal(NU, n, 6) for n in range(9)]))
     found = reduced(of(tmp_path, "ball-axisymmetric", FINE | {"modes": 6})[0])
     assert found == pytest.approx(exact[:6], rel=5e-3)
@@ -49,7 +52,8 @@ def test_frequencies_of_the_ball(tmp_path):
 
 @pytest.mark.parametrize("name, values", [("disc-normal", {}), ("disc-normal", {"angle": 60, "spin": 20, "friction_static": 0.3}), ("ball-axisymmetric", {"speed": 2})], ids=str)
 def test_energies_add_up(tmp_path, name, values):
-    """After a slow impact the energies of all modes add up to that of the vibration to 1 %, the strain to that of the law."""
+    """After a slow impact the energies of all modes add up to the vibration energy to 1 %, the
+    strain energies to that of the law."""
     table, found = of(tmp_path, name, {"accuracy": 0.3, "mesh_size": 0.02, "contact_mesh_size": 0.01, "modes": 500} | values)
     assert table.energy.sum() == pytest.approx(found.summary["vibration_energy"], rel=0.01)
     assert table.strain_energy.sum() == pytest.approx(found.history["elastic"][-1], rel=0.02)
@@ -57,7 +61,10 @@ def test_energies_add_up(tmp_path, name, values):
 
 
 def test_spectrum_of_a_force(tmp_path):
-    """Of a half sine in closed form: 2 T/pi cos(pi f T)/|1 - (2 f T)^2|; the figure is drawn with as many modes as were asked for."""
+    """The spectrum of a half sine agrees with 2 T/pi cos(pi f T)/|1 - (2 f T)^2|.
+
+    The figure is drawn with the requested number of modes.
+    """
     t, period = np.linspace(0, 1, 2001)[1:], 1.0
     f = np.array([0.0, 0.8, 2.3])
     exact = 2 / np.pi * abs(np.cos(np.pi * f * period) / (1 - (2 * f * period) ** 2))
@@ -68,8 +75,11 @@ def test_spectrum_of_a_force(tmp_path):
 
 @pytest.mark.robustness
 def test_modes_of_a_body_that_turns_about_any_axis(tmp_path):
-    """In axes that turn with the body: a ball that spins about x as it falls has, to the mesh, the energies in its modes of one that spins about z, and no
-    more than its vibration has."""
+    """Modes are computed in axes that rotate with the body.
+
+    To the accuracy of the mesh, a falling ball that spins about x has the same modal energies as
+    one that spins about z. They do not exceed its vibration energy.
+    """
     found = []
     for name, spin in (("about z", (0, 0, 300)), ("about x", (300, 0, 0))):
         scene = solids.Scene([solids.ball((0, 0, 0), 0.05, 2, shift=(0, 0.051, 0), velocity=(0, -2, 0), spin=spin)], [("plane", (0, 0, 0, 0, 1, 0), (0, 0, 0))])

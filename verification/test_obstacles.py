@@ -1,4 +1,8 @@
-"""V2: rigid obstacles (planes, circles, bowls, polylines, expressions), at rest and moving, against closed forms and the identities of a step."""
+"""V2: rigid obstacles (planes, circles, hollow circles, polylines, expressions), at rest and
+moving.
+
+They are compared with closed forms and the identities of a step.
+"""
 
 import numpy as np
 import pandas as pd
@@ -20,7 +24,8 @@ def found(measure):
 @pytest.mark.few(4)
 @pytest.mark.parametrize("shape", SHAPES)
 def test_gap_and_normal(found, shape):
-    """The gap is the closed form, also deep inside; it is continuous, and the unit normal is its gradient."""
+    """The gap agrees with the closed form, also far inside. It is continuous, and the unit normal
+    is its gradient."""
     assert found[f"gap{shape}"] < 1e-14
     assert found[f"stretch{shape}"] < 1 + 1e-9
     assert found[f"unit{shape}"] < 1e-15 and found[f"slope{shape}"] < 1e-7
@@ -28,14 +33,20 @@ def test_gap_and_normal(found, shape):
 
 @pytest.mark.parametrize("shape", SHAPES)
 def test_rows_give_the_change_of_the_gap(found, shape):
-    """q0 + B d + motion = q1 and the slip along the middle tangent, to round-off, for steps of 1 m down to 1e-9 m, also across corners."""
+    """q0 + B d + motion = q1 and the slip along the middle tangent are exact to round-off for steps
+    of 1 m to 1e-9 m, also across corners."""
     assert found[f"begin{shape}"] < 1e-14 and found[f"end{shape}"] < 1e-14
     assert found[f"place{shape}"] < 1e-14 and found[f"slip{shape}"] < 1e-14
 
 
 @pytest.mark.parametrize("shape", SHAPES)
 def test_normal_force_is_along_the_normal_of_the_middle(found, shape):
-    """Where a slot stays on one piece B and S are orthogonal; where it changes pieces, or has none that is flat or round, the rest of B is along the motion."""
+    """The gap Jacobian B and the slip Jacobian S are orthogonal if a contact candidate stays on one
+    plane or round segment.
+
+    If it changes segments, or the segment is neither flat nor round, the remainder of B is along
+    the motion.
+    """
     assert found[f"across{shape}"] < (1e-12 if shape in IMPLICIT else 1e-14) and found[f"beside{shape}"] < 1e-13
     assert (found[f"pieces{shape}"] > 0.01) == (shape in [*CORNERS, "circleImplicit"])
 
@@ -46,7 +57,7 @@ def test_frictionless_forces_have_no_moment_about_the_centre(found, shape):
 
 
 def test_inclined_plane_is_the_level_one_turned(found):
-    """Penetrations, normal and tangential motion, moving planes included."""
+    """Penetrations, normal and tangential motion agree, also for moving planes."""
     assert found["turned"] < 1e-14
 
 
@@ -58,16 +69,18 @@ def test_only_slots_within_reach_have_rows(found):
     assert found["within"] == found["expected"] and 0 < found["within"] < found["slots"]
     assert found["touching"] > 0.01 and found["placeNear"] < 1e-14 and found["stray"] == 0
     assert found["size"] == 1 and found["fixed"] == 0
-    assert 1 <= found["way"] < 1.5   # of the largest motion, a bound
+    # An upper bound of the largest motion.
+    assert 1 <= found["way"] < 1.5
 
 
 def test_slots_within_reach_are_found_wherever_the_body_goes(found):
-    """On a way to and fro, against obstacles that move to and fro: those whose gap is below the reach, and no others."""
+    """While the body and the obstacles move to and fro, exactly the contact candidates with a gap
+    below the search distance are found."""
     assert found["none"] == 0 and found["missed"] == 0 and found["most"] < found["slots"]
 
 
 def test_rows_of_planes_are_built_once(measure):
-    """Planes alone, both of them moving: constant rows, and with them the same identities."""
+    """Planes, both of them moving, have constant Jacobians that satisfy the same identities."""
     planes = measure("obstacles", planes=1)
     assert planes["fixed"] == 1 and planes["kept"] == 0
     for shape in ("plane", "inclined"):
@@ -77,14 +90,15 @@ def test_rows_of_planes_are_built_once(measure):
 @pytest.mark.few(1)
 @pytest.mark.parametrize("friction", [0, 1])
 def test_energy_of_particles_between_moving_obstacles(measure, friction):
-    """Kinetic energy, potential and friction work less the work of the obstacles stay what they were, also across corners, to round-off."""
+    """Kinetic energy, potential and friction work minus the work of the obstacles are constant to
+    round-off, also across corners."""
     flight = measure("obstacle-flight", friction=friction)
     assert flight["hits"] > 400 and flight["corners"] > 5 and flight["work"] > 0.001 and (flight["loss"] > 0.1) == (friction == 1)
     assert flight["residual"] < 1e-12 and flight["balance"] < 1e-12
 
 
 def falling(obstacle, **body):
-    """A disc that hits an obstacle with friction."""
+    """A scene with a disc that hits an obstacle with friction."""
     return {"law": "svk", "young": 7e6, "nu": 0.4, "density": 1722, "accuracy": 0.05, "obstacle": [{"name": "floor"} | obstacle], "contact": {"friction_static": 0.3},
             "body": [{"name": "disc", "shape": "disc", "radius": 0.05, "position": [0.006, 0.053], "velocity": [0.5, -3]} | body]}
 
@@ -93,17 +107,22 @@ def falling(obstacle, **body):
     ([0.006, 0.053], {"kind": "plane", "point": [0, 0], "normal": [0, 1]}, "2*y"),
     ([0.01, 0.153], {"kind": "circle", "centre": [0, 0], "radius": 0.1, "velocity": [0.1, 0.05]}, "x*x + y*y - 0.01")])
 def test_an_expression_of_a_plane_or_circle_is_one(march, position, kind, distance):
-    """The same history as of the built-in kind, mesh, flight and touch included; largest penetrations count what goes in between contact points of the latter only."""
+    """The history equals that of the built-in kind, including mesh, flight and onset of contact.
+
+    Only the built-in kind includes penetrations between contact points in the largest penetration.
+    """
     expression = {key: value for key, value in kind.items() if key == "velocity"} | {"kind": "implicit", "distance": distance}
     one, other = (march(falling(obstacle, position=position)) for obstacle in (kind, expression))
     for column in set(one.history) - {"balance", "newton_iterations", "sliding_fraction", "max_penetration"}:
-        pressed = one.history["normal_force"] > (1e-6 * max(one.history["normal_force"]) if column.startswith("contact_") else -1)   # points under round-off count, too
+        # Points with a force below round-off are counted, too.
+        pressed = one.history["normal_force"] > (1e-6 * max(one.history["normal_force"]) if column.startswith("contact_") else -1)
         ours, theirs = (np.asarray(run.history[column])[pressed] for run in (other, one))
         assert ours == pytest.approx(theirs, rel=1e-6, abs=1e-6 * abs(theirs).max()), column
 
 
 def test_a_disc_on_a_wavy_floor_keeps_energy_and_momentum(march, tmp_path):
-    """Energy to 1e-9 of that at the start; what the disc gains of momentum is the impulse of the floor."""
+    """The energy is constant to 1e-9 of its initial value. The change of momentum of the disc is
+    the impulse of the floor."""
     found = march(falling({"kind": "implicit", "distance": "y - 0.002*sin(200*x)"}))
     impulse = pd.read_csv(next(tmp_path.glob("**/contacts.csv")), comment="#")
     assert found.summary["energy_drift"] < 1e-9 and found.summary["contact_time"] > 1e-3
@@ -114,7 +133,8 @@ def test_a_disc_on_a_wavy_floor_keeps_energy_and_momentum(march, tmp_path):
 
 @pytest.mark.robustness
 def test_a_dish_of_revolution_is_the_same_in_space(tmp_path):
-    """A ball in a paraboloid, of revolution and a quarter of it in three dimensions: impulse within 1 %, energy to 1e-9."""
+    """A ball in a paraboloid of revolution, axisymmetric and as a quarter in three dimensions:
+    impulse within 1 %, energy to 1e-9."""
     ball = {"law": "neohookean", "young": 7e6, "nu": 0.4, "density": 1722, "accuracy": 0.1}
     shape = {"name": "ball", "shape": "ball", "radius": 0.05}
     found = [runs.bodies(tmp_path / of, ball | {"dimension": of, "body": [shape | place], "obstacle": [{"kind": "implicit", "distance": distance}]})

@@ -1,4 +1,5 @@
-"""The conserving gap between deformable bodies (edp/core/contact/pair.idp), paper (9): a disc and a block, both randomly deformed."""
+"""The conserving gap between deformable bodies (edp/core/contact/pair.idp), paper (9), for a
+randomly deformed disc and block."""
 
 from pathlib import Path
 
@@ -9,7 +10,11 @@ ROUND_OFF = 1e-13
 
 
 def read(path: Path):
-    """Edges (body, 3 nodes, 2), points (body, position, penetration), degree, reach of the configuration that pair.edp wrote."""
+    """Reads the configuration that pair.edp wrote.
+
+    Returns edges (body, 3 nodes, 2), points (body, position, penetration), degree and search
+    distance.
+    """
     lines = path.read_text().splitlines()
     edges, points, degree, reach = lines[0].split()
     table = np.array([line.split() for line in lines[1:1 + int(edges)]], float)
@@ -22,7 +27,8 @@ def read(path: Path):
 
 
 def closest(x: np.ndarray, nodes: np.ndarray) -> float:
-    """Distance of a point to parabolas (n, 3 nodes, 2): the real roots of (y - x).y' in [0, 1], and both ends."""
+    """Distance of a point to parabolas (n, 3 nodes, 2), from the real roots of (y - x).y' in [0, 1]
+    and both ends."""
     a, m, b = nodes.transpose(1, 0, 2)
     A, B, C = a - x, -3 * a + 4 * m - b, 2 * a - 4 * m + 2 * b
     best = np.inf
@@ -34,7 +40,7 @@ def closest(x: np.ndarray, nodes: np.ndarray) -> float:
 
 
 def winding(x: np.ndarray, nodes: np.ndarray) -> float:
-    """How often the outline of parabolas goes round a point: 1 inside, 0 outside."""
+    """Winding number of the outline of parabolas about a point: 1 inside, 0 outside."""
     r = np.linspace(0, 1, 201)[:, None, None]
     a, m, b = nodes.transpose(1, 0, 2)
     y = (1 - r) * (1 - 2 * r) * a + 4 * r * (1 - r) * m + r * (2 * r - 1) * b - x
@@ -43,7 +49,8 @@ def winding(x: np.ndarray, nodes: np.ndarray) -> float:
 
 
 def kernel_is_the_scripts(found: dict) -> None:
-    """Of all steps: the compiled gap (edp/kernels/pairs.hpp) has the same slots and unknowns as the scripts that define it, and their numbers to round-off."""
+    """Asserts that the compiled gap (edp/kernels/pairs.hpp) has the same contact candidates and
+    unknowns as the scripts, with equal numbers to round-off, over all steps."""
     assert not found["built"] or found["slotsOff"] == 0 and max(found[name] for name in ("gapsOff", "rowsOff", "springsOff")) < 1e-12
 
 
@@ -54,11 +61,16 @@ CASES = [(2, 0.02, 0.05, 0), (1, 0.02, 0.05, 0.7), (2, 0.1, 0.1, 2.5), (1, 0.1, 
 @pytest.mark.parametrize("without", ["none", "kernels"])
 @pytest.mark.parametrize("degree, depth, noise, tilt", CASES)
 def test_rows_conserve(measure, degree, depth, noise, tilt, without):
-    """By the kernel and by the scripts: B d = q1 - q0, also when the step turns the pair by a radian, which changes no gap, or goes along the block by a third of an edge, forty times;
-    no row carries a force or a moment about the middle configuration, at vertices and kinks as on edges; a step begins with the penetrations the last ended with."""
+    """Kernel and scripts satisfy B d = q1 - q0.
+
+    This also holds if the step rotates the pair by a radian, which changes no gap, or moves it
+    along the block by a third of an edge, forty times. No row of B has a resultant force or moment
+    about the middle configuration, on edges, vertices and kinks. A step begins with the
+    penetrations at the end of the last step.
+    """
     found = measure("pair", degree=degree, depth=depth, noise=noise, tilt=tilt, without=without)
     assert found["randomInside"] > 10 and found["vertices"] > 0 or noise == 0
-    assert found["cornerGap"] < ROUND_OFF        # a point on a corner of the other body, exactly
+    assert found["cornerGap"] < ROUND_OFF  # a point exactly on a corner of the other body
     for name in ("random", "turn", "corner"):
         assert found[name + "Exact"] < ROUND_OFF and found[name + "Force"] < ROUND_OFF and found[name + "Moment"] < ROUND_OFF
         assert 0.1 < found[name + "Largest"] < 1.2
@@ -70,7 +82,8 @@ def test_rows_conserve(measure, degree, depth, noise, tilt, without):
 @pytest.mark.few(2)
 @pytest.mark.parametrize("degree, depth, noise, tilt", CASES)
 def test_gaps_are_those_of_an_exhaustive_search(measure, tmp_path_factory, degree, depth, noise, tilt):
-    """Distance to every edge of the other body by the roots of its cubic; inside by the winding number."""
+    """Gaps agree with the distances to all edges of the other body, by the roots of a cubic; the
+    winding number decides what is inside."""
     path = tmp_path_factory.mktemp("pair") / "configuration"
     measure("pair", degree=degree, depth=depth, noise=noise, tilt=tilt, place=path)
     edge_body, nodes, body, x, q, reach = read(path)
@@ -92,7 +105,8 @@ def test_gaps_are_those_of_an_exhaustive_search(measure, tmp_path_factory, degre
 @pytest.mark.parametrize("printed", [0, 1])
 @pytest.mark.parametrize("degree, depth, noise, tilt", CASES)
 def test_pairwise_rows_conserve(measure, degree, depth, noise, tilt, printed):
-    """The pairwise form (14), (15), as a repulsion and as printed: B d = q1 - q0, no force and no moment."""
+    """The pairwise form (14), (15), as a repulsion and as printed, satisfies B d = q1 - q0 without
+    resultant force and moment."""
     found = measure("pair", degree=degree, depth=depth, noise=noise, tilt=tilt, printed=printed)
     assert found["pairwise"] > 20 and found["pairwiseNear"] > 0
     assert found["pairwiseExact"] < ROUND_OFF and found["pairwiseForce"] < ROUND_OFF and found["pairwiseMoment"] < ROUND_OFF

@@ -1,4 +1,5 @@
-"""Bodies in three dimensions: the gap between them (edp/core/contact/pair.idp, paper (9)), rigid obstacles, and whole runs of edp/bodies-3d.edp."""
+"""Bodies in three dimensions: gap between bodies (edp/core/contact/pair.idp, paper (9)), rigid
+obstacles, and runs of edp/bodies-3d.edp."""
 
 import math
 from pathlib import Path
@@ -16,19 +17,25 @@ CASES = [{}, {"degree": 1, "tilt": 0.7}, {"tilt": 2.5, "depth": 0.1}, {"corner":
 
 @pytest.fixture
 def march(tmp_path):
-    """march(scene, name=value, ...): edp/bodies-3d.edp run for it."""
+    """march(scene, name=value, ...): a run of edp/bodies-3d.edp for the scene."""
     return lambda scene, name="run", **given: runs.solid_bodies(tmp_path / name, scene, **{"accuracy": 0.1} | given)
 
 
-# ---- rows
+# ---- gap Jacobians
 
 @pytest.mark.few(2)
-@pytest.mark.parametrize("without", ["none", pytest.param("kernels", marks=pytest.mark.robustness)])   # whose rows are held against these
+# Whose results the kernel must equal.
+@pytest.mark.parametrize("without", ["none", pytest.param("kernels", marks=pytest.mark.robustness)])
 @pytest.mark.parametrize("case", CASES)
 def test_rows_conserve(measure, case, without):
-    """By the kernel and by the scripts: B d = q1 - q0, also when the step turns the pair by a radian or goes along the block; no row of B, S_1, S_2 carries a force or a moment about the
-    middle configuration, inside faces as on edges and vertices; a turn of the pair changes no gap; a step begins with the penetrations the last ended with. Which of the faces that meet there is told, and that
-    they do, is not left to where Newton stops on each (tilt 2.5)."""
+    """Kernel and scripts satisfy B d = q1 - q0, also if the step rotates the pair by a radian or
+    moves it along the block.
+
+    No row of B, S_1, S_2 has a resultant force or moment about the middle configuration, inside
+    faces and on edges and vertices. A rotation of the pair changes no gap. A step begins with the
+    penetrations at the end of the last step. Which faces share a closest point, and that they share
+    it, does not depend on where Newton's method stops on each of them (tilt 2.5).
+    """
     found = measure("pair-3d", **case, without=without)
     assert found["randomInside"] > 10 and (found["edges"] > 8 or case.get("noise") == 0)
     for name in ("random", "turn"):
@@ -45,7 +52,10 @@ def shapes(r, s):
 
 
 def closest(x: np.ndarray, nodes: np.ndarray, grid: int = 24, rounds: int = 12) -> float:
-    """Distance of a point to curved faces (n, 6 nodes, 3): the best of a grid of places on each, then ever finer grids around the best of all."""
+    """Distance of a point to curved faces (n, 6 nodes, 3).
+
+    The best point of a grid on each face is refined on ever finer grids around the best of all.
+    """
     a, b = (v.ravel() for v in np.meshgrid(np.linspace(0, 1, grid), np.linspace(0, 1, grid), indexing="ij"))
     keep = a + b <= 1 + 1e-12
     away = np.linalg.norm(np.einsum("ga,fac->fgc", shapes(a[keep], b[keep]), nodes) - x, axis=-1)
@@ -64,7 +74,8 @@ def closest(x: np.ndarray, nodes: np.ndarray, grid: int = 24, rounds: int = 12) 
 
 @pytest.mark.robustness
 def test_gaps_are_those_of_an_exhaustive_search(measure, tmp_path_factory):
-    """Distance to every curved face of the other body; who is inside has a penetration."""
+    """Gaps agree with the distances to all curved faces of the other body; points inside have a
+    penetration."""
     path = tmp_path_factory.mktemp("pair") / "configuration"
     measure("pair-3d", place=path, noise=0.02)
     lines = path.read_text().splitlines()
@@ -84,8 +95,11 @@ def test_gaps_are_those_of_an_exhaustive_search(measure, tmp_path_factory):
 
 @pytest.mark.parametrize("degree", [2, 1])
 def test_rigid_obstacles(measure, degree):
-    """Planes, spheres and a bowl that move: gaps of the closed forms; B d and S d with the obstacles' own motion are exact; t1, t2, n is a frame; the force of a
-    round obstacle goes through its centre."""
+    """Moving planes, spheres and a hollow sphere: gaps agree with closed forms.
+
+    B d and S d with the motion of the obstacles are exact, t1, t2, n is a frame, and the force of a
+    round obstacle goes through its centre.
+    """
     found = measure("obstacles-3d", degree=degree)
     assert found["near"] > 500
     assert max(found[name] for name in ("gap", "exact", "slip", "frame", "moment", "force")) < ROUND_OFF
@@ -98,7 +112,8 @@ def spread(history, *names: str) -> float:
 
 
 def oblique(friction: float) -> Scene:
-    """Two balls of unlike size, material and mesh that hit each other off centre, both spinning about axes of their own."""
+    """Two balls of different size, material and mesh that hit each other off centre. Both spin
+    about axes of their own."""
     n = np.array([0.3, 1, 0.5]) / math.sqrt(1.34) * (0.045 + 5e-4)
     return Scene([ball((0, 0, 0), 0.05, 1, shift=tuple(n), velocity=(1, -2, -0.5), spin=(10, 20, -15)),
                   ball((0, -0.15, 0), 0.04, 2, turn=0.4, material=("svk", 5e6, 0.3, 1200.0), shift=tuple((0, 0.15, 0) - n), velocity=(-0.2, 2, 0.3), spin=(5, 0, 8))],
@@ -108,7 +123,8 @@ def oblique(friction: float) -> Scene:
 @pytest.mark.few(1)
 @pytest.mark.parametrize("friction", [pytest.param(0.0, marks=pytest.mark.robustness), 0.4])
 def test_two_bodies_conserve(march, friction):
-    """Linear momentum to 1e-13, angular momentum about all axes to 1e-9, energy with the work of friction to 1e-9 (1e-8), from the flight to the last row."""
+    """Momentum is constant to 1e-13, angular momentum about all axes to 1e-9, energy with friction
+    work to 1e-9 (1e-8), over all rows."""
     run = march(oblique(friction), friction_static=friction)
     history = run.history
     scale = np.abs(history["momentum_y_1"]).max()
@@ -117,11 +133,15 @@ def test_two_bodies_conserve(march, friction):
     assert spread(history, "angular_momentum", "angular_momentum_x", "angular_momentum_y") < 1e-9 * scale * 0.05
     assert np.abs(history["balance"]).max() < (1e-8 if friction else 1e-9) * run.summary["energy_initial"]
     assert (run.summary["friction_work"] > 1e-2) == (friction > 0)
-    assert abs(run.summary["rebound_spin_x_2"] - 5) > 1e-3                # the hit turns it out of its plane
+    assert abs(run.summary["rebound_spin_x_2"] - 5) > 1e-3  # the hit changes the axis of its spin
 
 
 def head_on(count, obstacles=()) -> Scene:
-    """V15: R = 10 mm, E = 100 MPa, nu = 0.3, rho = 2500, closing at 1 m/s; or one of the two, on a plane; a quarter, finer where they touch."""
+    """V15: R = 10 mm, E = 100 MPa, nu = 0.3, rho = 2500, closing at 1 m/s; a quarter, finer near
+    contact.
+
+    With `obstacles`, one of the two balls on a plane.
+    """
     material, R = ("neohookean", 1e8, 0.3, 2500.0), 0.01
     one = ball((0, 0, 0), R, count, 4, focus=-1, material=material, shift=(0, R + 1e-6, 0), velocity=(0, -0.5, 0))
     two = ball((0, -0.03, 0), R, count, 4, focus=1, material=material, shift=(0, 0.03 - R - 1e-6, 0), velocity=(0, 0.5, 0))
@@ -134,7 +154,11 @@ FLOOR = ("plane", (0, 0, 0, 0, 1, 0), (0, 0, 0))
 
 @pytest.mark.robustness
 def test_two_equal_balls_are_a_ball_on_a_plane_of_doubled_penalty(march):
-    """Head-on, to 0.5 %: contact time, peak force, rebound; and Hertz' T = 2.943 delta / v, F = 4/3 E* R*^1/2 delta^3/2 to 10 % on two cubes across the contact."""
+    """In a central impact contact time, peak force and rebound agree to 0.5 %.
+
+    They agree with Hertz' T = 2.943 delta / v and F = 4/3 E* R*^1/2 delta^3/2 to 10 % with two
+    elements across the contact.
+    """
     two, one = march(head_on((4, 3, 4)), "two").summary, march(head_on((4, 3, 4), (FLOOR,)), "one").summary
     for name in ("contact_time", "peak_force"):
         assert two[name] == pytest.approx(one[name], rel=5e-3)
@@ -154,7 +178,11 @@ def pressed(measure, folder: Path, below: tuple, above: tuple, penalty: float) -
 
 @pytest.mark.robustness
 def test_unlike_meshes_carry_a_constant_pressure(measure, tmp_path):
-    """V16: two blocks pressed together. The unevenness goes with penalty times element size over E: to 1 % where that is a quarter; like meshes to 1e-6."""
+    """V16: two blocks are pressed together. The deviation of the pressure is proportional to
+    penalty times element size over E.
+
+    It is 1 % if this ratio is a quarter; with equal meshes it is 1e-6.
+    """
     like, unlike = pressed(measure, tmp_path / "like", (3, 2, 3), (3, 2, 3), 10), pressed(measure, tmp_path / "unlike", (4, 2, 4), (3, 2, 3), 1)
     for found in (like, unlike):
         assert found["area"] == pytest.approx(1, rel=1e-9) and abs(found["balance"]) < 1e-3
@@ -164,14 +192,16 @@ def test_unlike_meshes_carry_a_constant_pressure(measure, tmp_path):
 
 @pytest.mark.robustness
 def test_ball_on_a_block(march):
-    """A ball falls obliquely on a free block with friction: it rebounds, the block goes away, everything is kept."""
+    """A ball falls obliquely on a free block with friction. It rebounds, the block moves away, and
+    energy and momenta are conserved."""
     block = brick((-0.1, -0.2, -0.1), (0.1, -0.12, 0.1), (3, 2, 3), shift=(0, 0.12, 0))
     scene = Scene([ball((0, 0.1, 0), 0.05, 2, shift=(0.01, -0.0499, 0.015), velocity=(1, -3, 0.5)), block], pairs=[(0, 1, 1e9, 0.3, 0.3)])
     run = march(scene, friction_static=0.3)
     history = run.history
     scale = np.abs(history["momentum_y_1"]).max()
     assert run.summary["rebound_vy_1"] > 0.5 and run.summary["rebound_vy_2"] < -0.3
-    assert run.summary["rebound_vx_2"] > 0.01 and run.summary["rebound_vz_2"] > 0.005     # dragged along
+    # Dragged along by friction.
+    assert run.summary["rebound_vx_2"] > 0.01 and run.summary["rebound_vz_2"] > 0.005
     assert spread(history, "momentum_x", "momentum_y", "momentum_z") < 1e-13 * scale
     assert spread(history, "angular_momentum", "angular_momentum_x", "angular_momentum_y") < 1e-9 * scale * 0.05
     assert np.abs(history["balance"]).max() < 1e-8 * run.summary["energy_initial"]
@@ -182,7 +212,11 @@ FAR = ("plane", (0, -10, 0, 0, 1, 0), (0, 0, 0))
 
 @pytest.mark.parametrize("axis", range(3))
 def test_spinning_free_body(march, axis):
-    """V3: a ball and a brick turn, marched through, about x, y and z: energy, momentum and all angular momenta stay; nothing turns about another axis."""
+    """V3: a ball and a brick rotate about x, y or z, integrated in time: energy, momentum and
+    angular momentum stay constant.
+
+    No rotation about another axis appears.
+    """
     spin = tuple(30.0 if c == axis else 0.0 for c in range(3))
     scene = Scene([ball((0, 0, 0), 0.05, 1, velocity=(0.1, 0, 0.2), spin=spin), brick((0.2, -0.02, -0.03), (0.3, 0.02, 0.03), (2, 1, 1), spin=spin)], [FAR])
     run = march(scene, without="flight", end_time=0.02, dt=4e-4)
@@ -198,7 +232,8 @@ def test_spinning_free_body(march, axis):
 
 
 def test_tumbling_flight(march):
-    """A brick that spins about no principal axis flies to the plane as a rigid body: where it touches its energy and angular momentum are those of the start."""
+    """A brick whose spin is not about a principal axis flies as a rigid body. At contact it has its
+    initial energy and angular momentum."""
     body = brick((-0.05, -0.02, -0.03), (0.05, 0.02, 0.03), (2, 1, 1), shift=(0, 0.3, 0), velocity=(0, -2, 0), spin=(30.0, 5.0, 20.0))
     run = march(Scene([body], [FLOOR]), end_time=0.16, fields=1)
     history, touch = run.history, 1
@@ -213,7 +248,8 @@ def test_tumbling_flight(march):
 
 @pytest.mark.robustness
 def test_parts_of_bodies(march):
-    """Half and quarter of a ball in a bowl and on a moving sphere: the answers of the whole one, to the tolerance of the step."""
+    """Half and quarter of a ball in a hollow sphere and on a moving sphere agree with the whole
+    ball to the tolerance of the step."""
     obstacles = [("sphere", (0, -0.2, 0, 0.2), (0, 0.3, 0)), ("bowl", (0, 0.3, 0, 0.4), (0, 0, 0))]
     whole, half, quarter = (march(Scene([ball((0, 0, 0), 0.05, 2, copies, shift=(0, 0.0501, 0), velocity=(0, -2, 0))], obstacles, copies=copies), f"part{copies}",
                                   friction_static=0.3, end_time=0.004, dt=1e-4).summary for copies in (1, 2, 4))

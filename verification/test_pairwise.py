@@ -1,4 +1,5 @@
-"""Pairwise contact (14), (15) in the march: a disc on a free block without friction (edp/disc-block.edp, paper, section 3.2)."""
+"""Pairwise contact (14), (15) in the time integration: a disc on a free block without friction
+(edp/disc-block.edp, paper, section 3.2)."""
 
 import numpy as np
 import pytest
@@ -6,7 +7,8 @@ import pytest
 from ffimpact.failure import Failure
 
 SCENE = {"radius": 0.5, "speed": 10, "nu": 0.4, "law": "neohookean", "accuracy": 0.02}
-CONSERVED = 1e-9            # over the energy, the momentum and their arms at the start
+# Over the energy, the momentum, and the momentum times its lever at the start.
+CONSERVED = 1e-9
 
 
 @pytest.fixture(name="block")
@@ -21,7 +23,7 @@ def drift(values: np.ndarray, scale: float) -> float:
 @pytest.mark.few(2)
 @pytest.mark.parametrize("given", [{}, {"law": "svk"}, {"angle": 60}, {"angle": 60, "law": "svk", "spin": 20}, {"degree": 1}, {"exponent": 2}], ids=str)
 def test_energy_and_momenta_are_conserved(block, given):
-    """Total energy, both momenta and the angular momentum, all over an impact that does touch."""
+    """Energy, both momenta and angular momentum are constant over an impact with contact."""
     run = block(pairing="pairwise", **given)
     momentum = abs(run.history["momentum_y"][0])
     assert run.summary["status"] == "ok" and run.summary["impulse_y_1"] > momentum
@@ -33,9 +35,10 @@ def test_energy_and_momenta_are_conserved(block, given):
 @pytest.mark.few(1)
 @pytest.mark.parametrize("law", ["neohookean", "svk"])
 def test_it_agrees_with_closest_points(block, law):
-    """With a range of an element and of half of one: both rebound velocities to 1 % of the speed, the impulse to 1 %, the contact time to 4 %."""
+    """For a range of one element and half an element, rebound velocities agree to 1 % of the speed,
+    the impulse to 1 %, the contact time to 4 %."""
     nearest, usual = block(law=law).summary, block(law=law, pairing="pairwise").summary
-    width = 0.06                         # the element is 0.12 m
+    width = 0.06  # the element size is 0.12 m
     for found in (usual, block(law=law, pairing="pairwise", pairing_range=width).summary):
         for name in ("rebound_vy_1", "rebound_vy_2"):
             assert found[name] == pytest.approx(nearest[name], abs=0.01 * SCENE["speed"])
@@ -44,20 +47,22 @@ def test_it_agrees_with_closest_points(block, law):
 
 
 def test_half_and_whole_are_the_same(block):
-    """The mirror images of half a body count as the points of the whole one do."""
+    """The mirror images of half a body count as the points of the whole body do."""
     half, whole = (block(pairing="pairwise", symmetry=part).summary for part in ("half", "full"))
     for name in ("rebound_vy_1", "rebound_vy_2", "impulse_y_1", "contact_time", "energy_initial"):
         assert half[name] == pytest.approx(whole[name], rel=1e-6)
 
 
 def test_a_range_below_the_distance_of_points_is_said(block):
-    """Points that slip through between each other: the run says so, as it does not with a range of an element."""
+    """If the range is so small that points slip between each other, the run warns; it does not warn
+    for a range of an element."""
     assert any(said.startswith("pairing range: ") for said in block(pairing="pairwise", pairing_range=0.02, end_time=0.01).summary["warnings"])
     assert not any(said.startswith("pairing range: ") for said in block(pairing="pairwise").summary["warnings"])
 
 
 def test_the_printed_form_keeps_energy_and_chatters(block):
-    """-k d jumps where points come into range: energy is kept by the scheme, but the bodies part and touch again, how often depends on the steps."""
+    """The force -k d jumps when points come into range. The scheme conserves energy, but the bodies
+    separate and come into contact repeatedly; how often depends on the steps."""
     found = block(pairing="pairwise-printed", chatter="continue")
     assert found.summary["energy_drift"] < CONSERVED and drift(found.history["momentum_y"], abs(found.history["momentum_y"][0])) < CONSERVED
     assert found.summary["contact_intervals"] > 2 and block().summary["contact_intervals"] == 1

@@ -1,4 +1,8 @@
-"""The contact point by point against theory: Hertz' profile (V6), the first microseconds of a disc (V18), stick and slip of Cattaneo and Mindlin (V19)."""
+"""Contact point by point against theory.
+
+The cases are Hertz' profile (V6), the first microseconds of a disc (V18), and partial slip of
+Cattaneo and Mindlin (annulus).
+"""
 
 import math
 
@@ -12,7 +16,11 @@ from .hertz import hertz, profile
 @pytest.mark.parametrize("law", ["svk", "neohookean"])
 @pytest.mark.parametrize("body", ["cylinder", "ball"])
 def test_profile_of_hertz(tmp_path, body, law):
-    """Half-width, largest pressure and every point in 0.9 b within 2 % of the exact ellipse with elements of 0.15 b, twice as near as with 0.3 b."""
+    """Half-width, largest pressure and every point in 0.9 b agree within 2 % with the exact ellipse
+    for elements of 0.15 b.
+
+    The error is less than half of that with elements of 0.3 b.
+    """
     errors = {}
     for share in (0.3, 0.15):
         rows = [*hertz(tmp_path / str(share), share, law, body=body), *profile(tmp_path / str(share), share, body=body)]
@@ -22,12 +30,14 @@ def test_profile_of_hertz(tmp_path, body, law):
 
 @pytest.mark.parametrize("speed", first_touch.SPEEDS)
 def test_first_touch(tmp_path, speed):
-    """Force and impulse of the first microseconds within 5 % of a bar on a wall above every point, at 8 m/s and a tenth of it."""
+    """Force and impulse of the first microseconds agree within 5 % with a bar on a wall above every
+    point, at 8 m/s and a tenth of it."""
     assert all(row.error < 0.05 for row in first_touch.early(tmp_path, speed, 0.05))
 
 
 def test_shock_speed():
-    """Slow, it is c_L; at any speed momentum holds: rho U v is the stress of the column that is squeezed by v/U."""
+    """For small v the shock speed is c_L. At any speed rho U v is the stress of the column that is
+    compressed by v/U."""
     assert first_touch.shock(1e-6) == pytest.approx(first_touch.WAVE, rel=1e-6)
     U, stretch = first_touch.shock(8), 1 - 8 / first_touch.shock(8)
     stress = first_touch.SHEAR * (stretch - 1 / stretch) + first_touch.LAME * math.log(stretch) / stretch
@@ -35,8 +45,11 @@ def test_shock_speed():
 
 
 def test_partial_slip(tmp_path):
-    """With elements of 0.1 b: half-width of the zone that sticks and traction, edge by edge, within 3 %; every point outside 1.1 c slides, with all of
-    its friction, every one inside 0.9 c sticks."""
+    """Elements of 0.1 b: the half-width of the stick zone and the traction, edge by edge, agree
+    within 3 %.
+
+    Every point outside 1.1 c slides with its full friction; every point inside 0.9 c sticks.
+    """
     found, table = cattaneo.sheared(tmp_path, 0.1)
     b, c, p0 = cattaneo.widths(found)
     assert all(row.error < 0.03 for row in cattaneo.annulus(tmp_path, 0.1))

@@ -1,4 +1,5 @@
-"""V2: the assembled residual, contact force, tangent and contact stiffness against direct statements of the same."""
+"""V2: assembled residual, contact force, tangent and contact stiffness against direct evaluations
+of the same expressions."""
 
 import math
 
@@ -24,7 +25,8 @@ TANGENTS = [*((body, {"law": law, "degree": degree, "integrator": integrator} | 
     ("energy-momentum", 1), ("energy-momentum", 1.5), ("midpoint", 2), ("newmark", 1), ("newmark", 1.5),
     ("backward-euler", 2), ("bdf2", 1)])
 def test_residual_is_the_one_of_the_equations(measure, law, integrator, exponent):
-    """Inertia, stress, load and contact of one step equal a varf written from the equations, to round-off."""
+    """Inertia, stress, load and contact of one step equal a varf that is written from the
+    equations, to round-off."""
     found = measure("residual", law=law, integrator=integrator, exponent=exponent)
     assert found["state"] == 0 and found["strain"] > 0.3
     assert found["before"] > 0 and found["switching"] > 0 and found["after"] < found["points"]
@@ -34,9 +36,13 @@ def test_residual_is_the_one_of_the_equations(measure, law, integrator, exponent
 @pytest.mark.few(12)
 @pytest.mark.parametrize("body, flags", TANGENTS, ids=str)
 def test_tangent_is_the_derivative_of_the_residual(measure, body, flags):
-    """Moduli and mass give the derivative of the residual at large strain, on straight and curved elements in the plane, of revolution, hoops included, and in space, under
-    every law, at nu = 0.4999 with the rank-one part of every element; its symmetric factorisation solves the system, and constrained unknowns stay where they are. The
-    kernels do the same; svk at nu = 0.45, and all laws at 0.4999, are not elliptic there, and the tangent has no factor."""
+    """Moduli and mass give the derivative of the residual at large strain, under every law.
+
+    Elements are straight or curved, in the plane, of revolution (with circumferential terms) and in
+    space; at nu = 0.4999 with the rank-one part of every element. The symmetric factorisation
+    solves the system and does not move constrained unknowns. The kernels do the same. svk at nu =
+    0.45, and all laws at 0.4999, are not elliptic in this state, so that the tangent has no factor.
+    """
     found = measure(f"tangent-{body}", **COARSE.get(body, {"accuracy": 0.1}) | flags)
     assert found["tangent"] < 1e-6
     degree, usual = flags.get("degree"), flags["law"] in LAWS and "degree" in flags
@@ -50,7 +56,8 @@ def test_tangent_is_the_derivative_of_the_residual(measure, body, flags):
 
 
 def test_curved_outline_has_the_area_of_the_disc(measure):
-    """The weights of the isoparametric half disc add up to its area; straight triangles miss some 2 % of it."""
+    """The weights of the isoparametric half disc add up to its area; straight triangles miss about
+    2 % of it."""
     exact = math.pi * 0.05**2
     flags = dict(law="svk", integrator="newmark", mesh_size=0.025, contact_mesh_size=0.0099)
     assert measure("tangent-disc", degree=2, **flags)["area"] == pytest.approx(exact, rel=1e-4)
@@ -59,7 +66,8 @@ def test_curved_outline_has_the_area_of_the_disc(measure):
 
 @pytest.mark.parametrize("exponent", [1, 1.5, 2])
 def test_contact_stiffness_is_the_derivative_of_the_traction(measure, exponent):
-    """For points that stay open or closed, rest, open and close, wherever in the step the law is evaluated."""
+    """This holds for points that stay open or closed, rest, open and close, for every position in
+    the step at which the law is evaluated."""
     found = measure("contact-law", exponent=exponent)
     for place in range(3):
         assert found[f"stiffness{place}"] < 1e-6 and found[f"open{place}"] == 0
@@ -71,8 +79,12 @@ def test_contact_stiffness_is_the_derivative_of_the_traction(measure, exponent):
     ("energy-momentum", "jump", "linear"), ("newmark", "jump", "linear-printed"), ("midpoint", "jump", "sqrt"), ("energy-momentum", "jump", "tanh"),
     ("midpoint", "smooth", "linear"), ("energy-momentum", "smooth", "linear-printed"), ("newmark", "smooth", "sqrt"), ("midpoint", "smooth", "tanh")])
 def test_friction_force_is_the_one_of_the_equations(measure, integrator, transition, regularization):
-    """Friction (11)-(13) on points that stick, slip, run back, open and close in the step equals a varf, to round-off; that every
-    law is the same wherever in the step it is evaluated the next test shows."""
+    """Friction (11)-(13) equals a varf to round-off for points that stick, slip, reverse, open and
+    close in the step.
+
+    The next test shows that every law is the same for every position in the step at which it is
+    evaluated.
+    """
     found = measure("residual", law="svk", integrator=integrator, exponent=1.5, friction_static=0.7, friction_dynamic=0.5,
                     slip_velocity=2.5, regularization=regularization, friction_transition=transition)
     assert found["slow"] > 1 and found["fast"] > 1 and found["backwards"] > 1 and found["switching"] > 0
@@ -84,20 +96,25 @@ def test_friction_force_is_the_one_of_the_equations(measure, integrator, transit
 @pytest.mark.parametrize("transition", TRANSITIONS)
 @pytest.mark.parametrize("coefficients", [(0.7, 0.5), (0.9, 0.2), (0.4, 0.4)])
 def test_friction_derivatives(measure, coefficients, transition, regularization):
-    """t_T is the printed law on the side of the jump that the velocity is on; stiffness, drag and coupling are the derivatives of t_N and t_T on
-    either side, for three exponents, wherever in the step the law is evaluated; by the scripts, against which the compiled law is held."""
+    """t_T is the printed law for the branch, static or dynamic, that the velocity selects.
+
+    Stiffness, drag and coupling are the derivatives of t_N and t_T on either branch, for three
+    exponents and every position in the step. The scripts are tested; the compiled law is compared
+    with them.
+    """
     found = measure("friction-law", without="kernels", friction_static=coefficients[0], friction_dynamic=coefficients[1])
     kind = f"{regularization.removeprefix('linear-')}_{transition}"
     assert found[f"law_{kind}"] < 1e-13 and found[f"normal_{kind}"] == 0
     assert found[f"stiff_{kind}"] < 1e-6 and found[f"drag_{kind}"] < 1e-6 and found[f"coupling_{kind}"] < 1e-6
     assert found[f"cross_{kind}"] == 0
-    assert found[f"falls_{kind}"] == 0   # one side of the jump never weakens with speed
+    assert found[f"falls_{kind}"] == 0  # no branch decreases with speed
 
 
 @pytest.mark.parametrize("law, breakdown, height, refused", [("svk", "stop", 0.19, 1), ("svk", "stop", 0.21, 0), ("neohookean", "stop", 0.19, 1),
                                                              ("svk", "continue", 0.19, 0), ("neohookean", "continue", 0.19, 1)])
 def test_a_step_that_loses_four_fifths_of_a_volume_is_refused(measure, law, breakdown, height, refused):
-    """Of the several solutions of an implicit step the collapsed ones are no motion; `breakdown=continue` takes what comes under svk."""
+    """An implicit step has several solutions; the collapsed ones are not motions.
+    `breakdown=continue` accepts them for svk."""
     found = measure("collapse", law=law, breakdown=breakdown, speed=height)
     assert found["left"] == pytest.approx(height)
     assert found["refused"] == refused

@@ -1,4 +1,5 @@
-"""V10: a stiff disc hits the plane obliquely: the rigid limit, with the measured restitution e."""
+"""V10: a stiff disc hits the plane obliquely. Expected is the rigid limit with the measured
+restitution e."""
 
 import math
 
@@ -10,7 +11,7 @@ RADIUS = STIFF["radius"]
 
 
 def impact(disc, friction: float, angle: float, **given):
-    """The summary of an impact, its speeds along and across the plane before it, and e."""
+    """The summary of an impact, its initial speeds along and across the plane, and e."""
     found = disc(**STIFF | dict(penalty=1e10, angle=angle, friction_static=friction, friction_dynamic=friction) | given).summary
     along, across = math.cos(math.radians(angle)), math.sin(math.radians(angle))
     assert found["energy_drift"] < 1e-8
@@ -20,8 +21,11 @@ def impact(disc, friction: float, angle: float, **given):
 @pytest.mark.parametrize("law, regularization, friction, angle", [
     ("neohookean", "linear", 0.2, 30), ("svk", "linear", 0.3, 20), ("neohookean", "sqrt", 0.2, 20), ("svk", "tanh", 0.2, 20)])
 def test_disc_that_slides_throughout(disc, law, regularization, friction, angle):
-    """Beyond v_t/v_n = 3 mu (1 + e) the disc slides all the time: it loses mu (1 + e) v_n along the plane and turns
-    forward (clockwise, negative, for a motion to +x) with 2 mu (1 + e) v_n / R, within 3 %."""
+    """For v_t/v_n > 3 mu (1 + e) the disc slides throughout, within 3 %.
+
+    It loses mu (1 + e) v_n along the plane and turns forward (clockwise, negative, for a motion to
+    +x) with 2 mu (1 + e) v_n / R.
+    """
     found, along, across, e = impact(disc, friction, angle, law=law, regularization=regularization)
     lost = friction * (1 + e) * across / along
     centre, rim = leaves(lost)
@@ -35,7 +39,8 @@ def test_disc_that_slides_throughout(disc, law, regularization, friction, angle)
 @pytest.mark.parametrize("law", ["neohookean", "svk"])
 @pytest.mark.parametrize("angle", [45, 60, 75])
 def test_disc_that_rolls(disc, law, angle):
-    """Below that the disc leaves rolling: with 2/3 of its speed along the plane, and the spin that belongs to it."""
+    """For smaller v_t/v_n the disc leaves rolling, with 2/3 of its speed along the plane and the
+    spin of rolling."""
     found, along, across, e = impact(disc, 0.2, angle, law=law)
     lost = 0.2 * (1 + e) * across / along
     centre, rim = leaves(lost)
@@ -46,8 +51,11 @@ def test_disc_that_rolls(disc, law, angle):
 
 
 def test_rolling_is_the_limit_of_a_rigid_disc(disc):
-    """A disc whose compliance counts beside the penalty's springs back along the plane and leaves, at 60 degrees,
-    turning faster than it rolls; the difference falls with the stiffness of the penalty, to within 0.3 % of rolling."""
+    """A disc whose compliance is not small relative to the penalty recoils along the plane and
+    leaves, at 60 degrees, with more spin than rolling.
+
+    The difference falls with the stiffness of the penalty to within 0.3 % of rolling.
+    """
     slips = []
     for penalty in (1e11, 1e10, 2e9):
         found, along, _, _ = impact(disc, 0.2, 60, law="neohookean", penalty=penalty)

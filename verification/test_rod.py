@@ -6,9 +6,12 @@ from .rod import rod
 
 
 def test_clamped_rod_against_a_wall(measure):
-    """On 50 and 100 elements: begin of the contact, period, energy and the stress in the middle of the contact within 1 %; its
-    end and mean stress, which wait for a front of width h^(2/3), within 1.5 and 4 %, and nearer on the finer mesh.
-    `make verify` asks 1 % of all of them on 400."""
+    """With 50 and 100 elements, begin of contact, period, energy and the stress in the middle of
+    the contact agree within 1 %.
+
+    End of contact and mean stress, which depend on a front of width h^(2/3), agree within 1.5 and 4
+    %, better on the finer mesh. `make verify` requires 1 % of all numbers with 400 elements.
+    """
     coarse, fine = ({row.what: row.error for row in rod(elements)} for elements in (50, 100))
     for what in ("contact begins", "period", "energy", "stress: middle"):
         assert coarse[what] < 0.01 and fine[what] < 0.01, what
@@ -18,7 +21,7 @@ def test_clamped_rod_against_a_wall(measure):
 
 @pytest.mark.parametrize("law", ["svk", "neohookean"])
 def test_rod_keeps_its_energy_and_does_not_chatter(measure, law):
-    """Both contacts leave the energy as it was, and the first one is a single interval."""
+    """Two contacts do not change the energy, and the first is a single interval."""
     found = measure("rod", law=law, young=1, density=1, nu=0, speed=1e-4, penalty=1e3, mesh_size=0.01, dt=0.01)
     assert found["state"] == 0 and found["intervals"] == 1
     assert found["drift"] < 1e-8

@@ -1,4 +1,5 @@
-"""The conserving gap between a body and its own outline (edp/core/contact/pair.idp): a hairpin whose slot is closed, randomly deformed."""
+"""The conserving gap between a body and its own outline (edp/core/contact/pair.idp), for a randomly
+deformed hairpin with closed slot."""
 
 import pytest
 
@@ -10,8 +11,12 @@ CASES = [(2, 0.05, 0.02, 0), (1, 0.2, 0.02, 0.7), (2, 0.3, 0.05, 2.5)]
 @pytest.mark.parametrize("without", ["none", "kernels"])
 @pytest.mark.parametrize("degree, depth, noise, tilt", CASES)
 def test_rows_of_a_body_on_itself_conserve(measure, degree, depth, noise, tilt, without):
-    """By the kernel and by the scripts: B d = q1 - q0 in a random step, a turn and in sliding, and no row carries a force or a moment; only points on the walls of
-    the slot are in the body, none where it is not deformed; a step begins with the penetrations that the last one ended with."""
+    """Kernel and scripts satisfy B d = q1 - q0 in a random step, a rotation and in sliding; no row
+    of B has a resultant force or moment.
+
+    Only points on the walls of the slot are inside the body; none is without deformation. A step
+    begins with the penetrations at the end of the last step.
+    """
     found = measure("self-contact", degree=degree, depth=depth, noise=noise, tilt=tilt, without=without)
     assert found["randomInside"] > 10 and found["outside"] == 0 and found["undeformed"] < 0
     for name in ("random", "turn"):

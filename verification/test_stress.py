@@ -1,4 +1,4 @@
-"""The stress in the snapshots, and the energy of a step, against closed forms."""
+"""The stress in snapshots, and the energy of a step, against closed forms."""
 
 import numpy as np
 import pytest
@@ -14,12 +14,13 @@ def test_homogeneous_deformation_has_the_stress_of_the_closed_form(measure, tmp_
 
 
 def longer(found: dict, name: str) -> np.ndarray:
-    """Entries 11, 22, 12, 33 of M or H at the ten points of work-excess.edp, (4, 10), in extended precision."""
+    """Components 11, 22, 12, 33 of M or H at the ten points of work-excess.edp, (4, 10), in
+    extended precision."""
     return np.array([[found[f"{name}{entry}_{i}"] for i in range(10)] for entry in ("11", "22", "12", "33")]).astype(np.longdouble)
 
 
 def neo(C: np.ndarray) -> np.ndarray:
-    """W/mu of (6), C (4, points)."""
+    """W/mu of (6) for C (4, points)."""
     log = np.log((C[0] * C[1] - C[2] ** 2) * C[3])
     return (C[0] + C[1] + C[3] - 3) / 2 - log / 2 + LAMBDA / MU * log**2 / 8
 
@@ -28,13 +29,17 @@ def neo(C: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize("size", [1e-4, 1e-2, 0.2, 0.35])
 @pytest.mark.parametrize("body", ["", "-axisymmetric"])
 def test_work_of_a_step_against_extended_precision(measure, size, body):
-    """Energy and work excess of the neo-Hookean law, small steps and large ones, also side by side: 13 digits of H times
-    the modulus, where the difference of two energies would keep as many of the modulus."""
+    """Energy and discrete-gradient correction of the neo-Hookean law, for small and large steps.
+
+    They are exact to 13 digits of H times the modulus. A difference of two energies would be exact
+    to as many digits of the modulus only.
+    """
     found = measure(f"work-excess{body}", law="neohookean", young=YOUNG, nu=NU, speed=size)
     M, H = longer(found, "M"), longer(found, "H")
     det = M[0] * M[1] - M[2] ** 2
     inverse = np.array([M[1] / det, M[0] / det, -M[2] / det, 1 / M[3]])
-    S = np.array([1, 1, 0, 1])[:, None] * np.longdouble(1) + (LAMBDA / MU * np.log(det * M[3]) / 2 - 1) * inverse   # over mu
+    # Over mu.
+    S = np.array([1, 1, 0, 1])[:, None] * np.longdouble(1) + (LAMBDA / MU * np.log(det * M[3]) / 2 - 1) * inverse
     excess = 2 * (neo(M + H) - neo(M - H) - (S * H * np.array([1, 1, 2, 1])[:, None]).sum(axis=0))
     error = abs(np.array([found[f"excess{i}"] for i in range(10)]) - excess)
     assert (error <= 1e-12 * abs(excess) + 3e-14 * abs(H).max(axis=0)).all(), error / abs(H).max(axis=0)

@@ -1,6 +1,10 @@
-"""Exact solutions (verification/): every case over element size, time step or what else its error comes from, judged by tolerances that
-were fixed beforehand. results/verify/verify.csv has all numbers, a figure a case beside it. One case a core at a time (the
-three-dimensional one, V17, takes the longest, in parts); what the present code left is taken as it is."""
+"""Compares the program with exact solutions (verification/).
+
+Each case runs over element size, time step or the other source of its error. The tolerances were
+fixed beforehand. results/verify has verify.csv with all numbers and a figure for each case. One
+case runs on each core (the three-dimensional case V17 takes longest, and runs in parts). Results of
+the present code are reused.
+"""
 
 import hashlib
 import json
@@ -28,13 +32,16 @@ from . import commands
 from .case import Case, Row
 from .cases import CASES
 
-COLUMNS = ["case", "what", "size", "value", "expected", "error", "tolerance"]   # of verify.csv; a row with a tolerance is judged
-CONVERGES = "order of the largest error"   # asked for above 0, between the coarsest and the finest size
-SHOWN = 1e-6                # smaller errors are drawn there
+# Columns of verify.csv. A row with a tolerance is judged.
+COLUMNS = ["case", "what", "size", "value", "expected", "error", "tolerance"]
+# Must be positive between the coarsest and the finest size.
+CONVERGES = "order of the largest error"
+SHOWN = 1e-6  # smaller errors are drawn at this value
 
 
 def main(argv: list[str]) -> int:
-    """Runs the cases, prints the table, writes verify.csv and the figures; 0 only if all pass."""
+    """Runs the cases, prints the table, writes verify.csv and the figures. Returns 0 if all cases
+    pass. Raises BadInput for wrong options."""
     parser = commands.command("verify", __doc__)
     parser.add_argument("--cores", metavar="N", type=int, default=study.CORES, help="this many cases at a time (default: %(default)s)")
     parser.add_argument("--force", action="store_true", help="run again what the same code has left")
@@ -63,7 +70,7 @@ def there(out: Path) -> bool:
 
 
 def code_hash() -> str:
-    """sha256 of the core, the verification scripts and what runs and judges them."""
+    """The sha256 of the core, the verification scripts and the code that runs and judges them."""
     digest = hashlib.sha256(run.code_hash().encode())
     cases = [path for path in (ROOT / "verification").iterdir() if path.suffix in (".edp", ".idp", ".py")
              and not path.name.startswith("test_")]
@@ -73,8 +80,10 @@ def code_hash() -> str:
 
 
 def run_all(out: Path, cores: int = study.CORES) -> pd.DataFrame:
-    """Runs every case, `cores` of them or of their parts at a time; all numbers in the order of CASES, also in verify.csv, with the figures
-    beside it. summary.json last."""
+    """Runs every case, `cores` cases or parts at a time. Returns all numbers in the order of CASES.
+
+    Writes verify.csv, the figures and, last, summary.json.
+    """
     program, frames, found = freefem.find(), [], {}
     for old in (out / "summary.json", *out.glob("*.png")):
         old.unlink(missing_ok=True)
@@ -99,7 +108,7 @@ def run_all(out: Path, cores: int = study.CORES) -> pd.DataFrame:
 
 
 def perform(part: Callable[[Path], Iterator[Row]], folder: Path) -> tuple[list[Row], str]:
-    """The numbers of a part of a case, as far as it came, and why it did not come to its end."""
+    """The numbers of a part of a case, and the message of the failure that ended it, or ""."""
     rows = []
     try:
         for row in part(folder):
@@ -117,7 +126,8 @@ def slug(case: Case) -> str:
 # ---- verdicts
 
 def judge(case: Case, rows: list[Row], message: str = "") -> pd.DataFrame:
-    """The numbers as rows of COLUMNS, those that are judged with their tolerance, and what is judged over several sizes."""
+    """The numbers as rows of COLUMNS. Judged numbers have a tolerance; further rows judge the
+    convergence over several sizes."""
     asked = math.nan if case.by_order else case.tolerance
     names = list(dict.fromkeys(row.what for row in rows))
     finest = {name: series(rows, name)[-1].size for name in names}
@@ -137,31 +147,33 @@ def judge(case: Case, rows: list[Row], message: str = "") -> pd.DataFrame:
 
 
 def series(rows: list[Row], what: str) -> list[Row]:
-    """One number at its sizes, from coarse to fine."""
+    """One number at all its sizes, from coarse to fine."""
     return sorted((row for row in rows if row.what == what), key=lambda row: -row.size)
 
 
 def observed(rows: list[Row]) -> tuple[float, float]:
-    """The order of the largest error between the coarsest and the finest size, of the numbers that have several; the finest."""
+    """The order of the largest error between the coarsest and the finest size, over the numbers
+    with several sizes; and the finest size."""
     several = [each for what in dict.fromkeys(row.what for row in rows) if len(each := series(rows, what)) > 1]
     first, last = max(each[0].error for each in several), max(each[-1].error for each in several)
     return math.log(first / last) / math.log(several[0][0].size / several[0][-1].size), several[0][-1].size
 
 
 def judged(frame: pd.DataFrame) -> pd.DataFrame:
-    """The rows that have a tolerance, with their verdict `pass`; no number is no pass."""
+    """The rows with a tolerance, with the verdict `pass`. A missing number does not pass."""
     rows = frame[frame.tolerance.notna()]
     return rows.assign(**{"pass": rows.error <= rows.tolerance})
 
 
-# How columns are shown: of all numbers, and of the overview
+# Formats of the columns: of all numbers, and of the overview.
 NUMBERS = {"what": "", "size": "g", "value": ".7g", "expected": ".7g", "error": ".2g", "tolerance": "g"}
 FORMATS = {"case": "", "checks": "d", "worst": "", "value": ".6g", "expected": ".6g", "error": ".2g", "tolerance": "g",
            "order": ".2f", "verdict": ""}
 
 
 def overview(frame: pd.DataFrame) -> pd.DataFrame:
-    """A row a case: how many numbers are judged, the one nearest to (or farthest beyond) its tolerance, order and verdict."""
+    """A row for each case: number of judged numbers, the one nearest to (or farthest beyond) its
+    tolerance, order and verdict."""
     lines = []
     for name, rows in judged(frame).groupby("case", sort=False):
         near = (rows.error / rows.tolerance).where(rows["pass"], math.inf).fillna(0)
@@ -174,14 +186,17 @@ def overview(frame: pd.DataFrame) -> pd.DataFrame:
 
 # ---- figures
 
-APART = 1.6      # of sizes that have a number each: beyond that factor
-COLOURS = (BLUE, ORANGE, GREEN, PURPLE, BLACK, "#56b4e9", "#e69f00")                        # a group of numbers each
+# Sizes on the axis that differ by more than this factor get a tick label each.
+APART = 1.6
+# One for each group of numbers.
+COLOURS = (BLUE, ORANGE, GREEN, PURPLE, BLACK, "#56b4e9", "#e69f00")
+# Markers and lines of the numbers within a group.
 LOOKS = (dict(marker="o", markersize=4), dict(marker="s", markersize=7, fillstyle="none", linestyle="--"),
-         dict(marker="^", markersize=7, fillstyle="none", linestyle=":"))                    # and in the group
+         dict(marker="^", markersize=7, fillstyle="none", linestyle=":"))
 
 
 def draw(case: Case, rows: list[Row], out: Path) -> None:
-    """The errors over the size, and beside them the case's own picture where it has one."""
+    """Draws the errors over the size and, if the case has one, its own picture beside them."""
     with plt.rc_context(STYLE):
         figure, grid = plt.subplots(1, 2 if case.beside else 1, figsize=(9, 3.6) if case.beside else (6.4, 3.8), squeeze=False)
         draw_errors(grid[0, 0], case, rows)
@@ -195,7 +210,10 @@ def draw(case: Case, rows: list[Row], out: Path) -> None:
 
 
 def draw_errors(axes: plt.Axes, case: Case, rows: list[Row]) -> None:
-    """The errors over the size, log-log, with the expected orders and the tolerance. Lines get thinner, so that one on another is seen."""
+    """Draws errors over sizes with logarithmic axes, expected orders and the tolerance.
+
+    Lines become thinner, so that coinciding lines are visible.
+    """
     groups: dict[str, int] = {}
     for k, name in enumerate(dict.fromkeys(row.what for row in rows)):
         group, line = name.partition(":")[0], series(rows, name)

@@ -1,6 +1,8 @@
-"""A scene with this program, as a Python script of a user runs it, without the estimate of the error: ends with a line of JSON as the peers do.
+"""Runs a scene with ffimpact as a user's Python script does, without an error estimate.
 
-cpu_seconds: FreeFem++ from the first step on; setup_seconds: its start and operators, and what Python does (scene, mesh, result); imports_seconds: Python's.
+Prints a line of JSON as the other programs do. `cpu_seconds` is the time of FreeFem++ from the
+first step on. `setup_seconds` contains the start of FreeFem++, its operators and the work of Python
+for scene, mesh and result. `imports_seconds` is the time of Python's imports.
 """
 
 import argparse

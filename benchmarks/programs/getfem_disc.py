@@ -1,9 +1,13 @@
-"""disc-normal with GetFEM (Debian: `apt-get install python3-getfem`): curved P2 triangles on our mesh, weak forms, one thread.
+"""The scene disc-normal with GetFEM (Debian: `apt-get install python3-getfem`), one thread.
 
-plain: as its users would write it: one model with the energy-momentum step as a nonlinear term, full Newton with MUMPS.
-tuned: the same weak form, constant mass matrix, a tangent factorised once by SuperLU (scipy) and kept until Newton's
-       method slows down.
-Law svk only: the discrete gradient of other laws is not a short weak form.
+Curved P2 triangles on our mesh, weak forms. Two forms:
+
+plain: as its users would write it: one model with the energy-momentum step as a nonlinear term,
+    full Newton method with MUMPS.
+tuned: the same weak form with a constant mass matrix; SuperLU (scipy) factorises the tangent, and
+    the factor is kept until Newton's method slows down.
+
+The only law is svk, since the discrete gradient of other laws is not a short weak form.
 """
 
 import math
@@ -14,10 +18,11 @@ import peer
 import scipy.sparse
 import scipy.sparse.linalg
 
-DISC, CIRCLE, SYMMETRY, ARC = -1, 1, 2, 3      # regions
-SLOW = 0.4                  # contraction of the residual's work from which the tuned form makes a new factorisation
+DISC, CIRCLE, SYMMETRY, ARC = -1, 1, 2, 3  # numbers of the regions
+# The tuned form factorises again if the work of the residual decreases by a factor above SLOW^2.
+SLOW = 0.4
 
-# Weak forms of the step from u0, v0 to u
+# Weak forms of the step from u0, v0 to u.
 F0, F1 = "(Id(2)+Grad_u0)", "(Id(2)+Grad_u)"
 E0, E1 = (f"(0.5*({F}'*{F}-Id(2)))" for F in (F0, F1))
 E = f"(0.5*({E0}+{E1}))"
@@ -25,26 +30,33 @@ STRESS = f"(0.5*({F0}+{F1})*(lambda*Trace({E})*Id(2)+2*mu*{E})):Grad_Test_u"
 INERTIA = "(2*rho/(dt*dt))*(u-u0-dt*v0).Test_u"
 Q0, Q1 = "(-X(2)-u0(2))", "(-X(2)-u(2))"
 P0, P1 = (f"pos_part({Q})" for Q in (Q0, Q1))
-CONTACT = f"-(k/2*({P0}+{P1})*({P1}-{P0})/({Q1}-{Q0}+1e-30))*Test_u(2)"     # the fraction is 1 where both are closed
-# Energies of u, v0
+# The fraction is 1 if the gap is closed at both ends of the step.
+CONTACT = f"-(k/2*({P0}+{P1})*({P1}-{P0})/({Q1}-{Q0}+1e-30))*Test_u(2)"
+# Energies of the state u, v0.
 ELASTIC = f"lambda/2*sqr(Trace({E1}))+mu*Norm_sqr({E1})"
 PENALTY = f"k/2*sqr(pos_part({Q1}))"
-LOCAL = 0.5 + math.sqrt(0.15) * np.array([-1, 0, 1])      # Gauss points on an edge, and the shape functions there (3, 3)
+# Gauss points on an edge, and the shape functions at these points (3, 3).
+LOCAL = 0.5 + math.sqrt(0.15) * np.array([-1, 0, 1])
 GAUSS = np.array([(1 - LOCAL) * (1 - 2 * LOCAL), 4 * LOCAL * (1 - LOCAL), LOCAL * (2 * LOCAL - 1)])
 
 
 def curved_mesh(options) -> getfem.Mesh:
-    """Isoparametric P2 triangles, middle nodes of the circle on it; regions CIRCLE, SYMMETRY and ARC (lowest 45 degrees)."""
+    """A mesh of isoparametric P2 triangles with middle nodes on the circle.
+
+    Its regions are CIRCLE, SYMMETRY and ARC, the lowest 45 degrees.
+    """
     half = peer.half_disc(options)
     middle, of_triangle = peer.middles(half, options.radius)
     points = np.vstack([half.points, middle])
     a, b, c = half.triangles.T
     ab, bc, ca = len(half.points) + of_triangle.T
     result = getfem.Mesh("empty", 2)
-    nodes = points[np.column_stack([a, ab, b, ca, bc, c])]       # GetFEM's order on the reference triangle
+    # GetFEM's order on the reference triangle.
+    nodes = points[np.column_stack([a, ab, b, ca, bc, c])]
     result.add_convex(getfem.GeoTrans("GT_PK(2,2)"), nodes.transpose(2, 1, 0))
     faces = result.outer_faces()
-    nodes = np.array([result.pts(result.pid_in_faces(faces[:, [i]])) for i in range(faces.shape[1])])     # (faces, 2, 3)
+    # (faces, 2, 3).
+    nodes = np.array([result.pts(result.pid_in_faces(faces[:, [i]])) for i in range(faces.shape[1])])
     axis = nodes[:, 0].max(axis=1) < 1e-9 * options.radius
     arc = ~axis & (nodes[:, 1].max(axis=1) < options.radius * (1 - math.cos(math.pi / 4)) + 1e-9 * options.radius)
     for region, chosen in ((CIRCLE, ~axis), (SYMMETRY, axis), (ARC, arc)):
@@ -53,16 +65,16 @@ def curved_mesh(options) -> getfem.Mesh:
 
 
 def csc(matrix: getfem.Spmat) -> scipy.sparse.csc_matrix:
-    """A matrix of GetFEM as one of scipy."""
+    """A GetFEM matrix as a scipy matrix."""
     starts, rows = matrix.csc_ind()
     return scipy.sparse.csc_matrix((matrix.csc_val(), rows, starts), shape=matrix.size())
 
 
 class Disc:
-    """The model of one step: variable u, data u0 and v0, on the half disc."""
+    """The model of one step on the half disc, with the variable u and the data u0 and v0."""
 
     program, version = "getfem", getfem.getfem_env("version")
-    bulk_order = 4          # of the quadrature of the stress
+    bulk_order = 4  # order of the quadrature of the stress
 
     def __init__(self, options):
         self.o, self.dt = options, options.dt
@@ -72,7 +84,7 @@ class Disc:
         self.rule = getfem.MeshIm(self.mesh, getfem.Integ("IM_TRIANGLE(4)"))
         self.bulk_rule = getfem.MeshIm(self.mesh, getfem.Integ(f"IM_TRIANGLE({self.bulk_order})"))
         self.dofs = self.fem.nbdof()
-        self.up = np.arange(self.dofs) % 2 == 1     # which unknowns are along y
+        self.up = np.arange(self.dofs) % 2 == 1  # marks the unknowns along y
         self.model = getfem.Model("real")
         self.model.add_fem_variable("u", self.fem)
         for name in ("u0", "v0"):
@@ -85,7 +97,8 @@ class Disc:
         self.weight = self.momentum @ self.up
         self.u, self.v = np.zeros(self.dofs), np.where(self.up, -options.speed, 0.0)
         self.increment = self.dt * self.v
-        # u_y and height of the nodes of the arc from the lowest point on: vertex, middle, vertex, ...
+        # u_y and height of the nodes of the arc, from the lowest point on: vertex, middle, vertex,
+        # ...
         nodes, heights = self.fem.basic_dof_on_region(ARC), self.fem.basic_dof_nodes()[1]
         nodes = nodes[self.up[nodes]]
         nodes = nodes[np.argsort(heights[nodes])]
@@ -103,7 +116,7 @@ class Disc:
         return self.momentum @ self.v / self.weight
 
     def reported(self) -> dict[str, float]:
-        """What is printed beside the march's own numbers."""
+        """Further results that are printed."""
         return {}
 
     def penetration(self) -> float:
@@ -114,14 +127,15 @@ class Disc:
         self.model.set_variable("u0", self.u)
         self.model.set_variable("v0", self.v)
         u0 = self.u
-        self.u = self.solve(u0 + self.increment)    # from the last increment: smoother than from the last velocity
+        # The last increment is a smoother predictor than the last velocity.
+        self.u = self.solve(u0 + self.increment)
         self.increment = self.u - u0
         self.v = (2 / self.dt) * self.increment - self.v
         return (self.velocity() - before) * self.weight / self.dt
 
 
 class Plain(Disc):
-    """The step as a model, full Newton, MUMPS."""
+    """The step as one GetFEM model, solved by the full Newton method with MUMPS."""
 
     def __init__(self, options):
         super().__init__(options)
@@ -146,9 +160,9 @@ class Plain(Disc):
 
 
 class Tuned(Disc):
-    """Constant mass, frozen factor."""
+    """The step with a constant mass matrix and a factor that is kept."""
 
-    bulk_order = 2          # three points a triangle
+    bulk_order = 2  # three quadrature points in a triangle
 
     def __init__(self, options):
         super().__init__(options)
@@ -190,7 +204,8 @@ class Tuned(Disc):
                 continue
             work_before, fresh, length = abs(work), False, 1.0
             residual = self.residual(u - change)
-            while not abs(change[self.free] @ residual) < abs(work) and length > 1e-2:    # line search
+            # Line search.
+            while not abs(change[self.free] @ residual) < abs(work) and length > 1e-2:
                 length /= 2
                 residual = self.residual(u - length * change)
             u = u - length * change

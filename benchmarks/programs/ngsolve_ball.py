@@ -1,6 +1,7 @@
-"""ball-axisymmetric with NGSolve: curved P2 triangles of netgen with our sizes over half a meridian plane. See ngsolve_body.py.
+"""The scene ball-axisymmetric with NGSolve; see ngsolve_body.py.
 
-x is the radius, y the axis; F is 3 x 3 with F_33 = 1 + u_x/x, and pi x half the length of a hoop.
+Curved P2 triangles of netgen with our sizes on half of the meridian plane. x is the radius and y
+the axis. F is 3 x 3 with F_33 = 1 + u_x/x, and pi x is half the length of a circumference.
 """
 
 import math
@@ -13,7 +14,7 @@ from ngsolve_disc import disc
 
 
 def gradient(u):
-    """(3, 3) of a displacement of the meridian plane."""
+    """The displacement gradient (3, 3) of a displacement in the meridian plane."""
     H = Grad(u)
     return CF((H[0, 0], H[0, 1], 0, H[1, 0], H[1, 1], 0, 0, 0, u[0] / x), dims=(3, 3))
 

@@ -1,4 +1,7 @@
-"""ball with NGSolve: a quarter of the ball, x >= 0 and z >= 0, of curved P2 tetrahedra of netgen with our sizes. See ngsolve_body.py."""
+"""The scene ball with NGSolve; see ngsolve_body.py.
+
+A quarter of the ball, x >= 0 and z >= 0, with curved P2 tetrahedra of netgen with our sizes.
+"""
 
 import ngsolve as ng
 import ngsolve_body
@@ -7,7 +10,8 @@ from ngsolve_body import Shape, half_disc
 
 
 def ball(options) -> Shape:
-    """The half disc turned by 90 degrees about its axis, from the plane z = 0 to the plane x = 0."""
+    """The half disc, revolved by 90 degrees about its axis from the plane z = 0 to the plane x = 0.
+    """
     solid = half_disc(options.radius, options.contact_mesh_size).Revolve(Axis(gp_Pnt(0, 0, 0), gp_Dir(0, -1, 0)), 90)
     small = 1e-6 * options.radius
     for face in solid.faces:

@@ -1,11 +1,18 @@
-"""A body that falls on the rigid plane y = 0 with NGSolve (`pip install ngsolve==6.2.2608`), one thread: what disc and balls share.
+"""A body that falls on the rigid plane y = 0 with NGSolve, one thread; the common part of disc and
+balls.
 
-A Shape says which body: mesh, symmetry, gradient, weights. Everything else is written once, for any dimension: the laws, the energy-momentum
-step from (u0, v0) to u1 = u and v1, contact of potential k p^2 / 2 per unit reference area, and ways to solve it:
-plain: as users of NGSolve would write it: one nonlinear form, contact on all of the outline, full Newton with UMFPACK.
-newmark: the same with the step that users would take, Newmark's average acceleration, stress and pressure at its end: nothing corrects the energy.
-tuned: constant mass, contact on the lowest arc alone, a symmetric tangent factorised by sparse Cholesky and kept until Newton's method
-       slows down; the exact tangent once a step needs it.
+Install NGSolve with `pip install ngsolve==6.2.2608`. A Shape describes the body: mesh, symmetry,
+gradient, weights. The rest holds for any dimension: the laws, the energy-momentum step from (u0,
+v0) to u1 = u and v1, contact with the potential k p^2 / 2 per unit reference area, and the forms of
+the solution:
+
+plain: as users of NGSolve would write it: one nonlinear form, contact on the whole outline, full
+    Newton method with UMFPACK.
+newmark: as plain, with the usual step: Newmark's average acceleration, stress and pressure at the
+    end of the step, no correction of the energy.
+tuned: constant mass, contact on the lowest arc only, a symmetric tangent that sparse Cholesky
+    factorises and that is kept until Newton's method slows down; the exact tangent once a step
+    needs it.
 """
 
 import argparse
@@ -20,15 +27,19 @@ from netgen.occ import WorkPlane
 from ngsolve import BND, Det, Grad, Id, IfPos, InnerProduct, Inv, Trace, Variation, ds, dx, log, y
 
 TINY = 1e-30
-SLOW = 0.4                  # contraction of the residual's work from which the tuned form makes a new factorisation
-PATIENCE = 30               # iterations after which the tuned form starts a step again and stays with the exact tangent
-ARC = 45                    # degrees from the lowest point: the part of the outline that is meshed for contact
+# The tuned form factorises again if the work of the residual decreases by a factor above SLOW^2.
+SLOW = 0.4
+# Iterations after which the tuned form restarts the step and uses the exact tangent from then on.
+PATIENCE = 30
+# Angle from the lowest point that bounds the finely meshed part of the outline [degrees].
+ARC = 45
 
 
-# ---- the laws, of C = F^T F in two or three dimensions; o: lame_lambda, lame_mu [Pa], law
+# ---- the laws as functions of C = F^T F in two or three dimensions; o: lame_lambda, lame_mu [Pa],
+# law
 
 def strain_energy(C, o: argparse.Namespace):
-    """W of C [J/m3]; of a C (2 x 2) in plane strain."""
+    """The strain energy W(C) [J/m3]. A C of shape (2, 2) means plane strain."""
     I = Id(C.dims[0])
     if o.law == "svk":
         E = 0.5 * (C - I)
@@ -38,7 +49,7 @@ def strain_energy(C, o: argparse.Namespace):
 
 
 def stress(C, o: argparse.Namespace):
-    """S = 2 dW/dC [Pa]."""
+    """The stress S = 2 dW/dC [Pa]."""
     I = Id(C.dims[0])
     if o.law == "svk":
         E = 0.5 * (C - I)
@@ -47,10 +58,11 @@ def stress(C, o: argparse.Namespace):
 
 
 def mean_piola(F0, F1, o: argparse.Namespace):
-    """P of the energy-momentum step from F0 to F1 [Pa]."""
+    """The stress P of the energy-momentum step from F0 to F1 [Pa]."""
     C0, C1 = F0.trans * F0, F1.trans * F1
     S = stress(0.5 * (C0 + C1), o)
-    if o.law != "svk":              # linear in C: nothing is missing
+    # For svk, S is linear in C and needs no correction.
+    if o.law != "svk":
         M = C1 - C0
         square = InnerProduct(M, M)
         missing = 2 * (strain_energy(C1, o) - strain_energy(C0, o)) - InnerProduct(S, M)
@@ -62,10 +74,17 @@ def mean_piola(F0, F1, o: argparse.Namespace):
 
 @dataclass(frozen=True)
 class Shape:
-    """mesh: curved to order 2, boundaries arc (the lowest ARC degrees, fine), circle (the rest of the outline) and planes of symmetry;
-    held: what VectorH1 holds there; gradient: of a displacement, (n x n); share: the weight with which the computed part stands for
-    HALF of the body; bulk_orders: of the quadrature of the energy in the plain and the tuned form, as NGSolve takes them for the stress beside
-    the inertia, and alone; more: orders beyond these for share, in the body and on its outline."""
+    """A computed part of a body.
+
+    mesh: curved to order 2; boundaries arc (the lowest ARC degrees, fine), circle (the rest of the
+        outline) and planes of symmetry
+    held: arguments of VectorH1 for the planes of symmetry
+    gradient: displacement gradient (n x n) of a displacement
+    share: weight that makes the computed part stand for HALF of the body
+    bulk_orders: quadrature orders of the energy in the plain and the tuned form; NGSolve uses them
+        for the stress together with the inertia, and alone
+    more: further orders for `share`, in the body and on its outline
+    """
 
     mesh: ng.Mesh
     held: dict[str, str]
@@ -76,7 +95,8 @@ class Shape:
 
 
 def half_disc(radius: float, contact_mesh_size: float):
-    """Half a disc over y = 0 to the right of its axis, a face of OCC; edges arc, circle and axis."""
+    """Half a disc above y = 0 to the right of its axis, as an OCC face with the edges arc, circle
+    and axis."""
     face = WorkPlane().MoveTo(0, 0).Arc(radius, ARC).Arc(radius, 180 - ARC).Close().Face()
     for edge in face.edges:
         middle = edge.center
@@ -87,7 +107,8 @@ def half_disc(radius: float, contact_mesh_size: float):
 
 
 class Body:
-    """A shape in motion; numbers are those of HALF of it, as the march of the peers doubles them."""
+    """A moving shape. All numbers refer to HALF of the body; the time loop of peer.py doubles them.
+    """
 
     program, version = "ngsolve", metadata.version("ngsolve")
     tuned = False
@@ -110,27 +131,29 @@ class Body:
         self.energy0 = self.energy()
 
     def start(self) -> tuple[float, ...]:
-        """The velocity before [m/s]."""
+        """The initial velocity [m/s]."""
         return tuple(-self.o.speed * (i == 1) for i in range(self.mesh.dim))
 
     def reported(self) -> dict[str, float]:
-        """What is printed beside the march's own numbers."""
+        """Further results that are printed."""
         return {}
 
     def deformation(self, u):
-        """F of a displacement."""
+        """The deformation gradient F of a displacement."""
         H = self.shape.gradient(u)
         return Id(H.dims[0]) + H
 
     def stress_form(self, u, w):
-        """The work of the stress of the step that ends at u [J]."""
+        """The virtual work of the stress in the step that ends at u [J]."""
         return self.shape.share * InnerProduct(mean_piola(self.deformation(self.u0), self.deformation(u), self.o), self.shape.gradient(w))
 
     def contact_form(self, u, w):
-        """The work of the pressure, t_N = the mean gradient of k p^2 / 2 in the step [J]."""
+        """The virtual work of the pressure [J]. t_N is the mean gradient of k p^2 / 2 over the
+        step."""
         q0, q1, k = -(y + self.u0[1]), -(y + u[1]), self.o.penalty
         p0, p1 = IfPos(q0, q0, 0), IfPos(q1, q1, 0)
-        return -self.shape.share * (k / 2 * (p0 + p1) * (p1 - p0) / (q1 - q0 + TINY)) * w[1]     # the fraction is 1 where both are closed
+        # The fraction is 1 if the gap is closed at both ends of the step.
+        return -self.shape.share * (k / 2 * (p0 + p1) * (p1 - p0) / (q1 - q0 + TINY)) * w[1]
 
     def outline(self, names: str):
         return ds(names, bonus_intorder=self.shape.more[1])
@@ -153,7 +176,8 @@ class Body:
     def step(self) -> float:
         before = self.velocity()
         self.u0.vec.data = self.u.vec
-        self.u.vec.data += self.increment      # the last one: smoother than what the last velocity would say
+        # The last increment is a smoother predictor than the last velocity.
+        self.u.vec.data += self.increment
         self.solve()
         self.increment.data = self.u.vec - self.u0.vec
         self.v0.vec.data *= -1
@@ -162,7 +186,7 @@ class Body:
 
 
 class Plain(Body):
-    """One form, full Newton, UMFPACK."""
+    """The step as one form, solved by the full Newton method with UMFPACK."""
 
     def __init__(self, shape: Shape, options: argparse.Namespace):
         super().__init__(shape, options)
@@ -172,11 +196,12 @@ class Plain(Body):
         self.form += self.contact_form(u, w).Compile() * self.outline("arc|circle")
 
     def acceleration(self, u):
-        """The mean of the step that ends at u [m/s2]."""
+        """The mean acceleration of the step that ends at u [m/s2]."""
         return 2 / self.dt ** 2 * (u - self.u0 - self.dt * self.v0)
 
     def correct(self):
-        """A full step of Newton's method; returns the work of the residual on it [J/m, J]."""
+        """A full step of Newton's method. Returns the work of the residual on its correction [J/m,
+        J]."""
         self.form.Apply(self.u.vec, self.residual)
         self.form.AssembleLinearization(self.u.vec)
         self.change.data = self.form.mat.Inverse(self.free, inverse="umfpack") * self.residual
@@ -200,7 +225,7 @@ class Newmark(Plain):
         super().__init__(shape, options)
 
     def acceleration(self, u):
-        """At the end of the step [m/s2]; the flight has none."""
+        """The acceleration at the end of the step [m/s2]. It is zero in the initial flight."""
         self.a0 = self.a0 or ng.GridFunction(self.space)
         return 4 / self.dt ** 2 * (u - self.u0 - self.dt * self.v0) - self.a0
 
@@ -218,14 +243,16 @@ class Newmark(Plain):
         self.u.vec.data += self.increment
         self.solve()
         self.increment.data = self.u.vec - self.u0.vec
-        self.change.data = (4 / self.dt ** 2) * self.increment - (4 / self.dt) * self.v0.vec - 2 * self.a0.vec     # a1 - a0
+        # A1 - a0.
+        self.change.data = (4 / self.dt ** 2) * self.increment - (4 / self.dt) * self.v0.vec - 2 * self.a0.vec
         self.v0.vec.data += self.dt * self.a0.vec + (self.dt / 2) * self.change
         self.a0.vec.data += self.change
         return (self.velocity() - before) * self.weight / self.dt
 
 
 class Tuned(Body):
-    """Constant mass, compiled residual, frozen Cholesky factor of a symmetric tangent."""
+    """The step with a constant mass, a compiled residual and a Cholesky factor of a symmetric
+    tangent that is kept."""
 
     tuned = True
 
@@ -236,7 +263,8 @@ class Tuned(Body):
         stressed, inertia = self.body_forms()
         self.force += contact
         self.symmetric += contact
-        # the tangent itself, used from the first step on that does not converge with the other
+        # The exact tangent, used from the first step on that does not converge with the symmetric
+        # one.
         self.exact = ng.BilinearForm(self.space)
         self.exact += stressed
         self.exact += inertia
@@ -245,8 +273,12 @@ class Tuned(Body):
         self.tangent, self.inverse = (self.symmetric, "sparsecholesky"), None
 
     def body_forms(self):
-        """Without contact: force, the residual's stress for the displacement in self.u, and symmetric, the tangent of the midpoint rule, which
-        differs by the order of dt from that of its own; gives the forms of stress and inertia."""
+        """Builds the forms of the body without contact.
+
+        `force` is the stress part of the residual for the displacement in self.u. `symmetric` is
+        the tangent of the midpoint rule, which differs from the exact tangent by the order of dt.
+        Returns the forms of stress and inertia.
+        """
         u, w = self.space.TnT()
         stressed = self.stress_form(u, w).Compile() * self.bulk
         self.force = ng.BilinearForm(self.space, nonassemble=True)
@@ -266,7 +298,7 @@ class Tuned(Body):
         self.factorizations += 1
 
     def out_of_balance(self):
-        """The residual of the displacement in self.u."""
+        """Computes the residual of the displacement in self.u."""
         self.inertia.data = self.u.vec - self.predicted
         self.force.Apply(self.u.vec, self.residual)
         self.residual.data += (2 / self.dt ** 2) * (self.mass * self.inertia)
@@ -297,7 +329,8 @@ class Tuned(Body):
             length = 1.0
             self.u.vec.data -= self.change
             self.out_of_balance()
-            while not abs(ng.InnerProduct(self.change, self.residual)) < abs(work) and length > 1e-2:    # line search
+            # Line search.
+            while not abs(ng.InnerProduct(self.change, self.residual)) < abs(work) and length > 1e-2:
                 length /= 2
                 self.u.vec.data += length * self.change
                 self.out_of_balance()
@@ -306,8 +339,10 @@ class Tuned(Body):
 
 def main(scene: str, build: Callable[[argparse.Namespace], Shape], forms: dict[str, type[Body]] | None = None,
          more: dict[str, tuple[float, str]] | None = None) -> None:
-    """Runs the body that `build` makes of the flags, those of `more` (default, unit) among them, in the form that they ask for; `scene` is the
-    one of ours that it stands beside."""
+    """Runs the body that `build` makes from the flags, in the form that the flags select.
+
+    `scene` is our scene of the same problem. `more` holds further numbers as name: (default, unit).
+    """
     forms = forms or {"plain": Plain, "newmark": Newmark, "tuned": Tuned}
     options = peer.arguments("NGSolve", tuple(forms), scene, more or {})
     if options.mesh:

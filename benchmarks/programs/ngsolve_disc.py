@@ -1,4 +1,7 @@
-"""disc-normal with NGSolve: curved P2 triangles of netgen with our sizes, plane strain; half the disc. See ngsolve_body.py."""
+"""The scene disc-normal with NGSolve; see ngsolve_body.py.
+
+Half of the disc in plane strain, with curved P2 triangles of netgen with our sizes.
+"""
 
 import ngsolve as ng
 import ngsolve_body

@@ -1,10 +1,18 @@
-"""disc-oblique with NGSolve: the whole disc, curved P2 triangles of netgen with our sizes, plane strain, friction (11)-(13) of the linear regularisation.
+"""The scene disc-oblique with NGSolve: the whole disc in plane strain with friction (11)-(13).
 
-The friction of a step has its mean velocity v_T = (u1_x - u0_x)/dt and its mean pressure t_N:  t_T = -mu phi t_N,  phi = clamp(v_T/eps, -1, 1),
-mu = mu_e where |v_T| < eps and mu_d elsewhere; its work, -t_T v_T dt, is counted with the energy.
-plain: as users would write it: friction is a term more in the one form of ngsolve_body.Plain; full Newton with UMFPACK.
-tuned: a frozen sparse Cholesky factorisation of the body alone, A. Contact is solved on the window of unknowns that can touch,
-       x = x_w + C f(x), C = (A^-1) there, by Newton's method on dense matrices; a point keeps its side of the jump of mu until the velocity found disagrees.
+Curved P2 triangles of netgen with our sizes. The friction law has the linear regularisation. In a
+step with the mean tangential velocity v_T = (u1_x - u0_x)/dt and the mean pressure t_N,
+
+t_T = -mu phi t_N,  phi = clamp(v_T/eps, -1, 1),  mu = mu_e if |v_T| < eps, else mu_d.
+
+The work of friction, -t_T v_T dt, is counted with the energy. Two forms:
+
+plain: as users would write it: friction is a further term in the form of ngsolve_body.Plain, solved
+    by the full Newton method with UMFPACK.
+tuned: a sparse Cholesky factor A of the body alone that is kept. Contact is solved on the active
+    set, x = x_w + C f(x) with the compliance C = A^-1 restricted to it, by Newton's method with
+    dense matrices. A point keeps its stick or slip status until the computed velocity contradicts
+    it.
 """
 
 import math
@@ -17,15 +25,19 @@ from ngsolve import BND, IfPos, x, y
 from ngsolve_body import Body, Plain, Shape, Tuned, main
 from ngsolve_two_bodies import Outline
 
-BEHIND, AHEAD = 45, 75      # degrees from the lowest point against and along the motion, fine: the disc turns by 30 while it touches
-SLOW = 0.75                 # of ngsolve_body, here where a factorisation costs the columns of the window too
-TURNS = 4                   # changes of side of a point in a step; then it slides
+# Angles from the lowest point, against and along the motion, that bound the fine part of the
+# outline [degrees]. The disc turns by 30 degrees during contact.
+BEHIND, AHEAD = 45, 75
+# As in ngsolve_body; larger here, as a new factor also costs the columns of the compliance.
+SLOW = 0.75
+# Largest number of status changes of a point in a step; afterwards the point slips.
+TURNS = 4
 FRICTION = {"angle": (60.0, "degrees between velocity and plane"), "friction-static": (0.7, "-"), "friction-dynamic": (0.5, "-"),
             "slip-velocity": (0.1, "m/s, eps")}
 
 
 def disc(options) -> Shape:
-    """The whole disc: share 1/2, as numbers are those of a half."""
+    """The whole disc. `share` is 1/2, as all numbers refer to half of the body."""
     r = options.radius
     face = WorkPlane().MoveTo(0, 0).Arc(r, AHEAD).Arc(r, 360 - AHEAD - BEHIND).Arc(r, BEHIND).Close().Face()
     for edge in face.edges:
@@ -36,9 +48,10 @@ def disc(options) -> Shape:
 
 
 class Oblique(Body):
-    """What both forms share: the start, and what is reported of a disc that slides and turns."""
+    """The common part of both forms: the initial velocity and the results of a disc that slides and
+    rotates."""
 
-    rubbed = 0.0            # work of friction on HALF of it so far [J/m]
+    rubbed = 0.0  # work of friction on HALF of the disc so far [J/m]
 
     def start(self) -> tuple[float, ...]:
         angle = math.radians(self.o.angle)
@@ -48,12 +61,14 @@ class Oblique(Body):
         return super().energy() + self.rubbed
 
     def reported(self) -> dict[str, float]:
-        """Of the whole disc: velocity, angular momentum about its centre, work of friction."""
+        """Tangential velocity, angular momentum about the centre and work of friction of the whole
+        disc."""
         place, moment = ng.GridFunction(self.space), self.u.vec.CreateVector()
         place.Set(ng.CF((x, y)))
         place.vec.data += self.u.vec
         n = self.dofs // 2
-        moment[:n], moment[n:] = -1 * place.vec[n:], place.vec[:n]          # of the momentum M v about the origin
+        # The moment of the momentum M v about the origin.
+        moment[:n], moment[n:] = -1 * place.vec[n:], place.vec[:n]
         self.change.data = self.mass * self.v0.vec
         sides = self.change.CreateVector()
         _, w = self.space.TnT()
@@ -65,7 +80,8 @@ class Oblique(Body):
 
 
 class PlainOblique(Oblique, Plain):
-    """One form with everything; mu of a point by its velocity in the step before, as Newton's method finds no way over the jump."""
+    """All terms in one form. The mean velocity of the previous step selects mu at a point, since
+    Newton's method does not converge across the jump of mu."""
 
     def __init__(self, shape: Shape, options):
         self.mean = None
@@ -86,7 +102,8 @@ class PlainOblique(Oblique, Plain):
         return -self.shape.share * (along * w[0] + normal * w[1])
 
     def solve(self):
-        """Newton's method, damped as NGSolve's own: where the work of the residual grows the step is halved."""
+        """Newton's method with NGSolve's damping: the step is halved while the work of the residual
+        grows."""
         for _ in range(50):
             work, length = self.correct(), 1.0
             if peer.small(work, self.o.tolerance * self.energy0):
@@ -108,7 +125,7 @@ class PlainOblique(Oblique, Plain):
 
 
 class TunedOblique(Oblique):
-    """The body by a frozen Cholesky factor, contact and friction on the window."""
+    """The body with a Cholesky factor that is kept; contact and friction on the active set."""
 
     tuned = True
 
@@ -119,8 +136,9 @@ class TunedOblique(Oblique):
         place.Set(ng.CF((x, y)))
         self.half = scalar.ndof
         arc = Outline(scalar, "arc", self.nodal(place.vec).copy(), 1.0)
-        self.nodes = np.unique(arc.dofs)                        # scalar dofs of the arc
-        self.N = np.zeros((len(arc.weight), len(self.nodes)))   # values at its points
+        self.nodes = np.unique(arc.dofs)  # scalar dofs of the arc
+        # Shape functions at the Gauss points of the arc.
+        self.N = np.zeros((len(arc.weight), len(self.nodes)))
         for point, (dofs, values) in enumerate(zip(arc.dofs, arc.N)):
             self.N[point, np.searchsorted(self.nodes, dofs)] = values
         self.weights, self.rest = shape.share * arc.weight, self.nodal(place.vec)[self.nodes].T.copy()
@@ -131,7 +149,7 @@ class TunedOblique(Oblique):
         return vector.FV().NumPy().reshape(2, -1).T
 
     def places(self, vector) -> np.ndarray:
-        """Coefficients (2, nodes) of the arc's positions at a displacement."""
+        """Coefficients (2, nodes) of the positions of the arc for a displacement."""
         return self.rest + self.nodal(vector)[self.nodes].T
 
     def factorize(self):
@@ -141,7 +159,8 @@ class TunedOblique(Oblique):
         self.columns, self.solved, self.known = np.zeros(2 * [2 * len(self.nodes)]), np.zeros(len(self.nodes), bool), (None, None)
 
     def compliance(self, window: np.ndarray) -> np.ndarray:
-        """C of the window's nodes, x before y; its columns are kept as long as the factorisation."""
+        """The compliance C of the nodes in `window`, x before y. Its columns are kept as long as
+        the factor."""
         if self.known[0] == window.tobytes():
             return self.known[1]
         missing = window[~self.solved[window]]
@@ -161,7 +180,8 @@ class TunedOblique(Oblique):
         return self.known[1]
 
     def tractions(self, before: np.ndarray, after: np.ndarray, sticks: np.ndarray):
-        """At points: t_N, t_T, v_T and the derivatives of t_N by the penetration, t_T by it and by the way."""
+        """Tractions at points: t_N, t_T, v_T, dt_N/dp, dt_T/dp and dt_T/ds, with the penetration p
+        and the slip increment s."""
         o, q0, q1 = self.o, -before[1], -after[1]
         p0, p1, gone, v = np.maximum(q0, 0), np.maximum(q1, 0), q1 - q0, (after[0] - before[0]) / self.dt
         moves = abs(gone) > 1e-14
@@ -173,7 +193,10 @@ class TunedOblique(Oblique):
         return normal, -ratio * normal, v, stiff, -ratio * stiff, -steep * normal / self.dt
 
     def touch(self, before: np.ndarray, free: np.ndarray, guess: np.ndarray, window: np.ndarray):
-        """Positions (2, window) with x = free + C f(x), and these forces f (2, window) of the points that the window moves."""
+        """Solves x = free + C f(x) for the positions x (2, window) of the active set.
+
+        Returns x and the nodal forces f (2, window) of the points that these nodes move.
+        """
         C, points = self.compliance(window), np.flatnonzero((self.N[:, window] != 0).any(axis=1))
         N, w, n = self.N[np.ix_(points, window)], self.weights[points], len(window)
         start, place, turned = before @ self.N[points].T, guess[:, window].reshape(-1), np.zeros(len(points), int)
@@ -239,7 +262,7 @@ class TunedOblique(Oblique):
         raise peer.StepFailed("no convergence")
 
     def rub(self, before: np.ndarray):
-        """Counts the work of friction of the step."""
+        """Adds the work of friction of the step."""
         _, along, v, *_ = self.tractions(before @ self.N.T, self.places(self.u.vec) @ self.N.T, self.sticks)
         self.rubbed -= self.dt * self.weights @ (along * v)
 

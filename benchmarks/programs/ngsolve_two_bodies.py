@@ -1,14 +1,21 @@
-"""A disc on a free block with NGSolve (`pip install ngsolve==6.2.2608`): a second opinion on two bodies.
+"""A disc on a free block with NGSolve: an independent solution for two bodies.
 
-Half of both bodies (u_x = 0 on the axis x = 0), plane strain, curved P2 triangles of netgen, no friction, no gravity. With
---clamped 1 the block is a beam that is held at its ends. Shares nothing with our own step: central differences with the consistent mass. Contact of potential k p^2 / 2 per unit reference length:
-two-sided: by hand, each Gauss point of either outline against the closest point of the other's deformed outline (P2 edges, so
-           parabolas), half the weight in each role; its exact gradient but where the closest point jumps over a corner
-           between two edges, so momentum is exact and the energy nearly (1e-5 at k = 1e9 Pa/m, 1e-4 at 1e10).
-ngsolve:   as NGSolve's users would write it: ContactBoundary, points of the upper outline alone, p along their normal; not quite
-           a gradient, and its potential is not counted in the energy, which is therefore to be compared after the contact.
-Ends with a line of JSON: whole bodies, SI units, per metre of thickness; y upwards; energies of vibration: kinetic about the body's
-mean velocity + elastic, after the contact.
+Install NGSolve with `pip install ngsolve==6.2.2608`. Half of both bodies (u_x = 0 on the axis x =
+0), plane strain, curved P2 triangles of netgen, no friction, no gravity. With --clamped 1 the block
+is a beam with clamped ends. The method has nothing in common with our step: central differences
+with the consistent mass. The contact potential is k p^2 / 2 per unit reference length:
+
+two-sided: closest-point projection of each Gauss point of either outline onto the other deformed
+    outline (P2 edges, so parabolas), with half of the weight in each role. The forces are the exact
+    gradient of the potential except where the closest point jumps over a corner between two edges.
+    Hence momentum is exact and energy is conserved nearly (1e-5 at k = 1e9 Pa/m, 1e-4 at 1e10).
+ngsolve: as users of NGSolve would write it: ContactBoundary with the points of the upper outline
+    only and p along their normal. The forces are not quite a gradient. The energy does not contain
+    the potential and is therefore to be compared after the contact.
+
+Prints a line of JSON about the whole bodies in SI units per metre of thickness; y is upwards. The
+energy of vibration is the elastic energy and the kinetic energy about the mean velocity of the
+body, after the contact.
 """
 
 import argparse
@@ -25,9 +32,10 @@ from ngsolve import BND, Grad, Id, IfPos, InnerProduct, Trace, ds, dx, x, y
 from ngsolve_body import strain_energy, stress
 from peer import with_numbers
 
-FINE_ANGLE = 60             # degrees from the axis: where the discs' outline is fine and in contact
-ORDER = 4                   # of the quadrature of the stress and its energy
-SAMPLE = 20                 # steps between two rows of the history
+# Angle from the axis up to which the outline of the disc is fine and may be in contact [degrees].
+FINE_ANGLE = 60
+ORDER = 4  # order of the quadrature of the stress and its energy
+SAMPLE = 20  # number of steps between two rows of the history
 BODIES = ("upper", "lower")
 OUTLINES = ("upper outline", "lower outline")
 
@@ -46,7 +54,11 @@ def arguments() -> argparse.Namespace:
 
 
 def bodies_mesh(o: argparse.Namespace) -> ng.Mesh:
-    """Half bodies, drawn 4 radii apart; materials upper and lower, boundaries axis, `OUTLINES` (the fine ones), clamp and free."""
+    """The half bodies, drawn 4 radii apart.
+
+    The materials are upper and lower; the boundaries are axis, OUTLINES (the fine ones), clamp and
+    free.
+    """
     half, fine = o.width / 2, 1.6 * o.radius
     upper = occ.WorkPlane().MoveTo(0, 4 * o.radius).Arc(o.radius, FINE_ANGLE).Arc(o.radius, 180 - FINE_ANGLE).Close().Face()
     lower = occ.WorkPlane().MoveTo(0, -o.height).LineTo(half, -o.height).LineTo(half, 0).LineTo(fine, 0).LineTo(0, 0).LineTo(0, -o.height).Face()
@@ -65,22 +77,26 @@ def bodies_mesh(o: argparse.Namespace) -> ng.Mesh:
 
 
 class Outline:
-    """A chain of P2 edges from the axis outwards, in NGSolve's basis 1 - s, s, bubble s (1 - s); dofs of the scalar space."""
+    """A chain of P2 edges from the axis outwards in NGSolve's basis 1 - s, s, bubble s (1 - s);
+    dofs of the scalar space."""
 
     def __init__(self, space, name: str, reference: np.ndarray, side: float):
         edges = np.array([element.dofs for element in space.Elements(BND) if space.mesh.GetBoundaries()[element.index] == name])
         begin, end = reference[edges[:, 0], 0], reference[edges[:, 1], 0]
         edges[begin > end, :2] = edges[begin > end, 1::-1]
-        self.edges, self.side = edges[np.argsort(np.minimum(begin, end))], side      # side: +1 where the body is left of the chain
+        # side: +1 if the body is to the left of the chain.
+        self.edges, self.side = edges[np.argsort(np.minimum(begin, end))], side
         bubble = ng.GridFunction(space)
         bubble.vec[int(edges[0, 2])] = 1
         middles = bubble(space.mesh.MapToAllElements(ng.IntegrationRule(points=[(0.5,)], weights=[1.0]), space.mesh.Boundaries(name)))
         self.bubble = 4 * middles.flat[np.argmax(np.abs(middles))]
         nodes, weights = np.polynomial.legendre.leggauss(4)
-        self.N = np.tile(self.shape((nodes + 1) / 2), (len(edges), 1))               # of all Gauss points, edge by edge
+        # Shape functions at all Gauss points, edge by edge.
+        self.N = np.tile(self.shape((nodes + 1) / 2), (len(edges), 1))
         self.dofs = np.repeat(self.edges, 4, axis=0)
         dX = np.einsum("ga,gai->gi", np.tile(self.slope((nodes + 1) / 2), (len(edges), 1)), reference[self.dofs])
-        self.weight = np.tile(weights / 2, len(edges)) * np.linalg.norm(dX, axis=1)  # reference length [m]
+        # The quadrature weight in terms of reference length [m].
+        self.weight = np.tile(weights / 2, len(edges)) * np.linalg.norm(dX, axis=1)
 
     def shape(self, s):
         return np.stack([1 - s, s, self.bubble * s * (1 - s)], axis=-1)
@@ -95,7 +111,11 @@ class Outline:
         return (self.slope(s)[..., None] * corners).sum(-2)
 
     def project(self, points: np.ndarray, corners: np.ndarray) -> np.ndarray:
-        """s of the closest point on each edge (points, candidates, 3 dofs, 2): Newton's method, kept in [0, 1]."""
+        """Parameters s in [0, 1] of the closest points on the edges, by Newton's method.
+
+        `corners` (points, candidates, 3 dofs, 2) are the coefficients of the candidate edges of
+        each point.
+        """
         s = np.full(corners.shape[:2], 0.5)
         for _ in range(4):
             r, t = points[:, None] - self.point(s, corners), self.tangent(s, corners)
@@ -108,13 +128,17 @@ class Outline:
         return self.side * np.stack([t[:, 1], -t[:, 0]], axis=1) / np.linalg.norm(t, axis=1)[:, None]
 
     def closest(self, points: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Which points are inside; edge, s, gap < 0 and outward normal (m, 2) of their closest points, which are sought on the
-        edge of the nearest middle and its two neighbours."""
-        corners = position[self.edges]                                               # (edges, 3 dofs, 2)
+        """Closest-point projection onto the deformed outline, for points inside the body.
+
+        The edge with the nearest middle and its two neighbours are searched. Returns the indices of
+        the points inside, and their edge, s, gap < 0 and outward normal (m, 2).
+        """
+        corners = position[self.edges]  # (edges, 3 dofs, 2)
         middles, chords = self.point(np.full(len(corners), 0.5), corners), corners[:, 1] - corners[:, 0]
         nearest = np.argmin(((points[:, None] - middles) ** 2).sum(-1), axis=1)
         height = ((points - middles[nearest]) * self.outward(chords)[nearest]).sum(1)
-        which = np.flatnonzero(height < 0.25 * np.linalg.norm(chords, axis=1)[nearest])     # the others are far outside
+        which = np.flatnonzero(height < 0.25 * np.linalg.norm(chords, axis=1)[nearest])
+        # The other points are far outside.
         points = points[which]
         edge = np.clip(nearest[which, None] + np.array([-1, 0, 1]), 0, len(self.edges) - 1)
         s = self.project(points, corners[edge])
@@ -123,21 +147,25 @@ class Outline:
         edge, s, distance = edge[best], s[best], distance[best]
         r, normal = points - self.point(s, corners[edge]), self.outward(self.tangent(s, corners[edge]))
         gap = np.where((r * normal).sum(1) < 0, -distance, distance)
-        vertex = ((s == 0) | (s == 1)) & (distance > 0)                              # there the gap's gradient is along r
+        # At a vertex the gradient of the gap is along r.
+        vertex = ((s == 0) | (s == 1)) & (distance > 0)
         normal[vertex] = r[vertex] / gap[vertex, None]
-        inside = (gap < 0) & ~((edge == len(self.edges) - 1) & (s == 1))             # beyond the chain: open
+        # The outline is open beyond the last point of the chain.
+        inside = (gap < 0) & ~((edge == len(self.edges) - 1) & (s == 1))
         return which[inside], edge[inside], s[inside], gap[inside], normal[inside]
 
 
 class Pair:
-    """Both half bodies: displacement u and velocity v at the time t, the first touch at 0."""
+    """Both half bodies with displacement u and velocity v at the time t. Contact begins at t = 0.
+    """
 
     def __init__(self, o: argparse.Namespace):
         self.o, self.t, self.mesh = o, 0.0, bodies_mesh(o)
         self.space = ng.VectorH1(self.mesh, order=2, dirichletx="axis|clamp", dirichlety="clamp")
         scalar = ng.H1(self.mesh, order=2)
         self.u, self.v, coordinates = (ng.GridFunction(self.space) for _ in range(3))
-        self.u.Set(ng.CF((0, -4 * o.radius)), definedon=self.mesh.Materials("upper"))            # to the first touch
+        # Moves the disc to the first contact.
+        self.u.Set(ng.CF((0, -4 * o.radius)), definedon=self.mesh.Materials("upper"))
         self.v.Set(self.mesh.MaterialCF({"upper": ng.CF((0, -o.speed)), "lower": ng.CF((0, 0))}))
         coordinates.Set(ng.CF((x, y)))
         self.reference = self.nodal(coordinates.vec).copy()
@@ -147,12 +175,13 @@ class Pair:
         self.masses = [ng.Integrate(ng.CF(o.density) * dx(body), self.mesh) for body in BODIES]
         self.is_upper = np.zeros(scalar.ndof, bool)
         self.is_upper[[dof for element in scalar.Elements() if element.mat == BODIES[0] for dof in element.dofs]] = True
-        self.is_upper_vertex = self.is_upper & (np.arange(scalar.ndof) < self.mesh.nv)             # bubbles carry no net force
+        # Bubble functions carry no resultant force.
+        self.is_upper_vertex = self.is_upper & (np.arange(scalar.ndof) < self.mesh.nv)
         self.dt = o.courant * 2 / self.highest_frequency()
 
     @staticmethod
     def nodal(vector) -> np.ndarray:
-        """Coefficients (scalar dofs, 2)."""
+        """Coefficients of a vector (scalar dofs, 2)."""
         return vector.FV().NumPy().reshape(2, -1).T
 
     def assemble(self):
@@ -173,7 +202,10 @@ class Pair:
         self.linear = linear.Assemble().mat
 
     def highest_frequency(self) -> float:
-        """Of small motions, either outline on springs 2 k: a bound of the pair in contact [1/s]; power iteration."""
+        """An upper bound of the eigenfrequencies of the pair in contact [1/s], by power iteration.
+
+        Motions are small, and either outline is supported by springs of stiffness 2 k.
+        """
         mode, image = self.u.vec.CreateVector(), self.u.vec.CreateVector()
         image.SetRandom(1)
         for _ in range(60):
@@ -182,7 +214,8 @@ class Pair:
         return math.sqrt(ng.Norm(image))
 
     def contact_forces(self) -> tuple[float, float]:
-        """Fills self.contact; the normal force on the upper half body [N/m] and the potential [J/m]."""
+        """Computes self.contact. Returns the normal force on the upper half body [N/m] and the
+        potential [J/m]."""
         position, total, upwards, potential = self.reference + self.nodal(self.u.vec), np.zeros((2, self.space.ndof // 2)), 0.0, 0.0
         points = [np.einsum("ga,gai->gi", outline.N, position[outline.dofs]) for outline in self.outlines]
         near = points[0][:, 1] < points[1][:, 1].max(), points[1][:, 1] > points[0][:, 1].min()
@@ -192,8 +225,9 @@ class Pair:
             which = which[inside]
             if np.any(which >= len(own.weight) - 4) or np.any(edge == len(other.edges) - 1):
                 raise SystemExit("contact reaches the end of the fine outline")
-            weight = 0.5 * own.weight[which]                                         # each role counts half
-            force = -(self.o.penalty * weight * gap)[:, None] * normal               # on the point; its reaction on the edge
+            weight = 0.5 * own.weight[which]  # each role has half of the weight
+            # The force on the point; its reaction acts on the edge.
+            force = -(self.o.penalty * weight * gap)[:, None] * normal
             potential += self.o.penalty / 2 * (weight * gap ** 2).sum()
             upwards += (1 - 2 * role) * force[:, 1].sum()
             for component in range(2):
@@ -203,7 +237,11 @@ class Pair:
         return upwards, potential
 
     def accelerate(self) -> tuple[float, float]:
-        """Acceleration at u, and half a step of the velocity: to the time of u where it was half a step before."""
+        """Computes the acceleration at u and advances the velocity by half a step, to the time of
+        u.
+
+        Returns the normal force [N/m] and the potential [J/m].
+        """
         self.stress.Apply(self.u.vec, self.force)
         result = self.contact_forces()
         self.contact.data -= self.force
@@ -212,7 +250,7 @@ class Pair:
         return result
 
     def advance(self):
-        """From v at the time of u to u one dt on, v half a step before it."""
+        """Advances the velocity by half a step and the displacement by a whole step dt."""
         self.v.vec.data += self.dt / 2 * self.acceleration
         self.u.vec.data += self.dt * self.v.vec
         self.t += self.dt
@@ -221,7 +259,7 @@ class Pair:
         return [ng.InnerProduct(weight, self.v.vec) / mass for weight, mass in zip(self.weights, self.masses)]
 
     def state(self, force: float, potential: float) -> dict:
-        """A row of the history, whole bodies."""
+        """A row of the history for the whole bodies."""
         self.force.data = self.mass * self.v.vec
         twice = (self.force.FV().NumPy() * self.v.vec.FV().NumPy()).reshape(2, -1).sum(0)
         kinetic = twice[self.is_upper].sum(), twice[~self.is_upper].sum()
@@ -233,7 +271,7 @@ class Pair:
 
 
 class PairOfNGSolve(Pair):
-    """Contact by ContactBoundary."""
+    """Contact by NGSolve's ContactBoundary."""
 
     def assemble(self):
         super().assemble()
@@ -252,7 +290,11 @@ class PairOfNGSolve(Pair):
 
 
 def march(pair: Pair) -> tuple[list[dict], np.ndarray, str]:
-    """Rows of the history, times and forces of all steps, and how it ended: "over" where the contact has been over for a while."""
+    """Integrates until some time after the contact.
+
+    Returns the rows of the history, times and forces of all steps, and the reason of the end:
+    "over" if the contact has ended.
+    """
     o, rows, forces, last = pair.o, [], [], 0.0
     longest = 60 * o.radius * math.sqrt(o.density / o.young)
     while pair.t < max((1 + o.after) * last, 0.05 * longest) and pair.t < longest:
@@ -268,7 +310,7 @@ def march(pair: Pair) -> tuple[list[dict], np.ndarray, str]:
 
 
 def summary(pair: Pair, rows: list[dict], forces: np.ndarray, end: str) -> dict:
-    """What is reported of the whole bodies; drift of the energy among the rows."""
+    """Results of the whole bodies. The energy drift is the largest among the rows."""
     t, force = forces.T
     strong, touching = np.flatnonzero(force > 0.01 * force.max()), np.flatnonzero(force)
     final, masses = rows[-1], [2 * mass for mass in pair.masses]

@@ -1,8 +1,10 @@
-"""What the peer programs share: their flags, the mesh of the half disc, the march and the line of JSON.
+"""The common part of the other programs: flags, mesh of the half disc, time loop and line of JSON.
 
-The problem is the scene disc-normal, ball-axisymmetric or ball: a body, one half of it or less by symmetry, falling on the rigid plane
-y = 0 with the traction t_N = k max(0, -gap) per unit reference area, energy-momentum step, constant dt. SI units, the disc's per
-metre of thickness. A peer gives a Model; `march` runs it until the contact has been over for a tenth of its length.
+The problem is the scene disc-normal, ball-axisymmetric or ball: half of a body or less, by
+symmetry, falls on the rigid plane y = 0. The traction is t_N = k max(0, -gap) per unit reference
+area, the step is energy-momentum with constant dt. SI units, for the disc per metre of thickness. A
+program provides a Model; `march` runs it until the contact has been over for a tenth of its
+duration.
 """
 
 import argparse
@@ -19,11 +21,11 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from ffimpact.mesh import mesh  # noqa: E402
 
-LONGEST = 20e-3             # s: no contact of these bodies lasts that long
+LONGEST = 20e-3  # [s]; no contact of these bodies lasts longer
 
 
 class Model(Protocol):
-    """Half of the body in a peer program; its state is at the end of the last step."""
+    """Half of the body in another program. Its state is at the end of the last step."""
 
     program: str
     version: str
@@ -32,19 +34,20 @@ class Model(Protocol):
     factorizations: int
 
     def step(self) -> float:
-        """Goes one dt on; the mean normal force on the HALF body in this step [N/m; N]. Raises StepFailed."""
+        """Advances by dt. Returns the mean normal force on the HALF body in this step [N/m; N].
+        Raises StepFailed."""
 
     def penetration(self) -> float:
-        """Largest -gap of the points where contact is integrated, negative in flight [m]."""
+        """The largest -gap of the quadrature points of contact [m]. It is negative in flight."""
 
     def energy(self) -> float:
-        """Kinetic + elastic + contact energy of the HALF body [J/m; J]."""
+        """Kinetic, elastic and contact energy of the HALF body [J/m; J]."""
 
     def velocity(self) -> float:
         """Mean of v_y over the mass [m/s]."""
 
     def reported(self) -> dict[str, float]:
-        """What is printed beside the march's own numbers."""
+        """Further results that are printed."""
 
 
 class StepFailed(Exception):
@@ -52,7 +55,11 @@ class StepFailed(Exception):
 
 
 def small(work: float, accepted: float) -> bool:
-    """Whether Newton's method is there: the work of its residual against what is accepted [J/m; J]. Raises StepFailed."""
+    """Whether Newton's method has converged: the work of the residual is at most `accepted` [J/m;
+    J].
+
+    Raises StepFailed if the work is not finite.
+    """
     if not math.isfinite(work):
         raise StepFailed("a stress is not a number")
     return abs(work) <= accepted
@@ -60,7 +67,7 @@ def small(work: float, accepted: float) -> bool:
 
 def arguments(program: str, forms: tuple[str, ...], scene: str = "disc-normal",
               more: dict[str, tuple[float, str]] | None = None) -> argparse.Namespace:
-    """The flags that all peers take and those of `more`, with lame_lambda and lame_mu [Pa] added."""
+    """Parses the flags of all programs and those of `more`. Adds lame_lambda and lame_mu [Pa]."""
     parser = argparse.ArgumentParser(description=f"{scene} with {program}; ends with a line of JSON")
     parser.add_argument("--form", choices=forms, default="tuned", help="how the program is used (default tuned)")
     parser.add_argument("--mesh", type=Path, help="mesh of the half disc (.msh of ffimpact.mesh.mesh) in place of sizes")
@@ -73,7 +80,8 @@ def arguments(program: str, forms: tuple[str, ...], scene: str = "disc-normal",
 
 
 def with_numbers(parser: argparse.ArgumentParser, numbers: dict[str, tuple[float, str]]) -> argparse.Namespace:
-    """The flags given, those of `numbers` (default, unit) among them, with lame_lambda and lame_mu [Pa] added."""
+    """Parses the flags of `parser` and of `numbers`, name: (default, unit). Adds lame_lambda and
+    lame_mu [Pa]."""
     for name, (default, unit) in numbers.items():
         parser.add_argument(f"--{name}", type=float, default=default, help=f"[{unit}] (default {default:g})")
     options = parser.parse_args()
@@ -83,15 +91,18 @@ def with_numbers(parser: argparse.ArgumentParser, numbers: dict[str, tuple[float
 
 
 def half_disc(options: argparse.Namespace) -> mesh.Mesh:
-    """The mesh file, or a mesh of the given sizes (needs gmsh)."""
+    """The mesh of the flag --mesh, or a mesh with the prescribed sizes (needs gmsh)."""
     if options.mesh:
         return mesh.read(options.mesh)
     return mesh.disc(options.radius, options.mesh_size, options.contact_mesh_size, half=True)
 
 
 def middles(half: mesh.Mesh, radius: float) -> tuple[np.ndarray, np.ndarray]:
-    """Middle nodes for curved P2 triangles: points (m, 2), those of the circle on it; and which of them belong to each
-    triangle (t, 3), in the order of its sides 12, 23, 31."""
+    """The middle nodes of curved P2 triangles.
+
+    Returns their points (m, 2), where those of the circle lie on it, and the middle nodes of each
+    triangle (t, 3), in the order of its sides 12, 23, 31.
+    """
     a, b, c = half.triangles.T
     pairs = np.vstack([np.column_stack(pair) for pair in ((a, b), (b, c), (c, a))] + [half.edges])
     edges, which = np.unique(np.sort(pairs, axis=1), axis=0, return_inverse=True)
@@ -104,7 +115,8 @@ def middles(half: mesh.Mesh, radius: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def main(build: Callable[[argparse.Namespace], Model], options: argparse.Namespace) -> None:
-    """Builds the model and marches; exit code 11 and one line where a step fails, as our own runs do."""
+    """Builds the model and runs it. If a step fails, prints one line and exits with code 11, as our
+    runs do."""
     imports = time.process_time()
     try:
         model = build(options)
@@ -115,10 +127,12 @@ def main(build: Callable[[argparse.Namespace], Model], options: argparse.Namespa
 
 
 def march(model: Model, options: argparse.Namespace, before_it: dict[str, float]) -> None:
-    """Marches from the first touch (t = 0) until the contact is over; prints the line of JSON, writes the history.
+    """Integrates from the onset of contact (t = 0) until the contact is over; prints the line of
+    JSON, writes the history.
 
-    Contact begins and ends where the largest penetration, linear in a step, is zero. wall_seconds and cpu_seconds are of the steps alone;
-    before_it: processor seconds of imports and set-up.
+    Contact begins and ends where the largest penetration, linear within a step, is zero.
+    `wall_seconds` and `cpu_seconds` contain the steps only; `before_it` holds the processor seconds
+    of imports and set-up.
     """
     dt, t, first, last = options.dt, 0.0, None, None
     rows, energy0, drift, before = [], model.energy(), 0.0, model.penetration()

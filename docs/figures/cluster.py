@@ -1,4 +1,5 @@
-"""A sweep as a graph of jobs: each point is a job, the table waits for all of them; finished folders are kept."""
+"""A sweep as a graph of jobs: each point is a job, and the table depends on all of them. Finished
+folders are kept."""
 
 from style import BODY, GREEN, GREY, OTHER, RED, arrow, box, diagram, save
 

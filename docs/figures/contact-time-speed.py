@@ -1,4 +1,5 @@
-"""Contact time over speed for both laws, nu = 0.45 (figures 6b and 8 of the paper); where ellipticity is lost, open marks."""
+"""Contact time over speed for both laws, nu = 0.45 (figures 6b and 8 of the paper). Open marks show
+lost ellipticity."""
 
 import numpy as np
 from style import BLUE, FOLDER, RED, graph, save

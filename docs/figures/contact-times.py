@@ -1,4 +1,7 @@
-"""Penalties with which each contact time that the paper prints is met, over nu (St. Venant-Kirchhoff); data of the table in the-paper.md."""
+"""Penalties that reproduce each contact time printed in the paper, over nu (St. Venant-Kirchhoff).
+
+The data are those of the table in the-paper.md.
+"""
 
 from style import BLUE, GREEN, GREY, ORANGE, graph, save
 

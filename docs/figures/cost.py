@@ -1,4 +1,4 @@
-"""What a requested accuracy brings and costs on `disc-normal`: error estimates, unknowns times steps."""
+"""Error estimates and cost (unknowns times steps) over the requested accuracy for `disc-normal`."""
 
 from style import BLUE, FOLDER, GREEN, GREY, ORANGE, RED, graph, save
 

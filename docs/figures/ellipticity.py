@@ -1,4 +1,7 @@
-"""Smallest eigenvalue of the acoustic tensor over mu in uniaxial strain, St. Venant-Kirchhoff, over the stretch and nu."""
+"""Smallest eigenvalue of the acoustic tensor over mu in uniaxial strain, over the stretch and nu.
+
+The law is St. Venant-Kirchhoff.
+"""
 
 import numpy as np
 from style import BLUE, GREEN, GREY, RED, graph, save
@@ -8,7 +11,7 @@ turn = np.radians(np.linspace(0, 90, 181))
 N = np.column_stack([np.cos(turn), np.sin(turn)])
 stretch = np.linspace(0.5, 1.05, 300)
 for nu, color in ((0.0, GREEN), (0.3, BLUE), (0.45, RED)):
-    lam, smallest = 2 * nu / (1 - 2 * nu), []             # over mu = 1
+    lam, smallest = 2 * nu / (1 - 2 * nu), []  # relative to mu = 1
     for one in stretch:
         F = np.diag([one, 1.0])
         E = (F.T @ F - np.eye(2)) / 2

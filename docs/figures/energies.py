@@ -1,4 +1,4 @@
-"""The energies of `disc-oblique` over time: what moves from one to the other, and the work of friction."""
+"""The energies of `disc-oblique` over time and the work of friction."""
 
 from style import BLUE, FOLDER, GREEN, INK, ORANGE, RED, graph, save
 

@@ -1,4 +1,5 @@
-"""The force curve of `disc-normal`: first and last contact, threshold, impulse, compression and restitution phases."""
+"""The force history of `disc-normal` with onset and end of contact, threshold, impulse and the
+phases of compression and restitution."""
 
 import numpy as np
 from style import BLUE, FOLDER, GREEN, GREY, INK, ORANGE, RED, graph, save

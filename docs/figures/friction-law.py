@@ -1,4 +1,5 @@
-"""The regularised friction law (12), (13): three functions phi, and mu phi with a static and a dynamic coefficient."""
+"""The regularised friction law (12), (13): three functions phi, and mu phi with a static and a
+dynamic coefficient."""
 
 import numpy as np
 from style import BLUE, GREEN, GREY, INK, ORANGE, RED, graph, save

@@ -1,4 +1,5 @@
-"""A bar that strikes flat: the exact force on a penalty, with the front that comes back from the free end."""
+"""A bar that strikes flat: the exact force on a penalty, with the wave front that returns from the
+free end."""
 
 import numpy as np
 from style import BLUE, BODY, GREEN, GREY, INK, RED, WIDTH, arrow, ground, plt, save, shape

@@ -11,7 +11,7 @@ for name, ax in zip(NAMES, axes.flat):
     drawn = set(figure.axes)
     result.plot.shapes(ax)
     for one in set(figure.axes) - drawn:
-        one.remove()                      # the colour bar
+        one.remove()  # the colour bar
     ax.set(title=name, xlabel="", ylabel="", xticks=(), yticks=())
     ax.title.set(fontsize=9.5, family="monospace")
     for side in ax.spines.values():

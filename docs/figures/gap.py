@@ -1,4 +1,5 @@
-"""Closest-point projection: contact point, facets of the counter-body, gap vector, normal; and a penetration."""
+"""Closest-point projection: contact point, facets of the counter-body, gap vector, normal, and a
+penetration."""
 
 import numpy as np
 from style import BLUE, BODY, GREY, INK, OTHER, RED, arrow, save, shape, sketch
@@ -9,7 +10,7 @@ curve = 0.18 - 0.16 * s**2
 
 
 def nearest(point):
-    """Closest point of the curve, and its outward normal."""
+    """The closest point of the curve, and its outward normal."""
     distance = np.hypot(s - point[0], curve - point[1])
     fine = np.linspace(-1.7, 1.7, 4001)
     distance = np.hypot(fine - point[0], 0.18 - 0.16 * fine**2 - point[1])

@@ -1,4 +1,4 @@
-"""Labels: numbers of bodies and obstacles of a scene, and labels of the boundary of a mesh file."""
+"""Numbers of bodies and obstacles of a scene, and labels of the boundary in a mesh file."""
 
 import numpy as np
 from style import (

@@ -1,4 +1,5 @@
-"""Where an addition goes: the chain from an entry of a scene to a line of FreeFEM, and where results come out."""
+"""The files that an extension changes, from an entry of a scene to a line of FreeFEM, and the
+output of results."""
 
 from style import BODY, INK, LIGHT, OTHER, arrow, box, diagram, save
 

@@ -1,4 +1,7 @@
-"""Kinds of obstacles in the plane, solid region hatched: plane, circle, bowl, polyline with its direction, implicit surface."""
+"""Kinds of obstacles in the plane, with the solid region hatched.
+
+These are plane, circle, `bowl`, polyline with its direction, and implicit surface.
+"""
 
 import numpy as np
 from style import BLUE, GREEN, GREY, INK, RED, SOLID, WIDTH, arrow, circle, plt, save, shape

@@ -1,4 +1,5 @@
-"""What a run does, from the scene to the result folder, with the second run that estimates the error."""
+"""The stages of a run from the scene to the result folder, with the second run that estimates the
+error."""
 
 from style import BODY, GREEN, GREY, INK, LIGHT, OTHER, arrow, box, diagram, save
 

@@ -1,4 +1,5 @@
-"""Closest-point pairing (9) with both bodies as contact bodies, and pairwise contact (14), (15) with its range."""
+"""Closest-point contact (9) with contact points on both bodies, and pairwise contact (14), (15)
+with its range."""
 
 import numpy as np
 from style import BLUE, BODY, GREY, INK, ORANGE, OTHER, RED, WIDTH, plt, save, shape

@@ -1,4 +1,4 @@
-"""The parts that are installed: Python package, FreeFEM scripts, compiled kernels, gmsh."""
+"""The installed parts: Python package, FreeFEM scripts, compiled kernels, gmsh."""
 
 from style import BODY, GREY, INK, LIGHT, OTHER, arrow, box, diagram, save
 

@@ -1,4 +1,4 @@
-"""What result.plot draws: force, energies, velocities and shapes of `disc-oblique`."""
+"""The figures of result.plot for `disc-oblique`: force, energies, velocities and shapes."""
 
 from style import FOLDER, WIDTH, plt, save
 

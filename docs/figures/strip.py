@@ -1,4 +1,7 @@
-"""Uniaxial strain of a strip: J, and stress over stretch for St. Venant-Kirchhoff and neo-Hookean, with the limits of the former."""
+"""Uniaxial strain of a strip: J, and stress over stretch for St. Venant-Kirchhoff and neo-Hookean.
+
+The limits of St. Venant-Kirchhoff are marked.
+"""
 
 import numpy as np
 from style import BLUE, BODY, GREY, INK, RED, WIDTH, arrow, plt, save, shape
@@ -24,7 +27,8 @@ svk = (lam + 2 * mu) * (stretch**3 - stretch) / 2
 neo = mu * (stretch - 1 / stretch) + lam * np.log(stretch) / stretch
 right.plot(stretch, svk / mu, color=RED, label="St. Venant–Kirchhoff (5)")
 right.plot(stretch, neo / mu, color=BLUE, label="neo-Hookean (6)")
-limit, lost = 1 / np.sqrt(3), 0.9055  # the latter: see ellipticity.py
+# Stretches of the limit point and of the loss of ellipticity; ellipticity.py computes the latter.
+limit, lost = 1 / np.sqrt(3), 0.9055
 right.plot(limit, np.interp(limit, stretch, svk) / mu, "o", color=RED, ms=5)
 right.annotate("limit point Λ = 0.577:\nsoftens below", (limit, np.interp(limit, stretch, svk) / mu), (0.32, -6.5), fontsize=8.5, color=RED,
                arrowprops={"arrowstyle": "-", "color": RED, "lw": 0.8})

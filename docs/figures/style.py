@@ -1,6 +1,8 @@
-"""Common style of the documentation figures: colours, arrows, angles, hatched ground, and the saving as SVG.
+"""Common style of the documentation figures: colours, arrows, angles, hatched ground, and the
+output as SVG.
 
-Every script in this folder writes one or more SVG files beside itself. `python docs/figures/NAME.py` draws one script again.
+Every script in this folder writes one or more SVG files to this folder. `python
+docs/figures/NAME.py` draws the figures of one script again.
 """
 
 import os
@@ -18,7 +20,7 @@ FOLDER = Path(__file__).parent
 INK, GREY, LIGHT = "#222222", "#7a7a7a", "#e4e7eb"
 BLUE, RED, GREEN, ORANGE = "#1f5fa8", "#b5372e", "#2f7d4f", "#c47a12"
 BODY, OTHER, SOLID = "#cfe0f3", "#f6dcc3", "#d7d7d7"
-WIDTH = 6.25  # inches: 600 px at 96 px an inch
+WIDTH = 6.25  # inches: 600 px at 96 px per inch
 
 plt.rcParams.update({
     "font.size": 10, "font.family": "DejaVu Sans", "axes.edgecolor": GREY, "axes.labelcolor": INK, "axes.spines.top": False,
@@ -42,7 +44,7 @@ def graph(height, columns=1, rows=1, **more):
 
 
 def arrow(ax, start, end, color=INK, text="", at=0.5, offset=(0, 0), width=1.6, style="-|>", **words):
-    """An arrow with a label at the share `at` of its length."""
+    """Draws an arrow with a label at the share `at` of its length."""
     ax.annotate("", xy=end, xytext=start, arrowprops={"arrowstyle": style, "color": color, "lw": width, "shrinkA": 0, "shrinkB": 0,
                                                       "mutation_scale": 13})
     if text:
@@ -51,7 +53,7 @@ def arrow(ax, start, end, color=INK, text="", at=0.5, offset=(0, 0), width=1.6, 
 
 
 def angle(ax, centre, radius, start, end, text="", color=INK, offset=1.25, **words):
-    """An arc between two angles in degrees, with its symbol."""
+    """Draws an arc between two angles in degrees, with its symbol."""
     ax.add_patch(Arc(centre, 2 * radius, 2 * radius, theta1=start, theta2=end, color=color, lw=1.2))
     middle = np.radians((start + end) / 2)
     if text:
@@ -60,7 +62,7 @@ def angle(ax, centre, radius, start, end, text="", color=INK, offset=1.25, **wor
 
 
 def spin(ax, centre, radius, start, end, color=INK, text="", offset=(0, 0)):
-    """A circular arrow from one angle to another in degrees."""
+    """Draws a circular arrow between two angles in degrees."""
     turn = np.radians(np.linspace(start, end, 40))
     x, y = centre[0] + radius * np.cos(turn), centre[1] + radius * np.sin(turn)
     ax.plot(x[:-1], y[:-1], color=color, lw=1.6)
@@ -70,13 +72,13 @@ def spin(ax, centre, radius, start, end, color=INK, text="", offset=(0, 0)):
 
 
 def ground(ax, left, right, y=0.0, depth=0.12):
-    """A rigid plane: a line with a hatched strip below it."""
+    """Draws a rigid plane: a line with a hatched strip below it."""
     ax.fill_between([left, right], y - depth, y, facecolor=SOLID, edgecolor=GREY, hatch="////", lw=0)
     ax.plot([left, right], [y, y], color=INK, lw=1.4)
 
 
 def shape(ax, points, face=BODY, edge=INK, **more):
-    """A filled outline."""
+    """Draws a filled outline."""
     ax.add_patch(Polygon(points, closed=True, facecolor=face, edgecolor=edge, **({"lw": 1.4} | more)))
 
 
@@ -87,7 +89,10 @@ def circle(centre, radius, start=0, end=360, number=121):
 
 
 def save(figure, name, kind="svg"):
-    """Writes NAME.svg, or a picture NAME.png of 256 colours, beside the scripts; with FIGURES_PNG=DIR in the environment also a preview."""
+    """Writes NAME.svg, or NAME.png with 256 colours, to the folder of the scripts.
+
+    With FIGURES_PNG=DIR in the environment it also writes a preview.
+    """
     path = FOLDER / f"{name}.{kind}"
     if kind == "svg":
         figure.savefig(path, metadata={"Date": None})
@@ -102,7 +107,7 @@ def save(figure, name, kind="svg"):
 
 
 def box(ax, x, y, width, height, text, face="white", edge=INK, size=9, **more):
-    """A box with text, x and y its centre; for diagrams."""
+    """Draws a box with text, centred at x and y, in a diagram."""
     from matplotlib.patches import FancyBboxPatch
     ax.add_patch(FancyBboxPatch((x - width / 2, y - height / 2), width, height, boxstyle="round,pad=0.02,rounding_size=0.08", facecolor=face,
                                 edgecolor=edge, lw=1.2))
@@ -110,7 +115,7 @@ def box(ax, x, y, width, height, text, face="white", edge=INK, size=9, **more):
 
 
 def diagram(height, width=10.0):
-    """Axes of `width` units for boxes; one unit is the same in both directions."""
+    """Axes of `width` units for boxes. Both directions have the same scale."""
     figure, ax = plt.subplots(figsize=(WIDTH, height), layout="constrained")
     ax.axis("off")
     ax.set(xlim=(0, width), ylim=(0, width * height / WIDTH))

@@ -1,4 +1,5 @@
-"""A sweep: thresholded contact time over speed for two Poisson ratios, with error bars."""
+"""Results of a sweep: thresholded contact time over speed for two Poisson's ratios, with error
+bars."""
 
 from style import BLUE, FOLDER, ORANGE, graph, save
 

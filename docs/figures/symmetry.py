@@ -1,4 +1,5 @@
-"""What is computed: plane strain (whole or half), revolution, half and quarter in space, with axes and factors."""
+"""Computed parts of a body: plane strain (whole or half), revolution, half and quarter in space,
+with axes and symmetry factors."""
 
 import numpy as np
 from style import BLUE, BODY, GREEN, GREY, INK, WIDTH, arrow, circle, ground, plt, save, shape

@@ -1,4 +1,5 @@
-"""One time step: states at its start, middle and end; the chord of the potential as force (discrete gradient)."""
+"""One time step: states at its start, middle and end, and the chord of the potential as force
+(discrete gradient)."""
 
 import numpy as np
 from style import BLUE, GREEN, GREY, INK, RED, arrow, graph, save

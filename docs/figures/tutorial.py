@@ -1,4 +1,5 @@
-"""The pictures of the tutorial: `disc-normal` at four instants, and its force beside a slower neo-Hookean impact."""
+"""Figures of the tutorial: `disc-normal` at four instants, and its force beside that of a slower
+neo-Hookean impact."""
 
 from style import BLUE, FOLDER, ORANGE, WIDTH, graph, plt, save
 

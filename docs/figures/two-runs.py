@@ -1,4 +1,7 @@
-"""Error from two runs: `disc-normal` at several mesh sizes; the reported run, the coarser one, their difference and the estimate."""
+"""Error from two runs of `disc-normal` at several mesh sizes.
+
+The figure shows the reported run, the coarser run, their difference and the error estimate.
+"""
 
 import numpy as np
 from style import BLUE, FOLDER, GREEN, GREY, ORANGE, graph, save

@@ -1,1 +1,1 @@
-"""The page of the paper's statements, each beside our results."""
+"""The page that compares the statements of the paper with our results."""

@@ -1,4 +1,4 @@
-"""python -m examples.paper: the paper's statements beside this program's numbers."""
+"""Compares the statements of the paper with our results: `python -m examples.paper`."""
 
 import sys
 

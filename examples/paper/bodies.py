@@ -1,4 +1,5 @@
-"""Sections 3.2 and 3.3: the disc on the free block, the ball in space and beside the discs, and what a constant energy says."""
+"""Sections 3.2 and 3.3: the disc on the free block, the ball in space and beside discs, and the
+meaning of a constant energy."""
 
 import numpy as np
 
@@ -18,13 +19,17 @@ from .judging import (
 )
 
 BLOCK = {"svk": "disc-block", "neohookean": "disc-block-neohookean"}
-MOMENTUM = 1e-8             # of the disc's momentum: below, that of both bodies is kept
+# Tolerance of momentum over the momentum of the disc; a smaller change counts as conserved.
+MOMENTUM = 1e-8
 DISC, DISC_NEO, BALL, BALL_NEO = "disc-normal", "disc-normal-neohookean", "ball-axisymmetric-svk", "ball-axisymmetric"
-ACCELERATIONS = "-and-".join((DISC, DISC_NEO, BALL, BALL_NEO)) + ".png"   # make ball-comparison
-LIKE_FOR_LIKE = "same-penalty/" + ACCELERATIONS                           # the same four runs, all with k = 1e10 Pa/m
+ACCELERATIONS = "-and-".join((DISC, DISC_NEO, BALL, BALL_NEO)) + ".png"  # make ball-comparison
+# The same four runs, all with k = 1e10 Pa/m.
+LIKE_FOR_LIKE = "same-penalty/" + ACCELERATIONS
 STEPS, SOLID, SOLID_MAP = "conservation", "ball", "calibrate-ball-3d"
-SAME = 0.005                # by which two runs of one ball may differ besides their estimated errors, as two programs in V12
-# names of its answers: (of their errors, unit)
+# Permitted difference between two runs of one ball besides their error estimates, as between two
+# programs in V12.
+SAME = 0.005
+# Our results: (the name of their error estimate, unit).
 SOLID_NUMBERS = {"impulse": ("impulse", "N s"), "rebound_vy": ("rebound", "m/s"),
                  "thresholded_contact_time": ("thresholded_contact_time", "s")}
 
@@ -35,15 +40,19 @@ ON_BLOCK = {"runs": " ".join(BLOCK.values()), "lost": lost(BLOCK["svk"])}
 @states("Section 3.2", "a disc at 10 m/s on a free block: the disc is reflected",
         figures="disc-block/velocity disc-block-neohookean/velocity", laws="Upwards after the contact, {}.", **ON_BLOCK)
 def rebounds(results: Results, law: str) -> tuple[bool, str]:
-    """With a law: where its velocity upwards after the contact is more than the estimated error of it."""
+    """With a law: whether the velocity of the disc after contact, upwards, exceeds its error
+    estimate."""
     (_, disc), _, error = _velocities(results, BLOCK[law])
     return disc > error, f"{disc:.2f} ± {error:.1g} m/s"
 
 
 @states("Section 3.2", "the block is directed downwards", figures="disc-block/shapes", laws="Upwards after the contact, {}.", **ON_BLOCK)
 def downwards(results: Results, law: str) -> tuple[bool, str]:
-    """With a law: where momentum is kept and the block's velocity lies between those of bodies that stay together (restitution e = 0) and
-    of an elastic impact (e = 1): -m v/(m + M) and twice that."""
+    """With a law: whether momentum is conserved and the velocity of the block is between those for
+    restitution e = 0 and e = 1.
+
+    These are -m v/(m + M), where the bodies stay together, and twice that, for an elastic impact.
+    """
     (start, disc), block, error = _velocities(results, BLOCK[law])
     end = results.summary(BLOCK[law])
     m, M = end["mass_1"], end["mass_2"]
@@ -58,8 +67,11 @@ def downwards(results: Results, law: str) -> tuple[bool, str]:
         "energy to the block, after it each keeps its own", figures="disc-block/energies", laws="After the contact, of the energy at the "
         "start, {}. After the contact kinetic and elastic energy of each go on to change into each other.", **ON_BLOCK)
 def passes(results: Results, law: str) -> tuple[bool, str]:
-    """With a law: where the disc ends with less than at the start and the block with more, and each keeps kinetic and elastic energy
-    together to 1e-9 of the start's in the flight after the last touch."""
+    """With a law: whether the disc loses energy and the block gains energy over the run.
+
+    In the flight after contact the kinetic and elastic energy of each body must be constant to 1e-9
+    of the initial energy.
+    """
     history, end = results.history(BLOCK[law]), results.summary(BLOCK[law])
     disc, block = (100 * (history[f"kinetic_{b}"] + history[f"elastic_{b}"]) / mechanical_energy(history)[0] for b in (1, 2))
     flight = slice(np.flatnonzero(history["normal_force"] > 0)[-1], None)
@@ -73,7 +85,8 @@ def passes(results: Results, law: str) -> tuple[bool, str]:
 @states("Section 3.2, figure 9b", "the total energy of disc and block is constant", figures="disc-block/energies", exact=True,
         laws="Over the whole run, {}.", **ON_BLOCK)
 def total_energy(results: Results, law: str) -> tuple[bool, str]:
-    """With a law: where kinetic, elastic and contact energy together change by less than 1e-9 of the start's over the whole run."""
+    """With a law: whether kinetic, elastic and contact energy together are constant to 1e-9 of the
+    initial value over the whole run."""
     history = results.history(BLOCK[law])
     energy = mechanical_energy(history)
     moved, most = np.ptp(energy) / energy[0], (history["contact"] / energy[0]).max()
@@ -81,7 +94,8 @@ def total_energy(results: Results, law: str) -> tuple[bool, str]:
 
 
 def _velocities(results: Results, name: str) -> tuple[tuple[float, float], float, float]:
-    """Upward velocities [m/s] of the disc before and after, of the block after, and the estimated error of the disc's, or nan."""
+    """Upward velocities [m/s] of the disc before and after contact, of the block after contact, and
+    the error estimate for the disc, or nan."""
     history, estimated = results.history(name), results.summary(name)["estimated_error"]
     start = history["vy_1"][0]
     return (start, history["vy_1"][-1]), history["vy_2"][-1], abs(start) * (estimated["rebound"] if estimated else np.nan)
@@ -89,8 +103,12 @@ def _velocities(results: Results, name: str) -> tuple[tuple[float, float], float
 
 @states("Sections 3.2, 3.3", "that the energy is constant tests the numerical convergence and the steps", STEPS)
 def converges(results: Results) -> tuple[str, str, Lost]:
-    """Agrees where with both schemes the drift of the energy falls with every smaller step, at least as its square root; partly where it
-    does with BDF2 alone: energy-momentum conserves at any step, also where its answer has not converged."""
+    """Agrees if the energy drift of both schemes falls with every smaller step, at least as its
+    square root.
+
+    Partly if this holds for BDF2 only: energy-momentum conserves energy for any step, even if the
+    result has not converged.
+    """
     rows, tells, words = finished(results, STEPS), {}, []
     for scheme, group in rows.groupby("integrator", sort=False):
         group = group.sort_values("dt", ascending=False)
@@ -109,7 +127,7 @@ def converges(results: Results) -> tuple[str, str, Lost]:
 @states("Section 3.3, figure 10", "normal impact of the ball, SVK, without friction: the energy is constant", f"{BALL} {BALL_NEO} {DISC}",
         f"{BALL}/energies", lost(BALL), exact=True)
 def conserves(results: Results) -> tuple[str, str]:
-    """Agrees below 1e-9 of the energy at the start, with SVK."""
+    """Agrees below 1e-9 of the initial energy for SVK."""
     ball, neo, disc = (results.summary(name)["energy_drift"] for name in (BALL, BALL_NEO, DISC))
     return graded(ball < CONSTANT), (
         f"constant to {ball:.0e} over the whole run (the neo-Hookean ball to {neo:.0e}, the SVK disc to {disc:.0e}).")
@@ -118,9 +136,12 @@ def conserves(results: Results) -> tuple[str, str]:
 @states("Section 3.3", "the approach extends to three-dimensional bodies, and contact is modelled in an identical way",
         f"{SOLID} {BALL_NEO} {SOLID_MAP}", f"{SOLID}/shapes {SOLID}/force")
 def in_space(results: Results) -> tuple[str, str]:
-    """Agrees where impulse, rebound (over the speed) and the time above 1 % of the peak of the neo-Hookean ball in three dimensions are
-    those of the body of revolution, to 0.5 % and both estimated errors, and every run in three dimensions, those with SVK on coarse meshes
-    too, keeps its energy to 1e-9; partly where the energy alone is kept."""
+    """Agrees if ball and body of revolution (neo-Hookean) have the same impulse, rebound (over the
+    speed) and time above 1 % of the peak.
+
+    The tolerance is 0.5 % plus both error estimates. Every run in three dimensions, also with SVK
+    on coarse meshes, must conserve energy to 1e-9. Partly if only the energy is conserved.
+    """
     solid, plane = results.summary(SOLID), results.summary(BALL_NEO)
     coarse, words, same = finished(results, SOLID_MAP), [], []
     for name, (key, unit) in SOLID_NUMBERS.items():
@@ -141,7 +162,8 @@ BESIDE = {"figures": f"{ACCELERATIONS} {LIKE_FOR_LIKE}", "lost": lost(DISC, BALL
 @states("Section 3.3, figure 11", "of disc SVK, disc neo-Hookean and ball SVK at 8 m/s the ball's contact is the longest",
         f"{DISC} {DISC_NEO} {BALL} {BALL_NEO}", **BESIDE)
 def longest(results: Results) -> tuple[str, str]:
-    """Agrees where the ball's is longer than both discs', by contact_time and by the time above 1 % of the peak force."""
+    """Agrees if the contact of the ball is longer than that of both discs, by contact_time and by
+    the time above 1 % of the peak force."""
     disc, disc_neo, ball, ball_neo = (results.summary(name) for name in (DISC, DISC_NEO, BALL, BALL_NEO))
     return graded(all(ball[key] > max(disc[key], disc_neo[key]) for key in ("contact_time", "thresholded_contact_time"))), (
         f"ball SVK {both_times(ball)}, {when(ball['ellipticity_lost_time'], 'ellipticity lost')}; disc SVK {both_times(disc)}, "
@@ -151,7 +173,8 @@ def longest(results: Results) -> tuple[str, str]:
 @states("Sections 3.1, 3.3, figure 11", "the contact force is the integral of the acceleration times the density, A_CM its mean; "
         "the accelerations of disc SVK, disc neo-Hookean and ball SVK", f"{DISC} {DISC_NEO} {BALL}", exact=True, **BESIDE)
 def accelerations(results: Results) -> tuple[str, str]:
-    """Agrees where in every step of all three runs the contact force is the change of momentum over it to 1e-8 of the largest force."""
+    """Agrees if in every step of all three runs the contact force is the change of momentum over
+    the step, to 1e-8 of the largest force."""
     apart, words = [], []
     for name in (DISC, DISC_NEO, BALL):
         history = results.history(name)

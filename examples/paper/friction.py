@@ -1,7 +1,8 @@
-"""Figures 3 to 6a and the oblique impact of section 3.1: friction laws, angles, forces, energies, sliding and sticking.
+"""Figures 3 to 6a and the oblique impact of section 3.1: friction laws, angles, forces, energies,
+sliding and sticking.
 
-The histories are those of the sweep friction-jump, with both laws on two meshes, with mu_e = 0.7 and, as the control, with mu_e = mu_d =
-0.5.
+The histories come from the sweep friction-jump, with both laws on two meshes, with mu_e = 0.7 and,
+as a control, with mu_e = mu_d = 0.5.
 """
 
 from collections.abc import Callable
@@ -34,19 +35,23 @@ from .judging import (
     touching,
 )
 
-JUMP, SPEED, ANGLE = "friction-jump", 12.0, 60.0   # m/s, degrees from the plane: the paper's normal incidence is pi/2
-FLAT = 30.0                 # degrees from the plane, as if the paper's pi/3 were from the normal
+# Speed [m/s] and angle [degrees from the plane]. In the paper normal incidence is pi/2.
+JUMP, SPEED, ANGLE = "friction-jump", 12.0, 60.0
+# Angle [degrees from the plane] if the paper measured pi/3 from the normal.
+FLAT = 30.0
 STATIC, DYNAMIC, EPSILON = VALUES.values()
-EXACT = 1e-9                # a tabulated law and its formula
-APART = 1.0                 # degrees
-STEPS, STEP_RATIO = "friction-steps", 4   # the sweep, and how many times smaller its refined step is
+# Permitted difference between a tabulated law and its formula.
+EXACT = 1e-9
+APART = 1.0  # smallest difference of angles [degrees]
+# The sweep, and the factor between its two steps.
+STEPS, STEP_RATIO = "friction-steps", 4
 TABULATED = "friction-laws/friction-laws.png"
 ENERGIES = "disc-oblique-svk/energies disc-oblique/energies"
 LOST, LOST_STEPS = (lost((sweep, {"law": "svk", "friction_static": STATIC})) for sweep in (JUMP, STEPS))
 
 
 def impact(results: Results, law: str, static: float = STATIC, sweep: str = JUMP) -> list[History]:
-    """The oblique impact on both meshes, or with both steps."""
+    """The histories of the oblique impact on both meshes, or with both steps."""
     return results.histories(sweep, law=law, friction_static=static)
 
 
@@ -55,7 +60,7 @@ def impact(results: Results, law: str, static: float = STATIC, sweep: str = JUMP
 @states("Figure 3, equations (12), (13)", "the regularisations φ¹, φ², φ³ with ε = 0.1, φ³ with v/(2ε) between −ε and ε, and the law with "
         "μ_e = 0.7 below ε and μ_d = 0.5 above", figures=TABULATED)
 def friction_laws(results: Results) -> tuple[str, str]:
-    """Agrees where every tabulated curve is its formula, φ³ in the form linear-printed, to 1e-9."""
+    """Agrees if every tabulated curve equals its formula to 1e-9, φ³ in the form linear-printed."""
     laws = results.friction_laws()
     formulas = {"φ¹": ("b", "sqrt", lambda v: v / np.hypot(v, EPSILON)), "φ²": ("b", "tanh", lambda v: np.tanh(v / EPSILON)),
                 "φ³ with v/(2ε)": ("b", "linear-printed", _steps(1 / 2)), "μ_e, μ_d": ("c", "linear", _steps(STATIC, DYNAMIC))}
@@ -67,7 +72,7 @@ def friction_laws(results: Results) -> tuple[str, str]:
 
 @states("Equation (13)", "φ³ = v/(2ε) between −ε and ε is the function adopted", figures=TABULATED)
 def adopted(results: Results) -> tuple[str, str]:
-    """Agrees where the law that runs use by default (linear) is (13) as printed, to 1e-9."""
+    """Agrees if the default law of the runs (linear) equals (13) as printed, to 1e-9."""
     printed, used = (_apart(results.friction_laws(), "b", "linear", _steps(slope)) for slope in (1 / 2, 1))
     return graded(printed < EXACT), (
         f"two laws (friction-laws/laws.csv): the one that runs use deviates from (13) as printed by up to {printed:.3f}, and from v/ε by "
@@ -76,12 +81,13 @@ def adopted(results: Results) -> tuple[str, str]:
 
 
 def _steps(slope: float, beyond: float = 1.0) -> Callable[[np.ndarray], np.ndarray]:
-    """A law that is slope v/ε below ε, and constant above."""
+    """A law with the value slope v/ε below ε and a constant value above."""
     return lambda v: np.where(np.abs(v) < EPSILON, slope * v / EPSILON, beyond * np.sign(v))
 
 
 def _apart(laws: pd.DataFrame, panel: str, law: str, formula: Callable) -> float:
-    """Largest deviation of a tabulated curve, with the jump, from a formula of the velocity; |v| = ε is sliding, as in the program."""
+    """Largest deviation of a tabulated curve, with the jump, from a formula in the velocity. As in
+    the program, |v| = ε is sliding."""
     curve = laws[(laws.panel == panel) & (laws.law == law) & (laws.transition == "jump")]
     v = np.where((curve.side == "stick") | (np.abs(curve.v) >= EPSILON), curve.v, np.sign(curve.v) * EPSILON)
     return float(np.abs(curve.ratio - formula(v)).max())
@@ -93,7 +99,8 @@ def _apart(laws: pd.DataFrame, panel: str, law: str, formula: Callable) -> float
         figures="disc-oblique-svk/flight disc-oblique/flight",
         laws=f"from the plane {ANGLE:g}° in; out, {{}}. (The bar of SVK is between two coarse meshes.)")
 def angles(results: Results, law: str) -> tuple[bool, str]:
-    """With a law: where on finished runs they differ by more than a degree and the error bar; neo-Hookean for every ν."""
+    """With a law: whether the angles differ by more than a degree plus the error bar in finished
+    runs; neo-Hookean for every ν."""
     rows = finished(results, JUMP if law == "svk" else "oblique")
     rows = rows[(rows.law == law) & (rows.friction_static == STATIC)] if law == "svk" else rows
     (x, dx), (y, dy) = ((rows[name].to_numpy(), bars(rows, name)) for name in ("rebound_vx", "rebound_vy"))
@@ -106,7 +113,8 @@ def angles(results: Results, law: str) -> tuple[bool, str]:
 @states("Section 3.1, figure 5a", "the normal force oscillates", JUMP, "disc-oblique-svk/force disc-oblique/force", LOST,
         laws="maxima that stand out by more than 5 % of the largest force, on two meshes; {}.")
 def oscillates(results: Results, law: str) -> tuple[bool, str]:
-    """With a law: where the force has several maxima that stand out by more than 5 % of its largest value, on both meshes."""
+    """With a law: whether the force has several maxima of a prominence above 5 % of its largest
+    value, on both meshes."""
     counts = [maxima(history["normal_force"], 0.05 * history["normal_force"].max()) for history in impact(results, law)]
     return min(counts) > 1, f"{both(counts)} maxima"
 
@@ -114,10 +122,15 @@ def oscillates(results: Results, law: str) -> tuple[bool, str]:
 @states("Section 3.1, figure 5a", "the oscillations are due to the multiple reflections of the impact waves on the disc's boundary",
         JUMP, lost=LOST, laws="{}.")
 def reflected(results: Results, law: str) -> tuple[str, str, str]:
-    """By the spectrum of the force less its slow push, beside the natural modes of the disc (modes.csv): what waves between its boundaries
-    make up. With SVK, of the peaks that both meshes have: partly where some, agrees where all lie nearer to a mode with 1 % of the
-    vibration than the contact time tells frequencies apart, 1/(2T); but not decided where most of the frequencies do, as then any peak
-    would; not where none does."""
+    """Compares the spectrum of the force, without its slow part, with the natural modes of the disc
+    (modes.csv).
+
+    Waves between the boundaries make up these modes. For SVK, peaks that both meshes have are
+    compared with modes with 1 % of the vibration energy. A peak belongs to a mode if their
+    difference is below the frequency resolution of the contact, 1/(2T). Agrees if all peaks do;
+    partly if some do; not if none does. It is not decided if most of all frequencies are as near to
+    a mode, as then any peak would be.
+    """
     both = zip(impact(results, law), results.modes(JUMP, law=law, friction_static=STATIC))
     peaks, modes, width, chance = zip(*(_oscillation(*each) for each in both))
     common = [peak for peak in peaks[0] if any(abs(peak - other) < max(width) for other in peaks[1])]
@@ -130,9 +143,12 @@ def reflected(results: Results, law: str) -> tuple[str, str, str]:
 
 
 def _oscillation(history: History, modes: np.recarray) -> tuple[np.ndarray, np.ndarray, float, float]:
-    """Of the normal force less the half sine and the sine that fit it best: peaks of its spectrum [Hz] from the lowest to the highest mode,
-    a quarter of the largest or more; the modes with 1 % of the vibration; half of what the contact time tells apart; the share of all
-    frequencies that is as near to such a mode."""
+    """Analyses the normal force minus the half sine and the sine that fit it best.
+
+    Returns the peaks of its spectrum [Hz] between the lowest and the highest mode, of at least a
+    quarter of the largest; the modes with 1 % of the vibration energy; half of the frequency
+    resolution of the contact; and the share of all frequencies that is as near to such a mode.
+    """
     steps = touching(history)
     t, dt, force = (history[name][steps] for name in ("t", "dt", "normal_force"))
     start, length = t[0] - dt[0], t[-1] - t[0] + dt[0]
@@ -151,8 +167,12 @@ def _oscillation(history: History, modes: np.recarray) -> tuple[np.ndarray, np.n
         f"{JUMP} disc-oblique-svk/rolling", LOST,
         laws="how many times the whole load changes between sliding and sticking, on two meshes; {}.")
 def alternates(results: Results, law: str) -> tuple[str, str, str]:
-    """With SVK: agrees where the whole load changes its coefficient more than twice and, by more than mesh and step change it, more often
-    than with equal coefficients, where nothing jumps; partly where it does so no more often than this control."""
+    """For SVK: agrees if the coefficient of the whole load changes more than twice and more often
+    than in the control.
+
+    The control has equal coefficients, hence no jump. The excess must be larger than the change by
+    mesh and step. Partly if it changes no more often than in the control.
+    """
     jump, control = ([load_changes(history) for history in impact(results, law, static)] for static in (STATIC, DYNAMIC))
     alternate, more = min(jump) > 2, min(jump) - max(control) > max(np.ptp(jump), np.ptp(control))
     said = "" if more else (" The points alternate between sliding and sticking, but the jump of the coefficient is not what makes "
@@ -164,12 +184,16 @@ def alternates(results: Results, law: str) -> tuple[str, str, str]:
         "the instability is characterised by a discontinuity in the acceleration due to the sudden change in the type of friction",
         STEPS, lost=LOST_STEPS, laws="largest changes of the acceleration in a step; {}.")
 def discontinuous(results: Results, law: str) -> tuple[str, str, str]:
-    """With SVK, on the acceleration of the centre along the plane (friction force over mass) with steps of 20 and 5 μs: it jumps where its
-    largest changes from step to step (mean of five) fall by less than the square root of the steps, while those of the acceleration across
-    the plane fall by more. Agrees where it jumps, and by at least half of what μ_e exceeds μ_d by more than with equal coefficients; partly
-    where it jumps with equal coefficients alike; not where it does not."""
+    """For SVK, on the tangential acceleration of the centre (friction force over mass) with steps
+    of 20 and 5 μs.
+
+    It jumps if its largest changes from step to step (mean of five) fall by less than the square
+    root of the steps, while those of the normal acceleration fall by more. Agrees if it jumps and
+    the change exceeds that of equal coefficients by at least half of the excess of μ_e over μ_d.
+    Partly if it jumps equally for equal coefficients. Not if it does not jump.
+    """
     jump, control = ([_changes(history) for history in impact(results, law, static, STEPS)] for static in (STATIC, DYNAMIC))
-    # the powers of the step with which they go
+    # The exponents of the step in these changes.
     (along, across), (ratio, _) = (np.log(np.divide(*each)) / np.log(STEP_RATIO) for each in (jump, control))
     jumps, more = along < 0.5 < across, min(mine[0] / other[0] for mine, other in zip(jump, control)) > (1 + STATIC / DYNAMIC) / 2
     said = "" if more or not jumps else " Equal coefficients, where nothing changes suddenly but the direction, do the same."
@@ -179,16 +203,18 @@ def discontinuous(results: Results, law: str) -> tuple[str, str, str]:
 
 
 def _changes(history: History) -> tuple[float, float]:
-    """The mean of the five largest changes from step to step in the contact of the acceleration of the centre along and across the plane
-    [m/s2]."""
+    """The mean of the five largest changes from step to step of the tangential and normal
+    acceleration of the centre in contact [m/s2]."""
     steps, mass = touching(history), history["momentum_y"][0] / history["vy"][0]
     return tuple(float(np.sort(np.abs(np.diff(history[name][steps])))[-5:].mean() / abs(mass))
                  for name in ("friction_force", "normal_force"))
 
 
 def load_changes(history: History) -> float:
-    """How many times the whole normal load changes between sliding and sticking: the changes of the share that slides, weighted with the
-    load over its mean."""
+    """The number of times that the whole normal load changes between sliding and sticking.
+
+    It is the sum of the changes of the sliding share, weighted with the load over its mean.
+    """
     steps = touching(history)
     load, share = history["normal_force"][steps], history["sliding_fraction"][steps]
     return float((0.5 * (load[1:] + load[:-1]) * np.abs(np.diff(share))).sum() / load.mean())
@@ -199,15 +225,22 @@ def load_changes(history: History) -> float:
 @states("Section 3.1, figure 6a", "the energy is constant before and after the contact, and falls in it by friction", JUMP, ENERGIES,
         LOST, exact=True, laws="before the contact the flight is exact; {}.")
 def energy(results: Results, law: str) -> tuple[bool, str]:
-    """With a law, on both meshes: where the total changes by less than 1e-9 of its start after the last touch, never grows in the contact,
-    and falls over it."""
+    """With a law, on both meshes: whether the total energy is constant after contact to 1e-9 of its
+    initial value.
+
+    It must also never grow in contact, and fall over the contact.
+    """
     after, grows, gone = (max(values) for values in zip(*map(_losses, impact(results, law))))
     return after < CONSTANT and grows < CONSTANT and gone > CONSTANT, (
         f"constant to {after:.0e} after the contact, rises in it by at most {grows:.0e}, {100 * gone:.1f} % lost")
 
 
 def _losses(history: History) -> tuple[float, float, float]:
-    """Of the energy at the start: its range after the last touch, its largest rise of a step, what is lost; inf where no step is after."""
+    """Relative to the initial energy: its range after contact, its largest rise in a step, and its
+    loss.
+
+    The range is inf if there is no step after contact.
+    """
     energies, last = mechanical_energy(history) / mechanical_energy(history)[0], touching(history)[-1]
     after = np.ptp(energies[last:]) if len(energies) > last + 1 else np.inf
     return float(after), max(0.0, float(np.diff(energies).max())), float(1 - energies[-1])
@@ -216,9 +249,13 @@ def _losses(history: History) -> tuple[float, float, float]:
 @states("Section 3.1, figure 6a", "the elastic energy is null before the contact and in it fluctuates together with the kinetic energy",
         JUMP, ENERGIES, LOST, laws="of the total at the start, on two meshes; {}.")
 def elastic(results: Results, law: str) -> tuple[str, str, str]:
-    """With SVK, on both meshes: agrees where it is null to 1e-9 of the total at the start, its changes in the contact mirror those of the
-    kinetic energy (correlation below -0.9), and it has several maxima that stand out by more than 1 % of the total; partly where it rises
-    and falls once."""
+    """For SVK, on both meshes: agrees if the elastic energy is zero before contact to 1e-9 of the
+    initial total and fluctuates in contact.
+
+    Its changes in contact must be opposite to those of the kinetic energy (correlation below -0.9),
+    and it must have several maxima with a prominence above 1 % of the total. Partly if it rises and
+    falls once.
+    """
     before, mirror, most, counts = zip(*map(_exchange, impact(results, law)))
     exchanged, fluctuates = max(before) < CONSTANT and max(mirror) < -0.9, min(counts) > 1
     return graded(exchanged and fluctuates, exchanged), (
@@ -227,8 +264,12 @@ def elastic(results: Results, law: str) -> tuple[str, str, str]:
 
 
 def _exchange(history: History) -> tuple[float, float, float, int]:
-    """Of the elastic energy: its share of the total before the contact, the correlation of its changes in a step with those of the kinetic
-    energy, its largest share, and the maxima that stand out by more than 1 % of the total."""
+    """Properties of the elastic energy.
+
+    Returns its share of the total before contact, the correlation of its changes in a step with
+    those of the kinetic energy, its largest share, and the number of maxima with a prominence above
+    1 % of the total.
+    """
     steps, start = touching(history), mechanical_energy(history)[0]
     mirror = np.corrcoef(*(np.diff(history[name])[steps[1:] - 1] for name in ("kinetic", "elastic")))[0, 1]
     return (float(abs(history["elastic"][:max(steps[0], 1)]).max() / start), float(mirror), float(history["elastic"].max() / start),
@@ -238,7 +279,7 @@ def _exchange(history: History) -> tuple[float, float, float, int]:
 # ---- sliding, sticking, rolling
 
 def _searched(results: Results) -> list[Path]:
-    """The runs of the search for sliding and sticking, and those of which the restitution is taken."""
+    """The runs of the search for sliding and sticking, and the runs that give the restitution."""
     return [*(study.place(results.folder / "stick-slip", point) for point in stick_slip.grid(stick_slip.AXES)),
             *results.folders("disc-oblique-svk", "disc-oblique")]
 
@@ -246,8 +287,13 @@ def _searched(results: Results) -> list[Path]:
 @states("Section 3.1", "the disc slides first and sticks in about the last third of the contact, in which the energy is constant again",
         _searched, "stick-slip/stick-slip.png")
 def sliding_first(results: Results) -> tuple[str, str, Lost]:
-    """Over the search of ε, k, ν with SVK, at 60° (the paper calls normal incidence π/2) and at 30° from the plane: agrees where all runs
-    of one angle do both, partly where some of any do. Constant energy: at most 5 % of the friction work in the last third."""
+    """Evaluates the search over ε, k and ν for SVK, at 60° (normal incidence is π/2 in the paper)
+    and at 30° from the plane.
+
+    Agrees if all runs of one angle slide first and then stick with constant energy; partly if some
+    runs of any angle do. The energy is constant if at most 5 % of the friction work is done in the
+    last third.
+    """
     every = results.stick_slip()
     every = every[every.exit == 0]
     told, counts = [], {}
@@ -270,15 +316,16 @@ def sliding_first(results: Results) -> tuple[str, str, Lost]:
 
 
 def slip_share(e: float, angle: float = ANGLE) -> float:
-    """The share of the normal impulse at which a rigid disc stops to slide: with I = m R²/2 each unit of friction impulse takes 3/m of its
-    slip."""
+    """The share of the normal impulse at which a rigid disc stops sliding. With I = m R²/2 each
+    unit of friction impulse reduces its slip by 3/m."""
     return 1 / (3 * DYNAMIC * (1 + e) * np.tan(np.radians(angle)))
 
 
 @states("Section 3.1, figure 4", "in the last third of the contact the disc rolls without sliding", f"{JUMP} disc-oblique-svk disc-rolling",
         "disc-oblique-svk/rolling disc-rolling/rolling", LOST)
 def rolls(results: Results) -> tuple[str, str]:
-    """With a law, on both meshes: where v_x and -ω R differ by less than 5 % of v_x, as the mean over the last third of the contact."""
+    """With a law, on both meshes: whether v_x and -ω R differ by less than 5 % of v_x, as means
+    over the last third of the contact."""
     radius = results.scene("disc-oblique-svk")["radius"]
 
     def of(results: Results, law: str) -> tuple[bool, str]:
@@ -303,7 +350,8 @@ def _last_third(history: History, radius: float) -> tuple[float, float]:
 @states("Conclusions", "smooth slip can be reproduced", JUMP, "disc-oblique-svk/rolling", LOST,
         laws="share of the contact time in which all of the load slides, on two meshes; {}.")
 def smooth_slip(results: Results, law: str) -> tuple[bool, str]:
-    """With a law, on both meshes: where all of the load (99 %) slides for at least 5 % of the contact time."""
+    """With a law, on both meshes: whether all of the load (99 %) slides for at least 5 % of the
+    contact time."""
     shares = []
     for history in impact(results, law):
         steps = touching(history)

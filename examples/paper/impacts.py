@@ -1,4 +1,5 @@
-"""Figures 6b, 7 and 8: the disc's normal impact with both laws over the speed, and what the conclusions say of it."""
+"""Figures 6b, 7 and 8: normal impact of the disc with both laws over the speed, and the conclusions
+about it."""
 
 from math import floor, sqrt
 
@@ -13,11 +14,14 @@ from .judging import AGREES, DIFFERS, OPEN, Lost, Results, bar, finished, graded
 SVK, NEO, FORCES = "contact-time-svk", "contact-time-neohookean", "law-comparison"
 LOST = "ellipticity_lost_time"
 COUNTS = {"steps": "steps", "newton_iterations": "iterations", "factorizations": "factorisations"}
-SLOW, FAST = ((FORCES, {"law": "svk", "speed": speed}) for speed in (1, 10))    # of figure 7
+SLOW, FAST = ((FORCES, {"law": "svk", "speed": speed}) for speed in (1, 10))  # of figure 7
 @states("Figure 6b", "normal impact, SVK: the contact time falls with the speed in steps, with small rises between", SVK)
 def stepped(results: Results) -> tuple[str, str]:
-    """For every ν, below the speed at which ellipticity is lost: agrees where it ends lower and at least two rises between
-    exceed twice their error bar; partly where it only ends lower."""
+    """For every ν, below the speed at which ellipticity is lost: agrees if the contact time ends
+    lower and rises at least twice in between.
+
+    Each rise must exceed twice its error bar. Partly if it only ends lower.
+    """
     trends, words = _trends(results, SVK)
     falls = all(trend and trend.ends_lower for trend in trends)
     rises = all(trend and trend.established >= 2 for trend in trends)
@@ -27,9 +31,11 @@ def stepped(results: Results) -> tuple[str, str]:
 @states("Section 3.1 and conclusions", "the steps of figure 6b are related to the number of wave reflections: each has one less",
         f"{SVK} disc-normal")
 def reflections(results: Results) -> tuple[str, str]:
-    """Not decided where no ν has a rise beyond twice its error bar: there is no step to explain. Else agrees where for every ν there are as
-    many as the number of transits 2R/c in the contact falls through whole numbers, with the pressure or the shear waves of small
-    strains."""
+    """Not decided if no ν has a rise beyond twice its error bar, as there is no step to explain.
+
+    Else it agrees if for every ν the number of rises equals the number of integers that the number
+    of transits 2R/c in the contact falls through, for pressure or shear waves of small strain.
+    """
     used, words, as_many, steps, fewer = results.scene("disc-normal"), [], [], 0, 0
     for nu, group in results.table(SVK).groupby("nu"):
         trend = sweep_figures.steps_against(group[group.speed < _end(group)], "speed", "contact_time")
@@ -46,7 +52,8 @@ def reflections(results: Results) -> tuple[str, str]:
 
 
 def _transits(used: dict, nu: float) -> dict[str, float]:
-    """The times 2R/c [s] that waves of small strains take across the disc: c² = (λ + 2μ)/ρ and μ/ρ."""
+    """The transit times 2R/c [s] of waves of small strain through the disc: c² = (λ + 2μ)/ρ and
+    μ/ρ."""
     shear = used["young"] / (2 * (1 + nu))
     pressure = used["young"] * (1 - nu) / ((1 + nu) * (1 - 2 * nu))
     return {wave: 2 * used["radius"] / sqrt(modulus / used["density"]) for wave, modulus in (("pressure", pressure), ("shear", shear))}
@@ -54,7 +61,8 @@ def _transits(used: dict, nu: float) -> dict[str, float]:
 
 @states("Figure 7a", "1 m/s: no noticeable difference between the force histories of SVK and neo-Hookean", FORCES, lost=lost(SLOW))
 def same_at_low_speed(results: Results) -> tuple[str, str]:
-    """Agrees where they differ in L2 over time by no more than what mesh and step change; partly where by less than 10 %."""
+    """Agrees if the L2 difference over time is at most the change by mesh and step; partly if it is
+    below 10 %."""
     distance, error = _distance(results, 1)
     return graded(distance <= error, distance < 0.1), (
         f"they differ by {100 * distance:.1f} % in L2 over time (mesh and step change {100 * error:.1f} %).")
@@ -62,7 +70,7 @@ def same_at_low_speed(results: Results) -> tuple[str, str]:
 
 @states("Figure 7b", "10 m/s: the contact lasts longer with SVK", FORCES, lost=lost(FAST))
 def longer_at_high_speed(results: Results) -> tuple[str, str]:
-    """Agrees where it does by more than both error bars."""
+    """Agrees if the contact is longer with SVK by more than both error bars."""
     rows = finished(results, FORCES)
     if len(rows[rows.speed == 10]) < 2:
         return DIFFERS, "one of the runs at 10 m/s failed."
@@ -76,8 +84,11 @@ def longer_at_high_speed(results: Results) -> tuple[str, str]:
 
 @states("Figure 8", "normal impact, neo-Hookean: the contact time falls monotonically with the speed", NEO)
 def monotone(results: Results) -> tuple[str, str]:
-    """Agrees where for every ν it falls and no rise exceeds the error bar of its step; partly where the bars are larger than the
-    steps, so that a rise would not show; not decided where they are larger than the whole change."""
+    """Agrees if for every ν the contact time falls and no rise exceeds the error bar of its step.
+
+    Partly if the error bars exceed the steps, so that a rise would not be visible; not decided if
+    they exceed the whole change.
+    """
     trends, words = _trends(results, NEO)
     if any(trend and trend.course == sweep_figures.LEVEL for trend in trends):
         return OPEN, f"{words} The contact time {sweep_figures.LEVEL}."
@@ -89,9 +100,12 @@ def monotone(results: Results) -> tuple[str, str]:
 
 @states("Section 3.1", "the neo-Hookean law demands larger computational times", FORCES, lost=lost(SLOW, FAST))
 def slower(results: Results) -> tuple[str, str]:
-    """By counts, which do not scatter with the machine: at 1 and 10 m/s, on both meshes, at the same accuracy. A pair of runs says so where
-    of steps, Newton iterations and factorisations some is over 10 % more than with SVK and none as much less. Agrees where all pairs do,
-    partly where some do."""
+    """Compares counts, which do not depend on the machine, at 1 and 10 m/s on both meshes at equal
+    accuracy.
+
+    A pair of runs supports the statement if any of steps, Newton iterations and factorisations is
+    over 10 % more than for SVK and none is as much less. Agrees if all pairs do, partly if some do.
+    """
     more, words, seconds = [], [], []
     for speed in (1, 10):
         for neo, svk in zip(*(results.summaries(FORCES, law=law, speed=speed) for law in ("neohookean", "svk"))):
@@ -107,8 +121,11 @@ def slower(results: Results) -> tuple[str, str]:
 @states("Conclusions", "as the velocities of incidence are higher, the neo-Hookean disc yields a stiffer behaviour", FORCES,
         lost=lost(SLOW, FAST))
 def stiffer(results: Results) -> tuple[str, str]:
-    """Agrees where at 10 m/s its peak force is higher and its contact shorter, by more than both error bars, and both by a larger share
-    than at 1 m/s."""
+    """Agrees if at 10 m/s the neo-Hookean peak force is higher and the contact shorter than for
+    SVK.
+
+    The differences must exceed both error bars and be larger, as shares, than at 1 m/s.
+    """
     rows, good, words = finished(results, FORCES), [], []
     if len(rows) < 4:
         return DIFFERS, "one of the runs failed."
@@ -125,8 +142,11 @@ def stiffer(results: Results) -> tuple[str, str]:
 
 @states("Conclusions", "vibro-impact can be reproduced", f"{SVK} {NEO}")
 def vibro_impact(results: Results) -> tuple[str, str, Lost]:
-    """Agrees where some impact of figures 6b and 8 touches more than once on both meshes, so that the vibrating disc strikes again; not
-    decided where some do on one mesh only, as then the mesh changes it."""
+    """Agrees if some impact of figures 6b and 8 has several contact intervals on both meshes: the
+    vibrating disc strikes again.
+
+    Not decided if impacts have them on one mesh only, as the result then depends on the mesh.
+    """
     rows = pd.concat([finished(results, name).assign(of=name) for name in (SVK, NEO)])
     both = rows[rows.contact_intervals - rows.contact_intervals_error > 1]
     once = int((rows.contact_intervals + rows.contact_intervals_error > 1).sum()) - len(both)
@@ -137,17 +157,23 @@ def vibro_impact(results: Results) -> tuple[str, str, Lost]:
 
 
 def _of(rows: pd.DataFrame, law: str, speed: float, column: str) -> tuple[float, float]:
-    """(value, error bar) of a law at a speed; the bar at least the root mean square of both laws' there."""
+    """(value, error bar) of a law at a speed. The error bar is at least the root mean square of the
+    error bars of both laws."""
     return bar(rows[rows.speed == speed], column, law=law)
 
 
 def _end(group: pd.DataFrame) -> float:
-    """The lowest speed at which ellipticity is lost or a run ends by the law [m/s]; inf where none does."""
+    """The lowest speed at which ellipticity is lost or a run ends by the law [m/s]; inf if there is
+    none."""
     return float(group.speed[group[LOST].notna() | (group.exit == 12)].to_numpy().min(initial=np.inf))
 
 
 def _trends(results: Results, name: str) -> tuple[list[sweep_figures.Trend | None], str]:
-    """The contact time over the speed, below the speed at which ellipticity is lost: a trend for each ν of the sweep, and all in words."""
+    """The trend of the contact time over the speed for each ν of the sweep, and all trends in
+    words.
+
+    Speeds at and above the loss of ellipticity are excluded.
+    """
     trends, words = [], []
     for nu, group in results.table(name).groupby("nu"):
         end = _end(group)
@@ -165,7 +191,8 @@ def _trends(results: Results, name: str) -> tuple[list[sweep_figures.Trend | Non
 
 
 def _distance(results: Results, speed: float) -> tuple[float, float]:
-    """Relative L2 difference of the two laws' force histories at a speed, refined, and the largest that mesh and step make."""
+    """Relative L2 difference of the refined force histories of both laws at a speed, and the
+    largest change by mesh and step."""
     runs = {law: results.histories(FORCES, law=law, speed=speed) for law in ("svk", "neohookean")}
     error = max(distance(force(fine), force(plain)) for plain, fine in runs.values())
     return distance(*(force(runs[law][-1]) for law in ("svk", "neohookean"))), error

@@ -1,11 +1,13 @@
-"""What the statements of the paper are judged with: the verdicts, the results that `make paper` leaves, error bars.
+"""The basis for judging the statements of the paper: verdicts, results of `make paper`, error bars.
 
-Every verdict follows from numbers by the rule in the docstring of its statement (limits, friction, impacts, pairs, bodies, times). Section
-3 is told of the paper's law, St. Venant-Kirchhoff (5), except where it names (6): with it a verdict is decided; the neo-Hookean answer,
-which converges, stands beside it.
+Every verdict follows from numbers by the criterion in the docstring of its statement (limits,
+friction, impacts, pairs, bodies, times). Section 3 uses the paper's law, St. Venant-Kirchhoff (5),
+except where it refers to (6). The verdict depends on this law; the neo-Hookean result, which
+converges, is given beside it.
 
-Where that law loses ellipticity in a run that decides, its answer depends on the mesh, and "agrees" becomes "partly" (`_on_any_mesh`),
-whatever the statement is; but not of what every step keeps exactly, on any mesh: the discrete energy and momentum.
+If this law loses ellipticity in a decisive run, the result depends on the mesh, and "agrees"
+becomes "partly" (`_on_any_mesh`) for any statement. The exception is what every step conserves
+exactly on any mesh: the discrete energy and momentum.
 """
 
 from collections.abc import Callable, Iterable
@@ -21,15 +23,16 @@ from ffimpact.report.impacts import read_modes
 from ffimpact.sweeps import study, sweep, sweep_figures
 
 AGREES, DIFFERS, PARTLY, OPEN = "agrees", "does not agree", "partly", "not decided"
-CONSTANT = 1e-9             # of the energy at the start: below, an energy is constant
-LAWS = {"svk": "SVK", "neohookean": "neo-Hookean"}   # the paper's law first
+# A change of energy below this share of the initial energy counts as constant.
+CONSTANT = 1e-9
+LAWS = {"svk": "SVK", "neohookean": "neo-Hookean"}  # the paper's law first
 
 History = dict[str, np.ndarray]
 
 
 @dataclass(frozen=True)
 class Finding:
-    """What we found: the verdict, our number in words, the pictures, the folders of the runs it rests on."""
+    """The verdict on a statement, our number in words, the figures, and the folders of the runs."""
 
     verdict: str
     ours: str
@@ -38,7 +41,8 @@ class Finding:
 
 
 class Results:
-    """The finished cases in a folder of results, by the names of runs and sweeps; histories, summaries and modes of the runs of pair()."""
+    """The finished cases in a folder of results, by the names of runs and sweeps; also histories,
+    summaries and modes of the runs of pair()."""
 
     def __init__(self, folder: Path):
         self.folder = folder
@@ -59,7 +63,8 @@ class Results:
         return self.folder / "sweeps" / name
 
     def drawn(self, *names: str) -> list[Path]:
-        """The pictures of sweeps, of runs ("run/kind"), and those that have a place of their own (with .png)."""
+        """The figures of sweeps and of runs ("run/kind"). A name with .png is the path of a figure.
+        """
         return [self.folder / name if name.endswith(".png") else self.sweep(name) / "sweep.png" if name in sweep.built_in()
                 else self.folder / f"{name.replace('/', '/figures/')}.png" for name in names]
 
@@ -68,12 +73,13 @@ class Results:
         return sweep.table(loaded(name), self.sweep(name))
 
     def folders(self, *names: str) -> list[Path]:
-        """Those of runs, and of all runs of sweeps."""
+        """The folders of runs, and of all runs of sweeps."""
         return [folder for name in names for folder in ([study.place(self.sweep(name), point) for point in loaded(name).runs]
                                                         if name in sweep.built_in() else [self.run(name)])]
 
     def pair(self, name: str, **values) -> list[Path]:
-        """The runs of the point of a sweep with these values: plain and, where the sweep refines, refined."""
+        """The runs of the point of a sweep with these values: plain and, if the sweep has a
+        refinement, refined."""
         wanted = loaded(name)
         point = next(point for point in wanted.points if values.items() <= point.items())
         return [study.place(self.sweep(name), point | more) for more in ([{}, wanted.refine] if wanted.refine else [{}])]
@@ -88,7 +94,7 @@ class Results:
         return [read_modes(folder) for folder in self.pair(name, **values)]
 
     def friction_laws(self) -> pd.DataFrame:
-        """The table that figure 3 is drawn from."""
+        """The table of figure 3."""
         return read_frame(self.folder / "friction-laws/laws.csv")
 
     def stick_slip(self) -> pd.DataFrame:
@@ -104,16 +110,21 @@ def loaded(name: str) -> sweep.Sweep:
 # ---- the statements, in the order of the paper
 
 STATEMENTS: list[tuple[str, str, Callable[[Results], Finding]]] = []
-Lost = list[float | None]   # when runs with St. Venant-Kirchhoff lost ellipticity [s], None or nan where they kept it
+# Times at which runs with St. Venant-Kirchhoff lost ellipticity [s]; None or nan if they kept it.
+Lost = list[float | None]
 
 
 def states(item: str, text: str, runs: str | Callable[[Results], list[Path]] = "", figures: str | None = None,
            lost: Callable[[Results], Lost] = lambda results: [], exact: bool = False, laws: str = "") -> Callable:
-    """Registers how a statement of the paper is judged. The rule gives the verdict and our number in words, and may give `lost`.
+    """Registers the criterion for a statement of the paper. The criterion returns the verdict and
+    our number in words, and optionally `lost`.
 
-    runs: the runs and sweeps that it rests on; figures: as Results.drawn() names them, those of its sweeps where none are given; lost: of
-    the runs that decide; exact: it is about what every step keeps exactly, on any mesh. laws: the rule is about one law, which it takes,
-    and the words of both stand for {} in these: of_laws().
+    runs: names of the runs and sweeps that it uses
+    figures: names as in Results.drawn(); by default those of its sweeps
+    lost: the times of lost ellipticity of the decisive runs
+    exact: the statement is about quantities that every step conserves exactly, on any mesh
+    laws: if set, the criterion takes one law, and the words for both laws replace {} in this text;
+        see of_laws()
     """
     def register(rule: Callable) -> Callable[[Results], Finding]:
         @wraps(rule)
@@ -130,7 +141,8 @@ def states(item: str, text: str, runs: str | Callable[[Results], list[Path]] = "
 
 
 def lost(*which: str | tuple[str, dict]) -> Callable[[Results], Lost]:
-    """When runs, or those of the points (sweep, values) on both meshes, lose ellipticity [s]."""
+    """The times [s] at which runs, or the runs of points (sweep, values) on both meshes, lose
+    ellipticity."""
     def times(results: Results) -> Lost:
         ends = [results.summaries(one[0], **one[1]) if isinstance(one, tuple) else [results.summary(one)] for one in which]
         return [end["ellipticity_lost_time"] for each in ends for end in each]
@@ -138,8 +150,11 @@ def lost(*which: str | tuple[str, dict]) -> Callable[[Results], Lost]:
 
 
 def _on_any_mesh(ours: str, lost: Lost, exact: bool) -> tuple[str, str]:
-    """The rule of all statements on St. Venant-Kirchhoff: "agrees" becomes "partly" where a run that decides lost ellipticity, as another
-    mesh may decide otherwise; not where the statement is `exact`."""
+    """The verdict and words of a statement that agrees for St. Venant-Kirchhoff.
+
+    "agrees" becomes "partly" if a decisive run lost ellipticity, as another mesh may give another
+    verdict, unless the statement is `exact`.
+    """
     if not (times := [time for time in lost if known(time)]):
         return AGREES, ours
     since = f"SVK loses ellipticity from {1e3 * min(times):.2f} ms on"
@@ -149,13 +164,17 @@ def _on_any_mesh(ours: str, lost: Lost, exact: bool) -> tuple[str, str]:
 
 
 def graded(agrees: bool, partly: bool = False) -> str:
-    """The verdict of what agrees, or else partly."""
+    """The verdict if the statement agrees, or else agrees partly."""
     return AGREES if agrees else PARTLY if partly else DIFFERS
 
 
 def of_laws(rule: Callable[[Results, str], tuple], results: Results, around: str) -> tuple[str, str]:
-    """(verdict, words) of both laws. The rule gives of each (holds, words): agrees with both, partly with the paper's alone, not where the
-    paper's does not; or (verdict, words, what is said behind them all): the paper's law decides."""
+    """(verdict, words) for both laws.
+
+    If the criterion returns (agrees, words) for each law, the verdict is "agrees" for both laws,
+    "partly" for the paper's law only, and else "does not agree". If it returns (verdict, words,
+    text at the end), the paper's law gives the verdict.
+    """
     found = {law: rule(results, law) for law in LAWS}
     (paper, _, *said), (other, *_) = found.values()
     words = around.format("; ".join(f"{LAWS[law]}: {own}" for law, (_, own, *_) in found.items()))
@@ -169,19 +188,21 @@ def finished(results: Results, name: str) -> pd.DataFrame:
 
 
 def bar(rows: pd.DataFrame, column: str, **values) -> tuple[float, float]:
-    """(value, error bar) of the point with these values; the bar is at least the root mean square of those of `rows`."""
+    """(value, error bar) of the point with these values. The error bar is at least the root mean
+    square of those of `rows`."""
     here = np.logical_and.reduce([rows[name] == value for name, value in values.items()])
     return float(rows[column][here].iloc[0]), float(sweep_figures.bars(rows, column)[here][0])
 
 
 def touching(history: History) -> np.ndarray:
-    """The steps from the first to the last touch, as indices."""
+    """The indices of the steps from the first to the last contact."""
     steps = np.flatnonzero(history["normal_force"] > 0)
     return np.arange(steps[0], steps[-1] + 1)
 
 
 def maxima(values: np.ndarray, least: float) -> int:
-    """How many maxima stand out: between two of them the values fall and rise again by more than `least`."""
+    """The number of prominent maxima: between two of them the values fall and rise again by more
+    than `least`."""
     count, low, high, rising = 0, values[0], values[0], True
     for value in values:
         if rising and value < high - least:
@@ -193,20 +214,20 @@ def maxima(values: np.ndarray, least: float) -> int:
 
 
 def both(values: Iterable, form: str = "") -> str:
-    """The numbers of both meshes, or steps, in words, each in a format such as ".1f"."""
+    """The numbers of both meshes, or steps, in words, with a format such as ".1f"."""
     return " and ".join(format(value, form) for value in values)
 
 
 def when(time: float | None, words: str) -> str:
-    """Since when something is so in a run [s], in words."""
+    """The time [s] from which a condition holds in a run, in words."""
     return f"{words} from {1e3 * time:.2f} ms on" if known(time) else f"{words}: never"
 
 
 def known(time: float | None) -> bool:
-    """Whether a time of the summary is there."""
+    """Whether a time of the summary exists."""
     return time is not None and not np.isnan(time)
 
 
 def both_times(summary: dict) -> str:
-    """The contact time, and that between the crossings of 1 % of the peak force, in words."""
+    """The contact time, and the time between the crossings of 1 % of the peak force, in words."""
     return f"{1e3 * summary['contact_time']:.3f} ms (above 1 % of the peak force {1e3 * summary['thresholded_contact_time']:.3f} ms)"

@@ -9,14 +9,16 @@ from .judging import Lost, Results, both, finished, graded, of_laws, states
 
 STIFFNESS, SLIP = "calibrate", "slip-limit"
 COMPRESSIBLE, INCOMPRESSIBLE = "disc-normal-neohookean", "disc-normal-incompressible"
-ISOCHORIC = 1e-6            # change of an element's volume below which a run kept it
+# Change of the volume of an element below which a run conserves it.
+ISOCHORIC = 1e-6
 FORMULAS = {"sqrt": "φ¹", "tanh": "φ²", "linear": "φ³"}
 
 
 @states("Section 2.1, equation (6)", "if J = 1 a neo-Hookean incompressible solid is modelled", figures="",
         runs=lambda results: results.folders(COMPRESSIBLE, INCOMPRESSIBLE))
 def incompressible(results: Results) -> tuple[str, str]:
-    """Agrees where the run with law = incompressible keeps the volume of every element to 1e-6: J = 1 in the mean, not at points."""
+    """Agrees if the run with law = incompressible conserves the volume of every element to 1e-6: J
+    = 1 in the mean, not at points."""
     held, free = (results.summary(name) for name in (INCOMPRESSIBLE, COMPRESSIBLE))
     return graded(held["volume_change"] < ISOCHORIC), (
         f"the run with law = incompressible keeps the volume of its elements to {held['volume_change']:.0e} (at points J is from "
@@ -28,7 +30,8 @@ def incompressible(results: Results) -> tuple[str, str]:
 @states("Section 2.2, equations (7), (10)",
         "for a sufficiently large k the regularised contact (10) approximates Signorini's condition (7)", STIFFNESS)
 def stiff_limit(results: Results) -> tuple[str, str, Lost]:
-    """With a law, for every ν, over k on the disc at 8 m/s: where the largest penetration falls with k and the rebound settles."""
+    """With a law, for every ν, over k for the disc at 8 m/s: whether the largest penetration falls
+    with k and the rebound converges."""
     rows = finished(results, STIFFNESS)
 
     def of(_: Results, law: str) -> tuple[bool, str]:
@@ -50,8 +53,12 @@ def stiff_limit(results: Results) -> tuple[str, str, Lost]:
 @states("Section 2.3, equation (12)", "for ε → 0 φ^1, φ^2, φ^3 tend to the step, and a sufficiently small ε serves", SLIP,
         f"{SLIP} friction-laws/friction-laws.png")
 def slip_limit(results: Results) -> tuple[str, str]:
-    """Agrees where every tabulated φ rises and reaches 0.95 at 4 ε (they hang on v/ε alone), and on the oblique neo-Hookean impact, which
-    converges, rebound and friction work settle as ε falls; partly where the functions do alone."""
+    """Agrees if every tabulated φ rises and reaches 0.95 at 4 ε, and rebound and friction work
+    converge as ε falls.
+
+    The functions φ depend on v/ε only. The runs are the oblique neo-Hookean impact, which
+    converges. Partly if only the functions do.
+    """
     laws, rows = results.friction_laws(), finished(results, SLIP).sort_values("slip_velocity", ascending=False)
     reach = {words: _rises(laws[(laws.panel == "b") & (laws.law == law) & (laws.v >= 0)]) for law, words in FORMULAS.items()}
     runs = len(rows) > 2 and all(settles(rows, name) for name in ("rebound_vx", "friction_work"))
@@ -63,7 +70,8 @@ def slip_limit(results: Results) -> tuple[str, str]:
 
 
 def settles(rows: pd.DataFrame, name: str) -> bool:
-    """Whether, row by row towards a limit, what changes from one to the next falls until it is within their error bars, and ends there."""
+    """Whether the changes from row to row towards a limit fall until they are within the error
+    bars, and the last change is within them."""
     values, bars = rows[name].to_numpy(), sweep_figures.bars(rows, name)
     changes, allowed = np.abs(np.diff(values)), bars[1:] + bars[:-1]
     return bool(((changes[1:] < changes[:-1]) | (changes[1:] <= allowed[1:])).all() and changes[-1] <= allowed[-1])
@@ -77,6 +85,6 @@ def _changes(rows: pd.DataFrame, name: str) -> str:
 
 
 def _rises(curve: pd.DataFrame) -> float:
-    """The last value of a tabulated law over the velocity; 0 where it falls somewhere."""
+    """The last value of a tabulated law over the velocity; 0 if the law decreases anywhere."""
     values = curve.sort_values("v").ratio.to_numpy()
     return float(values[-1]) if (np.diff(values) >= -1e-12).all() else 0.0

@@ -1,4 +1,5 @@
-"""The page of the paper's statements beside our numbers, as HTML that holds everything itself."""
+"""The page that compares the statements of the paper with our numbers, as a self-contained HTML
+file."""
 
 import base64
 from datetime import datetime
@@ -21,8 +22,9 @@ COLOURS = {AGREES: GREEN, DIFFERS: ORANGE, PARTLY: "#b8860b", OPEN: "#777777"}
 SHOWN = {"energies": "energies over time", "force": "contact force over time",
          "rolling": "velocity of the centre and the rim, and the share that slides",
          "velocity": "velocities over time", "contact": "contact pressure along the outline and over time",
-         "flight": "shapes on the flight and in the contact", "shapes": "deformed shapes"}   # what a picture of a run shows
-PIXELS, DPI = 85, STYLE["savefig.dpi"]      # of the page and of a picture to an inch
+         # The content of each figure of a run.
+         "flight": "shapes on the flight and in the contact", "shapes": "deformed shapes"}
+PIXELS, DPI = 85, STYLE["savefig.dpi"]  # pixels per inch of the page and of a figure
 BACK = '<a href="#top">Back to the top</a>'
 TITLES = {"friction-laws": "The friction laws (11) to (13), from the functions that the solver runs (make friction-laws)",
           "stick-slip": "Share of the load that slides in each third of the contact, over ε, k and ν (make stick-slip)",
@@ -31,7 +33,7 @@ TITLES = {"friction-laws": "The friction laws (11) to (13), from the functions t
 
 
 def page(findings: list[tuple[str, str, Finding]], more: str = "") -> str:
-    """The page as HTML, pictures and all; `more` comes behind the statements."""
+    """The page as HTML with all figures. `more` follows the statements."""
     counts = ", ".join(f"{sum(found.verdict == verdict for *_, found in findings)} {verdict}" for verdict in COLOURS)
     contents = "\n".join(f"<li>{line}</li>" for line in [
         '<a href="#all">All verdicts</a>',
@@ -48,7 +50,8 @@ def page(findings: list[tuple[str, str, Finding]], more: str = "") -> str:
 
 
 def _section(k: int, item: str, text: str, found: Finding, shown: dict[Path, int]) -> str:
-    """A statement with its pictures, numbered through the page; of one that an earlier statement has, by `shown`, a link to it."""
+    """A statement with its figures, numbered through the page. A figure of an earlier statement, in
+    `shown`, is a link."""
     pictures = []
     for path in found.figures:
         if path in shown:
@@ -62,8 +65,10 @@ def _section(k: int, item: str, text: str, found: Finding, shown: dict[Path, int
 
 
 def picture_of(path: Path, number: int = 0, back: str = "", item: str = "") -> str:
-    """A picture with its caption, as wide as it was drawn, so that the text of all has one size; with a number and what it belongs to where
-    they are given."""
+    """A figure with its caption, in its drawn width, so that the text of all figures has one size.
+
+    If given, its number and the statement `item` that it belongs to are shown.
+    """
     words, data = escape(caption(path)), path.read_bytes()
     wide = f' width="{round(PIXELS * int.from_bytes(data[16:20], "big") / DPI)}"' if data[12:16] == b"IHDR" else ""
     lead, trail = (f"<b>Figure {number}.</b> ", f' (<a href="{back}">{escape(item)}</a>)') if number else ("", "")
@@ -73,7 +78,7 @@ def picture_of(path: Path, number: int = 0, back: str = "", item: str = "") -> s
 
 
 def caption(path: Path) -> str:
-    """What a picture shows: of a run its scene's title and the quantity, of a sweep its title."""
+    """The content of a figure: title and quantity of a run, or title of a sweep."""
     if path.name == "sweep.png" and path.parent.name in sweep.built_in():
         return f"{sweep.load(path.parent.name).title} (make {path.parent.name})"
     if path.parent.name == "figures" and path.parent.parent.name in scene.built_in():
@@ -82,7 +87,8 @@ def caption(path: Path) -> str:
 
 
 def verification(folder: Path) -> str:
-    """The section with what `make verify` left in `folder`: a table of the cases, then each with its figure and numbers."""
+    """The section with the results of `make verify` in `folder`: a table of the cases, then every
+    case with its figure and numbers."""
     frame = read_frame(folder / "verify.csv", verify.COLUMNS)
     judged = verify.judged(frame)
     table = _table(verify.overview(frame), verify.FORMATS)
@@ -100,14 +106,15 @@ def verification(folder: Path) -> str:
 
 
 def _table(frame: pd.DataFrame, formats: dict[str, str]) -> str:
-    """The columns named in `formats` as an HTML table."""
+    """The columns in `formats` as an HTML table."""
     rows = [[*formats], *zip(*([study.cell(value, form) for value in frame[name]] for name, form in formats.items()))]
     return "<table>" + "\n".join("<tr>" + "".join(f"<{tag}>{escape(text)}</{tag}>" for text in row) + "</tr>"
                                  for tag, row in zip(["th"] + ["td"] * len(frame), rows)) + "</table>"
 
 
 def provenance_of(folders: list[Path]) -> str:
-    """nu, and parameters that differ from their defaults, common to all runs and by run, and where the runs come from."""
+    """The source of the runs, with nu and parameters that differ from their defaults, common to all
+    runs and by run."""
     scenes = [read_scene(folder) for folder in folders if (folder / "scene.toml").exists()]
     if not scenes:
         return ""

@@ -1,20 +1,27 @@
-"""Section 3.2: closest points (9), what they cost, and contact without a search for them, (14), (15): the disc on the block, on two meshes
-(pairing)."""
+"""Section 3.2: closest points (9), their cost, and contact (14), (15) without a search for them.
+
+The case is the disc on the block on two meshes (sweep pairing).
+"""
 
 from pathlib import Path
 
 from .judging import Results, both, graded, lost, states
 
 PAIRS = "pairing"
-SAME = 0.01                 # largest difference of rebound velocities over the speed, and of the impulse, for two contacts to be the same
-DEAR = 0.1                  # share of the processor time from which a search costs some
+# Two contact formulations agree up to this difference of the rebound velocities over the speed, and
+# of the impulse.
+SAME = 0.01
+# A search is expensive above this share of the processor time.
+DEAR = 0.1
 PRINTED = {"pairwise": "with a repulsion that vanishes at ε", "pairwise-printed": "as printed"}
-ELEMENT = "auto"            # ε that is an element where the bodies touch
+# ε equals an element size in the contact region.
+ELEMENT = "auto"
 LOST = lost((PAIRS, {"pairing": "closest-point", "pairing_range": ELEMENT}))
 
 
 def runs(results: Results, *widths: str | float) -> list[Path]:
-    """Those of all contacts with these ε [m], auto (ELEMENT) among them, each once."""
+    """The runs of all contact formulations with these ε [m] and with ELEMENT, without duplicates.
+    """
     return list(dict.fromkeys(run for width in (ELEMENT, *widths) for pairing in ("closest-point", *PRINTED)
                               for run in results.pair(PAIRS, pairing=pairing, pairing_range=width)))
 
@@ -26,8 +33,11 @@ def separation(results: Results) -> float:
 
 @states("Section 3.2, equation (9)", "the minimum distance is found at each instant at the cost of CPU time", runs, PAIRS, LOST)
 def search_costs(results: Results) -> tuple[str, str]:
-    """By shares of each run, which scatter less than seconds: agrees where the search for closest points takes more than a tenth of the
-    processor time on both meshes, partly where on one."""
+    """Compares shares of the time of each run, which scatter less than seconds.
+
+    Agrees if the search for closest points takes more than a tenth of the processor time on both
+    meshes, partly if it does on one.
+    """
     words = {"closest-point": "closest points (9)"} | {pairing: f"(14), (15) {how}" for pairing, how in PRINTED.items()}
     ends = {pairing: results.summaries(PAIRS, pairing=pairing, pairing_range=ELEMENT) for pairing in words}
     shares = {pairing: [end["phase_seconds"]["search"] / end["cpu_seconds"] for end in each] for pairing, each in ends.items()}
@@ -40,20 +50,24 @@ def search_costs(results: Results) -> tuple[str, str]:
 
 @states("Section 3.2, equations (14), (15)", "a sum over all points nearer than ε takes the place of the closest points", runs, PAIRS, LOST)
 def sum_of_points(results: Results) -> tuple[str, str]:
-    """As printed, on two meshes: agrees where rebounds and impulse are those of closest points to 1 % and the bodies touch as often; partly
-    where the answers are alone, as printed or with a repulsion that vanishes at ε."""
+    """As printed, on two meshes: agrees if rebounds and impulse equal those of closest points to 1
+    % with the same number of contact intervals.
+
+    Partly if only rebounds and impulse do, as printed or with a repulsion that vanishes at ε.
+    """
     return _beside_closest(results, ELEMENT, "ε an element where the bodies touch")
 
 
 @states("Section 3.2, equation (15)", "with ε of the order of the separation of the points and a large k a point meets a single one of the "
         "other body, and nothing has to be sought", lambda results: runs(results, separation(results)), PAIRS, LOST)
 def single_point(results: Results) -> tuple[str, str]:
-    """As (14), (15) with that ε: judged by the answers, not by the number of points."""
+    """As (14), (15) with this ε. The verdict depends on the results, not on the number of points.
+    """
     return _beside_closest(results, separation(results), "ε the separation of the points")
 
 
 def _beside_closest(results: Results, width: str | float, words: str) -> tuple[str, str]:
-    """Verdict and words of (14), (15) beside closest points, with ε = `width`."""
+    """Verdict and words of (14), (15) with ε = `width`, compared with closest points."""
     nearest = results.summaries(PAIRS, pairing="closest-point", pairing_range=ELEMENT)
     usual, same, as_often, told = [near["contact_intervals"] for near in nearest], {}, {}, []
     for pairing, how in PRINTED.items():

@@ -1,8 +1,9 @@
-"""The paper's statements beside this program's numbers: results/paper/report.html, one self-contained page.
+"""Compares the statements of the paper with our numbers: results/paper/report.html, a
+self-contained page.
 
-Reads what the cases left in results/ (`make paper` makes them first) and computes no number that is not in them. Every verdict
-follows from the numbers by the rule written at its statement; a printed number of the paper counts as known to half a unit of
-its last digit.
+It reads the results of the cases in results/ (`make paper` runs them first) and computes no other
+numbers. Every verdict follows from the numbers by the criterion in the docstring of its statement.
+A printed number of the paper is known to half a unit of its last digit.
 """
 
 import argparse
@@ -26,21 +27,22 @@ from verification import verify
 
 # isort: off
 from . import judging, stick_slip
-# these register the statements, in this order
+# These modules register the statements in this order.
 from . import limits, friction, impacts, pairs, bodies, times  # noqa: F401
 # isort: on
 from .page import COLOURS, page, verification
 
-# the runs, and the pictures of them on the page
+# The runs, and their figures on the page.
 RUNS = {"disc-normal": ("force",), "disc-normal-neohookean": (), "disc-normal-incompressible": (),
         "disc-oblique": ("flight", "force", "energies"),
         "disc-oblique-svk": ("flight", "force", "rolling", "energies"), "disc-rolling": ("rolling",),
         "disc-block": ("velocity", "shapes", "energies"), "disc-block-neohookean": ("velocity",),
         "ball": ("shapes", "force"), "ball-axisymmetric": (), "ball-axisymmetric-svk": ("energies", "force")}
-# the make target of a case, where it is not its own name
+# The make target of a case, if it differs from its name.
 TARGETS = {"disc-oblique-svk": "disc-oblique", "disc-block-neohookean": "disc-block", "ball-axisymmetric-svk": "ball-axisymmetric",
            "disc-normal-neohookean": "ball-comparison", "disc-normal-incompressible": "ball-comparison"}
-# about how long each takes on two cores [s], for the time left; whatever is not named: USUAL
+# The approximate duration of each target on two cores [s], for the remaining time. Other targets
+# take USUAL.
 SECONDS = {"disc-normal": 3, "disc-oblique": 40, "disc-rolling": 10, "friction-laws": 3, "oblique": 36, "friction-jump": 6,
            "friction-steps": 11, "slip-limit": 6, "contact-time-svk": 90, "law-comparison": 6, "contact-time-neohookean": 90, "pairing": 15,
            "calibrate": 115, "calibrate-oblique": 62, "calibrate-ball": 13, "calibrate-ball-3d": 27, "conservation": 8, "stick-slip": 70,
@@ -49,7 +51,8 @@ USUAL = 20
 
 
 def main(argv: list[str]) -> int:
-    """Writes the page; Failure that lists every case that is missing or was made with other code."""
+    """Writes the page. Raises Failure with a list of all cases that are missing or were made with
+    other code."""
     parser = argparse.ArgumentParser(prog="python -m examples.paper", description=__doc__)
     parser.add_argument("--results", metavar="DIR", type=Path, default=RESULTS, help="where the cases are (default: results)")
     parser.add_argument("--make", metavar="TARGET", nargs="+", default=[], help="run these targets of make first")
@@ -70,7 +73,8 @@ def main(argv: list[str]) -> int:
 
 
 def require(results: judging.Results) -> None:
-    """Failure with one line that names every make target whose result is missing, or of another scene or other code."""
+    """Raises Failure with all make targets whose result is missing or comes from another scene or
+    other code."""
     missing = dict.fromkeys(target for target, files, there in _needed(results) if not (all(file.exists() for file in files) and there()))
     if missing:
         raise Failure(f"paper: no results of the present scenes and code for {', '.join(missing)}; run: make {' '.join(missing)}   "
@@ -78,7 +82,8 @@ def require(results: judging.Results) -> None:
 
 
 def _needed(results: judging.Results) -> Iterator[tuple[str, list[Path], Callable[[], bool]]]:
-    """(target, files that it leaves, whether what else it leaves is there) of all that the statements read."""
+    """The results that the statements read: (target, files, a function that tests whether its runs
+    exist)."""
     for name, pictures in RUNS.items():
         runs = [(results.run(name), scene.load(name))]
         yield TARGETS.get(name, name), results.drawn(*(f"{name}/{picture}" for picture in pictures)), partial(_hold, runs)
@@ -101,15 +106,18 @@ def _runs(folder: Path, given: scene.Scene, base: study.Point, points: list[stud
 
 
 def _hold(runs: Iterable[tuple[Path, scene.Scene]]) -> bool:
-    """Whether every folder holds the outcome of its scene, by the present code."""
+    """Whether every folder holds the result of its scene, computed with the present code."""
     return all(study.there(folder, wanted) for folder, wanted in runs)
 
 
-# ---- what the statements rest on, made
+# ---- running the cases
 
 def make(targets: list[str]) -> int:
-    """Runs what make would run for each, one after another in this process, with one line of progress; the exit code of the first that
-    fails, else 0."""
+    """Runs the commands that make would run for each target, one at a time in this process, with
+    one progress line.
+
+    Returns the exit code of the first that fails, else 0.
+    """
     wanted = {target: commands(target) for target in targets}
     with Line("paper", {target: SECONDS.get(target, USUAL) for target in targets}) as line:
         for k, (target, each) in enumerate(wanted.items(), 1):
@@ -121,7 +129,10 @@ def make(targets: list[str]) -> int:
 
 
 def commands(target: str) -> list[tuple[str, list[str]]]:
-    """The module, and the words after `python -m MODULE`, in each line of the recipe of a target."""
+    """The module and the arguments of `python -m MODULE` in each line of the recipe of a target.
+
+    Raises BadInput for a target that does not run the program.
+    """
     plain = {name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL")}
     said = subprocess.run(["make", "-n", "-s", target, "ARGS="], cwd=ROOT, env=plain, capture_output=True, text=True).stdout
     recipe = re.findall(r" -m ([\w.]+) ?(.*)$", said, re.MULTILINE)
@@ -131,7 +142,7 @@ def commands(target: str) -> list[tuple[str, list[str]]]:
 
 
 def called(module: str, words: list[str]) -> int:
-    """The exit code of python -m MODULE, here."""
+    """Runs `python -m MODULE` in this process and returns its exit code."""
     found = importlib.import_module(module)
     if hasattr(found, "__path__"):
         found = importlib.import_module(f"{module}.__main__")

@@ -1,6 +1,11 @@
-"""For which slip velocity, contact stiffness and Poisson's ratio does the oblique disc slide first and stick in the last third of the
-contact with its energy constant, and stay 4.5 ms, as the paper tells (section 3.1)? It states none of the three. Its angle pi/3 is 60
-degrees from the plane, as it calls normal incidence pi/2; 30 degrees, pi/3 from the normal, is searched as well."""
+"""Searches slip velocity, contact stiffness and Poisson's ratio for the sliding and sticking of
+section 3.1.
+
+In the paper the oblique disc slides first, sticks in the last third of the contact with constant
+energy, and is in contact for 4.5 ms. The three parameters are not given. The angle pi/3 is 60
+degrees from the plane, as normal incidence is pi/2; 30 degrees, pi/3 from the normal, is searched,
+too.
+"""
 
 import argparse
 import itertools
@@ -22,18 +27,21 @@ from ffimpact.report.figures import LAWS, ORANGE, SMALL, STYLE, save
 from ffimpact.sweeps import study
 
 AXES = {"angle": (60.0, 30.0), "slip_velocity": (0.03, 0.3, 1.0, 3.0), "penalty": (1e8, 1e9, 1e10), "nu": (0.3, 0.4, 0.45)}
-# as the paper may have run it
+# Settings that the paper may have used.
 LAW = {"svk": {"degree": 1, "mesh_size": 0.01, "contact_mesh_size": 0.005, "breakdown": "continue", "accuracy": 0.0025},
        "neohookean": {"accuracy": 0.005}}
 SCENE, BASE = "disc-oblique", {"fields": 0}
-PAPER = 4.5e-3, 0.02        # contact time [s] and how near counts as met
-LIMIT = 300.0               # seconds a run may take
-QUIET = 0.05                # share of the friction work in the last third that counts as constant energy
+# The contact time of the paper [s] and the permitted relative difference.
+PAPER = 4.5e-3, 0.02
+LIMIT = 300.0  # longest time of a run [s]
+# Below this share of the friction work in the last third the energy counts as constant.
+QUIET = 0.05
 THIRDS = ("first", "second", "last")
 
 
 def main(argv: list[str]) -> int:
-    """Runs the grid, prints the share of sliding in each third of the contact, draws the map; 0 whatever is found."""
+    """Runs the grid, prints the share of sliding in each third of the contact and draws the map.
+    Always returns 0."""
     parser = argparse.ArgumentParser(prog="python -m examples.paper.stick_slip", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", metavar="DIR", type=Path, default=RESULTS / "stick-slip", help="the result folder")
@@ -54,13 +62,15 @@ def main(argv: list[str]) -> int:
 
 
 def grid(axes: dict[str, tuple[float, ...]]) -> list[study.Point]:
-    """Every combination, for both laws."""
+    """Every combination of the axes, for both laws."""
     return [{"law": law} | LAW[law] | dict(zip(axes, values)) for law in LAW for values in itertools.product(*axes.values())]
 
 
 def thirds(folder: Path) -> dict[str, float]:
-    """Mean share of the normal load on sliding points in each third of the contact time, and the share of the friction
-    work that is done in the last third; nan for a run that failed."""
+    """The mean share of the normal load on sliding points in each third of the contact time.
+
+    Also returns the share of the friction work in the last third. All are nan for a failed run.
+    """
     try:
         history = read_history(folder)
     except Unreadable:
@@ -80,12 +90,14 @@ def thirds(folder: Path) -> dict[str, float]:
 
 
 def as_told(rows: pd.DataFrame) -> pd.Series:
-    """The paper's order: mostly sliding in both first thirds, mostly sticking in the last."""
+    """Whether a run has the paper's order: mostly sliding in the first and second third, mostly
+    sticking in the last."""
     return (rows["first"] > 0.5) & (rows["second"] > 0.5) & (rows["last"] < 0.5)
 
 
 def report(rows: pd.DataFrame) -> str:
-    """A table of all runs, and how many meet the order, the contact time and both."""
+    """A table of all runs, and the numbers of runs with the order, with the contact time and with
+    both."""
     formats = {"law": "", "angle": "g", "nu": "g", "penalty": ".0e", "slip_velocity": "g", "contact_time": ".5f", "first": ".2f",
                "second": ".2f", "last": ".2f", "work_last": ".2f", "breakdown_time": ".5f", "exit": ".0f"}
     rows = rows if "breakdown_time" in rows else rows.assign(breakdown_time=np.nan)
@@ -101,9 +113,12 @@ def report(rows: pd.DataFrame) -> str:
 
 
 def draw(rows: pd.DataFrame, axes: dict[str, tuple[float, ...]], path: Path) -> None:
-    """A column a law and angle, a row a nu: cells over slip velocity and penalty, coloured by the contact time; in each cell three bars,
-    the share that slides in the first, second and last third of the contact, on a common axis from 0 to 100 %; framed where the paper's
-    order is met."""
+    """Draws the map: a column for each law and angle, a row for each nu.
+
+    A panel has a field for each slip velocity and penalty, coloured by the contact time. Three bars
+    in each field show the share that slides in the first, second and last third of the contact, on
+    a common axis from 0 to 100 %. A frame marks the paper's order.
+    """
     low, high = 1e3 * rows.contact_time.min(), 1e3 * rows.contact_time.max()
     columns = list(itertools.product(LAW, axes["angle"]))
     with plt.rc_context(STYLE):
@@ -126,7 +141,7 @@ def draw(rows: pd.DataFrame, axes: dict[str, tuple[float, ...]], path: Path) -> 
 
 
 def _cells(panel: plt.Axes, here: pd.DataFrame, axes: dict[str, tuple[float, ...]], low: float, high: float) -> AxesImage:
-    """The cells of a panel, by (penalty, slip velocity), and their bars and frames."""
+    """Draws the fields of a panel, by (penalty, slip velocity), with their bars and frames."""
     cells = np.array([[here.loc[(k, e), "contact_time"] for e in axes["slip_velocity"]] for k in axes["penalty"]])
     picture = panel.imshow(1e3 * cells, vmin=low, vmax=high, cmap="viridis", origin="lower", aspect="auto")
     for i, k in enumerate(axes["penalty"]):
@@ -142,7 +157,8 @@ def _cells(panel: plt.Axes, here: pd.DataFrame, axes: dict[str, tuple[float, ...
 
 
 def _bars(panel: plt.Axes, column: int, row: int, run: pd.Series) -> None:
-    """The shares of a run in its cell, each a white bar with its number [%] above it, from its lower edge up to 0.6 of it (100 %)."""
+    """Draws the shares of a run in its field: white bars with their numbers [%] above, from the
+    lower edge up to 0.6 of the height (100 %)."""
     if run.exit:
         panel.text(column, row, "failed", ha="center", va="center", fontsize=SMALL)
         return

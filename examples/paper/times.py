@@ -1,8 +1,9 @@
-"""Sections 3.1 and 3.3: the contact times that the paper prints, each over maps of the nu and k that it does not state, and all of them at
-once.
+"""Sections 3.1 and 3.3: the contact times printed in the paper, over maps of nu and k, which the
+paper does not state.
 
-A map is a sweep over nu and k, for those that lose ellipticity on several coarse meshes; what lies between its runs is interpolated in the
-logarithm of k. Runs with det F <= 0 are no answers.
+Each time is compared alone, and all times together. A map is a sweep over nu and k, on several
+coarse meshes if runs lose ellipticity. Between runs the time is interpolated in the logarithm of k.
+Runs with det F <= 0 are not valid results.
 """
 
 from collections.abc import Iterable
@@ -18,19 +19,22 @@ from .bodies import BALL, BALL_NEO, DISC, DISC_NEO
 from .judging import Results, bar, both_times, finished, graded, loaded, lost, states, when
 
 DISC_MAP, OBLIQUE_MAP, BALL_MAP, SOLID_MAP = "calibrate", "calibrate-oblique", "calibrate-ball", "calibrate-ball-3d"
-MAPS = {"disc": (DISC_MAP,), "oblique disc": (OBLIQUE_MAP,), "ball": (BALL_MAP, SOLID_MAP)}   # of each number of the paper
+# The maps of each contact time of the paper.
+MAPS = {"disc": (DISC_MAP,), "oblique disc": (OBLIQUE_MAP,), "ball": (BALL_MAP, SOLID_MAP)}
 EVERY = [name for maps in MAPS.values() for name in maps]
-ANGLE, OTHER = 60.0, 30.0   # degrees from the plane: normal incidence is pi/2 in the paper; and what pi/3 from the normal would be
-FINE = 400                  # values of k between those of the runs
+# Angles [degrees from the plane]: normal incidence is pi/2 in the paper; OTHER would be pi/3 from
+# the normal.
+ANGLE, OTHER = 60.0, 30.0
+FINE = 400  # number of interpolated values of k
 Ranges = list[tuple[float, float]]
 
 
-# ---- one number, one map
+# ---- one contact time, one map
 
 @states("Section 3.1", "oblique disc, SVK, 12 m/s at π/3, μ_d = 0.5, μ_e = 0.7: contact time 0.0045 s, as the paper may have run it",
         f"{OBLIQUE_MAP} disc-oblique-svk oblique", f"{OBLIQUE_MAP} disc-oblique-svk/force")
 def oblique_time(results: Results) -> tuple[str, str]:
-    """As the ball's time, at 60 degrees from the plane; 30 degrees stand beside."""
+    """As ball_time(), at 60 degrees from the plane. The words also report 30 degrees."""
     rows, neo = results.table(OBLIQUE_MAP), finished(results, "oblique")
     other = _met(rows[(rows.exit == 0) & (rows.angle == OTHER) & rows.breakdown_time.isna()], OBLIQUE_MAP)
     found = {nu: bar(neo, "contact_time", nu=nu) for nu in neo.nu}
@@ -42,7 +46,8 @@ def oblique_time(results: Results) -> tuple[str, str]:
 
 @states("Section 3.3", "the 2D disc at 8 m/s: contact time 0.0048 s", f"{DISC_MAP} {DISC}", f"{DISC_MAP} {DISC}/force")
 def disc_time(results: Results) -> tuple[str, str]:
-    """Agrees where some (ν, k) of the map, with ellipticity kept, meet it with SVK: the paper states neither."""
+    """Agrees if some (ν, k) of the map, with ellipticity kept, gives this time with SVK: the paper
+    states neither."""
     rows, given = finished(results, DISC_MAP), loaded(DISC_MAP).figure
     rows = rows[(rows.law == "svk") & rows.ellipticity_lost_time.isna()]
     met, above = ({nu: ranges for nu, ranges in sweep_figures.level_set(given | {"colour": name}, rows).items() if ranges}
@@ -56,9 +61,12 @@ def disc_time(results: Results) -> tuple[str, str]:
 @states("Section 3.3, figure 10", "ball, SVK, 8 m/s: contact time 0.00603 s, as the paper may have run it: as a body of revolution",
         f"{BALL_MAP} {BALL} {BALL_NEO}", f"{BALL_MAP} {BALL}/force")
 def ball_time(results: Results) -> tuple[str, str]:
-    """Over a map of (ν, k) on coarse meshes, as the paper states none of these: agrees where some (ν, k) meets it, to half a unit of its
-    last digit, on every mesh with ellipticity kept; partly where one meets it on some mesh only, or with ellipticity lost; else not. Runs
-    with det F ≤ 0 are no answers."""
+    """Searches a map of (ν, k) on coarse meshes, as the paper states none of these.
+
+    Agrees if some (ν, k) gives the time, to half a unit of its last digit, on every mesh with
+    ellipticity kept. Partly if some (ν, k) gives it on some mesh only, or with ellipticity lost.
+    Else it does not agree. Runs with det F ≤ 0 are not valid results.
+    """
     return _over_meshes(BALL_MAP, results.table(BALL_MAP), f"(The run of {BALL}: {both_times(results.summary(BALL))}; the neo-Hookean "
                         f"ball, another law, converges to {both_times(results.summary(BALL_NEO))}.)")
 
@@ -66,15 +74,16 @@ def ball_time(results: Results) -> tuple[str, str]:
 @states("Section 3.3, figure 10", "ball, SVK, 8 m/s: contact time 0.00603 s, as the paper may have run it: in three dimensions",
         f"{SOLID_MAP} ball")
 def ball_time_3d(results: Results) -> tuple[str, str]:
-    """As the ball's time as a body of revolution, on meshes of tetrahedra."""
+    """As ball_time(), on meshes of tetrahedra."""
     return _over_meshes(SOLID_MAP, results.table(SOLID_MAP), "(The neo-Hookean ball in three dimensions, another law, gives "
                         f"{both_times(results.summary('ball'))}.)")
 
 
 def _over_meshes(name: str, every: pd.DataFrame, beside: str) -> tuple[str, str]:
-    """A printed time over a map on several meshes, from the rows `every` of it, by the rule of ball_time()."""
+    """Verdict and words for a printed time over a map on several meshes, from its rows `every`, by
+    the criterion of ball_time()."""
     rows, meshes, time = every[every.exit == 0], every.mesh_size.unique(), loaded(name).figure["level"]
-    whole = rows[rows.breakdown_time.isna()]      # in which no element is inverted
+    whole = rows[rows.breakdown_time.isna()]  # no element is inverted
     met, sound = _met(whole, name), _met(whole[whole.ellipticity_lost_time.isna()], name)
     independent = [nu for nu in rows.nu.unique() if _shared(*(sound.get((h, nu), []) for h in meshes))]
     nearest = whole.loc[(whole.contact_time - time).abs().idxmin()] if len(whole) else None
@@ -89,20 +98,21 @@ def _over_meshes(name: str, every: pd.DataFrame, beside: str) -> tuple[str, str]
 
 
 def _met(rows: pd.DataFrame, name: str) -> dict[tuple[float, float], Ranges]:
-    """For each (mesh size, ν) of a map that meets the paper's contact time, the ranges of k that do."""
+    """The ranges of k that give the paper's contact time, for each (mesh size, ν) of a map for
+    which they exist."""
     figure = loaded(name).figure
     return {(h, nu): ranges for h, group in rows.groupby("mesh_size", sort=False)
             for nu, ranges in sweep_figures.level_set(figure, group).items() if ranges}
 
 
 def _shared(*each: Ranges) -> Ranges:
-    """The k that are in a range of every list."""
+    """The values of k that are in a range of every list."""
     parts = [(max(low for low, _ in chosen), min(high for _, high in chosen)) for chosen in product(*each)]
     return [(low, high) for low, high in parts if low <= high]
 
 
 def _where(met: dict[tuple[float, float], Ranges]) -> str:
-    """The meshes, ν and k that `_met` found, in words."""
+    """The meshes, ν and k of `_met` in words."""
     words = []
     for h in dict.fromkeys(h for h, _ in met):
         every = {nu: ranges for (mesh, nu), ranges in met.items() if mesh == h}
@@ -116,14 +126,18 @@ def _each(met: dict[float, Ranges]) -> str:
     return "; ".join(f"ν = {nu:g}: k = {sweep_figures.spans(ranges)}" for nu, ranges in met.items())
 
 
-# ---- all numbers, all maps
+# ---- all contact times, all maps
 
 @states("Sections 3.1, 3.3", "one material and one contact for all: with the same ν and k 4.8 ms of the disc, 4.5 ms of the oblique disc, "
         "6.03 ms of the ball", " ".join(EVERY))
 def at_once(results: Results) -> tuple[str, str]:
-    """On the ν that all maps have, with SVK, the angle from the plane or the normal. A number is met where it lies, to half a unit of its
-    last digit, within the error bar of the runs, or, on coarse meshes, between them. Agrees where some (ν, k) meets all three with
-    ellipticity kept; partly where one does whatever is lost; else not."""
+    """Searches the ν that all maps have for a k with all three times, with SVK, with the angle from
+    the plane or from the normal.
+
+    A time is reproduced if it lies, to half a unit of its last digit, within the error bar of the
+    runs or, on coarse meshes, between them. Agrees if some (ν, k) gives all three with ellipticity
+    kept; partly if some does with ellipticity lost; else it does not agree.
+    """
     whole, sound = ({angle: _joint(results, angle, kept) for angle in (ANGLE, OTHER)} for kept in (False, True))
     met, kept = ({angle: _meeting(maps) for angle, maps in found.items()} for found in (whole, sound))
     words = []
@@ -142,8 +156,8 @@ def at_once(results: Results) -> tuple[str, str]:
 
 
 class Together(NamedTuple):
-    """Of a ν of all maps: the ranges of k [Pa/m] that meet all numbers; the k that misses them by least, by what share of one, and the
-    times there."""
+    """For a ν of all maps: the ranges `met` of k [Pa/m] with all times; the k with the smallest
+    miss; this relative miss; the times at this k."""
 
     nu: float
     met: Ranges
@@ -153,7 +167,8 @@ class Together(NamedTuple):
 
 
 def _joint(results: Results, angle: float, kept: bool, names: Iterable[str] = MAPS) -> list[Together]:
-    """The maps of these numbers at once, over the k that they share; kept: from runs alone that keep ellipticity."""
+    """Evaluates the maps of these times together over the k that they share. `kept`: only from runs
+    that keep ellipticity."""
     maps = {name: _between(results, name, angle, kept) for name in names}
     found = []
     for nu in sorted(set.intersection(*(set(each) for each in maps.values()))):
@@ -169,24 +184,28 @@ def _joint(results: Results, angle: float, kept: bool, names: Iterable[str] = MA
 
 
 def _meeting(maps: list[Together]) -> dict[float, Ranges]:
-    """For each ν that meets the numbers, the ranges of k that do."""
+    """The ranges of k for each ν that gives all times."""
     return {each.nu: each.met for each in maps if each.met}
 
 
 def _miss(name: str, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """By what share of it the paper's time, known to half a unit of its last digit, is outside of what lies from low to high; 0 inside."""
+    """The relative distance of the paper's time, known to half a unit of its last digit, from the
+    interval low to high; 0 inside."""
     figure = loaded(MAPS[name][0]).figure
     return np.maximum(0, np.maximum(low - figure["level"], figure["level"] - high) - figure["band"]) / figure["level"]
 
 
 def _bounds(k: np.ndarray, each: pd.DataFrame) -> tuple[np.ndarray, np.ndarray]:
-    """The smallest and largest times of _between() at k, interpolated in its logarithm."""
+    """The smallest and largest times of _between() at k, interpolated in the logarithm of k."""
     return tuple(np.interp(np.log(k), np.log(each.index), each[name]) for name in ("low", "high"))
 
 
 def _between(results: Results, number: str, angle: float, kept: bool) -> dict[float, pd.DataFrame]:
-    """For each ν of the maps of a number with two k or more: low and high, the smallest and the largest contact time of the runs on all
-    meshes, error bars included, by k."""
+    """The smallest and largest contact time, `low` and `high`, over the runs on all meshes with
+    error bars, by k.
+
+    There is a table for each ν of the maps of a contact time with two values of k or more.
+    """
     parts = []
     for name in MAPS[number]:
         rows = finished(results, name)
@@ -203,8 +222,12 @@ def _between(results: Results, number: str, angle: float, kept: bool) -> dict[fl
 @states("Section 3.3", "the contact time is always larger of the ball when the laws are similar", laws="{}.",
         runs=f"{DISC_MAP} {BALL_MAP} {SOLID_MAP} {DISC} {BALL} {DISC_NEO} {BALL_NEO}", lost=lost(DISC, BALL))
 def always_longer(results: Results, law: str) -> tuple[bool, str]:
-    """With a law for both: where the ball's is longer than the disc's at 8 m/s, by contact_time and by the time above 1 % of the peak
-    force; with SVK for every ν and k that the maps of both have, too."""
+    """With a law for both bodies: whether the contact of the ball is longer than that of the disc
+    at 8 m/s.
+
+    The times are contact_time and the time above 1 % of the peak force; for SVK also all ν and k
+    that both maps have.
+    """
     disc, ball = (results.summary(name) for name in ((DISC, BALL) if law == "svk" else (DISC_NEO, BALL_NEO)))
     longer = all(ball[key] > disc[key] for key in ("contact_time", "thresholded_contact_time"))
     words = f"ball {both_times(ball)}, disc {both_times(disc)}"
@@ -216,7 +239,8 @@ def always_longer(results: Results, law: str) -> tuple[bool, str]:
 
 
 def _least_excess(results: Results) -> dict[float, float]:
-    """For each ν of the maps of disc and ball by how much [s] the ball's contact is longer at least, over k, error bars and meshes."""
+    """The least difference [s] between the contact times of ball and disc over k, error bars and
+    meshes, for each ν of both maps."""
     disc, ball = (_between(results, name, ANGLE, False) for name in ("disc", "ball"))
     found = {}
     for nu in sorted(set(disc) & set(ball)):

@@ -1,4 +1,5 @@
-"""Scenes of bodies in three dimensions: shapes and their distances, meshes, files, symmetry, what is refused, and runs."""
+"""Scenes of bodies in three dimensions: shapes and distances, meshes, files, symmetry, refused
+input, and runs."""
 
 import math
 
@@ -14,7 +15,8 @@ from tests.support.bodies_3d import BALL, BLOCK, FLOOR, SCENE, prism, read
 
 @pytest.mark.robustness
 def test_meshes_are_fine_where_bodies_touch():
-    """Faces below the ball's lowest point and in the middle of the block's upper side, not elsewhere; turned along with the body."""
+    """Faces below the lowest point of the ball and in the middle of the upper side of the block are
+    small, others are not; they rotate with the body."""
     scene = read(BALL, BLOCK, mesh_size=0.03, contact_mesh_size=0.006, symmetry="full")
     built = assembly.assemble(scene)
     m = built.mesh
@@ -30,15 +32,19 @@ def test_meshes_are_fine_where_bodies_touch():
 
 
 def found_in(path) -> list[tuple]:
-    """The surfaces of a file that are round: whether it is a cylinder, its radius, how many of the faces lie on it."""
+    """The round surfaces of a file: whether it is a cylinder, its radius, and the share of the
+    faces on it."""
     m = solid_file.read(path)
     return [(len(one.axis) > 0, round(one.radius, 9), len(own) / len(m.faces)) for one, own in curved.surfaces(m.points, m.faces)]
 
 
 @pytest.mark.robustness
 def test_surfaces_are_round_by_the_angles_of_their_faces(tmp_path):
-    """A hexagonal prism is one, though its vertices lie on a sphere; of 24 sides it is a cylinder. A shaft with flats keeps them, a ball with a flat is no ball
-    but has the sphere's surface."""
+    """A hexagonal prism stays one although its vertices lie on a sphere; with 24 sides it becomes a
+    cylinder.
+
+    A shaft with flats keeps them. A ball with a flat is not a ball but has the surface of a sphere.
+    """
     prism(6, tmp_path / "6.mesh")
     prism(24, tmp_path / "24.mesh")
     for name, made in {"shaft": "Cylinder(1) = {0, 0, 0, 0, 0.03, 0, 0.02}; Box(2) = {-0.015, -1, -1, 0.03, 2, 2}; BooleanIntersection(3)",
@@ -53,7 +59,11 @@ def test_surfaces_are_round_by_the_angles_of_their_faces(tmp_path):
 
 @pytest.mark.robustness
 def test_a_pair_is_that_of_the_other_dimension(tmp_path):
-    """A ball on a free cylinder up to the largest force: impulse, velocities and force as of bodies of revolution, to the coarse meshes' error."""
+    """A ball on a free cylinder up to the largest force agrees with bodies of revolution, to the
+    error of the coarse meshes.
+
+    Compared are impulse, velocities and force.
+    """
     cylinder = {"name": "cylinder", "shape": "cylinder", "radius": 0.08, "height": 0.06}
     ball = {key: value for key, value in BALL.items() if key not in ("position", "velocity")}
     top = {"end_time": 2e-3, "accuracy": 0.1}

@@ -1,4 +1,5 @@
-"""The command line: exit codes, one-line errors, interruption, and that `make` lists its targets."""
+"""The command line: exit codes, one-line errors, interruption, and the list of targets of `make`.
+"""
 
 import subprocess
 import sys
@@ -10,7 +11,7 @@ from tests.support.cli import ROOT, call, start, wait_for
 
 @pytest.mark.robustness
 def test_what_a_run_does_not_load():
-    """A run that is there is reported without matplotlib and pandas."""
+    """The report of an existing run needs neither matplotlib nor pandas."""
     for loads, heavy, said in (("import ffimpact.running.run", {"matplotlib", "pandas"}, "set()\n"),):
         known = subprocess.run([sys.executable, "-c", f"{loads}; import sys; print({heavy} & set(sys.modules))"], cwd=ROOT, capture_output=True, text=True)
         assert known.stdout == said, known.stderr
@@ -18,7 +19,7 @@ def test_what_a_run_does_not_load():
 
 @pytest.mark.robustness
 def test_two_runs_do_not_share_a_folder(fake, tmp_path):
-    """A second run into the same folder is refused while the first one is at work."""
+    """A second run into the same folder is refused while the first one is running."""
     fake("slow")
     first = start("run", "disc-normal", "--out", str(tmp_path / "out"))
     wait_for(fake.starts)

@@ -1,4 +1,5 @@
-"""Contact on a frozen factorisation: by what its systems are solved, and how far, does not change the answer."""
+"""Contact with a factorisation that is kept: the solver of its systems and their tolerance do not
+change the results."""
 
 import shutil
 
@@ -11,11 +12,13 @@ from ffimpact.output import results
 
 EXACTLY = ("core/step/project.idp", "enough = exact ? 0 : (last ? 1e-10 * contactForce.l2 : 2e-3 * residual.l2);", "enough = 0;")
 BALL = dict(law="neohookean", speed=12, angle=60, slip_velocity=0.1, accuracy=0.2, mesh_size=0.03, contact_mesh_size=0.015, end_time=3e-3)
-SMOOTH = BALL | dict(friction_static=0.6, friction_dynamic=0.6)   # no jump of the law: a step has one solution
+# Without a jump of the law a step has one solution.
+SMOOTH = BALL | dict(friction_static=0.6, friction_dynamic=0.6)
 
 
 def history(folder, flags: dict, *changes) -> dict:
-    """History of edp/ball-plane.edp, of a copy in which (file, text, other text) is changed."""
+    """The history of edp/ball-plane.edp in a copy of edp/ with the changes (file, text, other
+    text)."""
     tree = folder / "edp"
     shutil.copytree(parameters.ROOT / "edp", tree)
     for name, text, other in changes:
@@ -28,7 +31,8 @@ def history(folder, flags: dict, *changes) -> dict:
 
 
 def assert_same(found: dict, expected: dict) -> None:
-    """All columns but the count of iterations, to 1e-6 of their largest value; the balance of energy to 1e-9 of the energy."""
+    """Asserts that all columns but the count of iterations agree to 1e-6 of their largest value,
+    and that the energy is balanced to 1e-9."""
     for name in set(expected) - {"newton_iterations", "balance"}:
         np.testing.assert_allclose(found[name], expected[name], rtol=0, atol=1e-6 * np.abs(expected[name]).max(), err_msg=name)
     assert np.abs(found["balance"]).max() < 1e-9 * expected["kinetic"][0]
@@ -37,7 +41,8 @@ def assert_same(found: dict, expected: dict) -> None:
 @pytest.mark.robustness
 @pytest.mark.parametrize("flags", [SMOOTH, BALL | dict(angle=90)], ids=["friction", "normal"])
 def test_contact_is_solved_as_far_as_it_matters(tmp_path, flags):
-    """To a share of the residual of the step or to round-off, by the kernels or by the scripts: the same answer."""
+    """A tolerance relative to the residual of the step and one at round-off give the same results,
+    with kernels and with scripts."""
     exactly = history(tmp_path / "exactly", flags, EXACTLY)
     for without in ("none", "kernels"):
         assert_same(history(tmp_path / without, flags | {"without": without}), exactly)
@@ -45,8 +50,11 @@ def test_contact_is_solved_as_far_as_it_matters(tmp_path, flags):
 
 @pytest.mark.robustness
 def test_jump_of_the_coefficient(tmp_path):
-    """With a jump of the coefficient a step may have two solutions, and which is found depends on the way: energy is balanced, and the impulse
-    and the friction work agree to what one point's choice makes."""
+    """With a jump of the coefficient a step may have two solutions, and the path of the iteration
+    selects one.
+
+    Energy is balanced. Impulse and friction work agree up to the effect of the choice at one point.
+    """
     flags = BALL | dict(friction_static=0.7, friction_dynamic=0.5)
     one, other = (history(tmp_path / without, flags | {"without": without}) for without in ("none", "kernels"))
     assert np.abs(one["balance"]).max() < 1e-8 * one["kinetic"][0]

@@ -1,4 +1,7 @@
-"""Kelvin-Voigt damping and a Maxwell branch (edp/core/law/damping.idp, relaxation.idp): exact decays, objective, counted exactly, in scripts and kernels."""
+"""Kelvin-Voigt damping and a Maxwell branch (edp/core/law/damping.idp, relaxation.idp).
+
+Tested are exact decay, objectivity and the exact energy balance, in scripts and kernels.
+"""
 
 import pytest
 
@@ -7,8 +10,11 @@ from verification.measure import disc
 
 @pytest.mark.robustness
 def test_a_branch_is_a_viscosity_where_it_is_fast_and_a_spring_where_it_is_slow(tmp_path):
-    """Restitution and viscous work with G, tau are those of viscosity G tau where tau is short beside the contact; where it is long little is taken, and the branch
-    stiffens the body: the contact is shorter."""
+    """For tau short relative to the contact, restitution and viscous work equal those of the
+    viscosity G tau.
+
+    For long tau little energy is lost, and the branch stiffens the body: the contact is shorter.
+    """
     given = {"law": "neohookean", "nu": 0.4, "speed": 1, "accuracy": 0.1, "dt": 1e-5}
     elastic, viscous, fast, slow = (disc(tmp_path / str(k), **given, **more) for k, more in enumerate(
         ({}, {"viscosity": 600}, {"relaxation_modulus": 2e7, "relaxation_time": 3e-5}, {"relaxation_modulus": 2e6, "relaxation_time": 1})))

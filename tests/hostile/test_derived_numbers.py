@@ -1,4 +1,5 @@
-"""Restitution, angles and slip of bodies that spin, and which of a run's numbers have no meaning and are not written."""
+"""Restitution, angles and slip of spinning bodies, and results that are omitted because they have
+no meaning."""
 
 import pandas as pd
 import pytest
@@ -9,7 +10,8 @@ from ffimpact.running import run
 
 @pytest.mark.robustness
 def test_what_rolls_has_no_restitution(tmp_path):
-    """A disc that is let go on the wall of a bowl hardly approaches it: what presses it on is its weight. The speeds of a scene are those that it reaches."""
+    """A disc that is released on the wall of a hollow circle hardly approaches it; its weight
+    presses it on. The speeds of a scene are those that it reaches."""
     found = run.run(scene.load("disc-bowl"), {"accuracy": 0.4, "fields": 0, "end_time": 0.07, "contact.slip_velocity": 0.015}, tmp_path / "out", estimate=False)
     rows, s = pd.read_csv(found.folder / "contacts.csv"), found.summary
     assert len(rows) > 1 and rows.impulse_ratio.notna().all() and not (rows.restitution > 2).any()

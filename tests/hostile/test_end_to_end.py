@@ -1,4 +1,5 @@
-"""disc-normal with the real FreeFem++: what the folder holds, and that both ways in say the same."""
+"""disc-normal with the real FreeFem++: content of the result folder, and agreement of runs with and
+without Python."""
 
 import pytest
 
@@ -12,8 +13,11 @@ from tests.support.end_to_end import COARSE, call, direct
 
 @pytest.mark.robustness
 def test_own_mesh_of_a_slow_impact_gives_what_gmsh_gives(tmp_path):
-    """At 1e-5 of the bar's sound speed, where the contact is 1/220 of the radius, direct runs on own meshes of half the disc and all of
-    it agree with Python's on gmsh's to the accuracy asked."""
+    """At 1e-5 of the wave speed of a bar the contact is 1/220 of the radius wide.
+
+    Direct runs on meshes of half the disc and of the whole agree with Python runs on gmsh meshes to
+    the requested accuracy.
+    """
     given = {"law": "neohookean", "nu": 0.4, "speed": 6.38e-4, "penalty": "auto", "accuracy": 0.005, "fields": 0}
     theirs = run.run(scene.load("disc-normal"), given, tmp_path / "python", estimate=False).summary
     for symmetry in ("half", "full"):
@@ -26,21 +30,23 @@ def test_own_mesh_of_a_slow_impact_gives_what_gmsh_gives(tmp_path):
 
 @pytest.mark.robustness
 def test_a_step_longer_than_the_contact_ends_in_its_first_try(tmp_path):
-    """In three dimensions, too, a step of ten contact times under friction is given up after the usual work of one step, without a second try."""
+    """In three dimensions, too, a step of ten contact times with friction is abandoned after the
+    usual work of one step, without a second try."""
     with pytest.raises(Failure, match=r"smallest step tried 0\.05 s.* dt = 0\.05 s is too long for its friction"):
         run.run(scene.load("ball-oblique"), {"dt": 0.05, "accuracy": 0.4, "fields": 0}, tmp_path / "out", estimate=False)
 
 
 @pytest.mark.robustness
 def test_a_sensible_penalty_does_not_chatter(tmp_path):
-    """The same coarse disc at the default penalty ends without a word of chatter."""
+    """The same coarse disc with the default penalty gives no warning about chatter."""
     process = call(*(f"{name}={value}" for name, value in COARSE.items()), out=tmp_path / "out")
     assert process.returncode == 0 and not any("chatter" in each for each in results.read_summary(tmp_path / "out")["warnings"])
 
 
 @pytest.mark.robustness
 def test_hopping_is_no_chatter(tmp_path):
-    """A disc that hops on the plane under gravity is back within a wave's transit many times, but not in a row: no failure, no warning."""
+    """A disc that hops under gravity returns within a transit time many times, but not
+    consecutively: no failure, no warning."""
     process = direct("-law", "neohookean", "-speed", "0", "-height", "1e-5", "-gravity", "9.81", "-end_time", "0.7", "-accuracy", "0.4", "-degree", "1",
                      "-mesh_size", "0.01", "-contact_mesh_size", "0.01", "-out", str(tmp_path / "out"))
     summary = results.read_summary(tmp_path / "out")

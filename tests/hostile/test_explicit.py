@@ -1,4 +1,7 @@
-"""Central differences: contact and friction are solved on the lumped mass, so that the bodies' own waves alone set the parts of a step."""
+"""Central differences: contact and friction are solved on the lumped mass.
+
+Hence only waves in the bodies determine the substeps of a step.
+"""
 
 import pytest
 
@@ -8,7 +11,11 @@ from verification.measure import bodies, disc
 
 @pytest.mark.robustness
 def test_kernels_do_what_the_scripts_say(tmp_path):
-    """Friction in parts, with kernels and without, up to round-off: on a plane, and on a circle, which no point of the window touches when a part begins."""
+    """Friction in substeps agrees with and without kernels to round-off, on a plane and on a
+    circle.
+
+    On the circle no point of the active set is in contact at the start of a substep.
+    """
     few = OBLIQUE | EXPLICIT | {"end_time": 2e-4}
     body = {"shape": "disc", "radius": 0.05, "position": [0.0, 0.0501], "velocity": [4.0, -7.0], "law": "neohookean", "young": 7e6, "nu": 0.4, "density": 1722.0}
     circle = {"accuracy": 0.2, "end_time": 2e-4, "contact": {"friction_static": 0.5}, "body": [body],

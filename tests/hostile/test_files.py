@@ -1,5 +1,5 @@
-"""Bodies from files: where they are sought, how they are read, sized, scaled and kept, and what of
-them may touch."""
+"""Bodies from files: search paths, reading, sizes, scaling, copies, and the boundaries that may
+come into contact."""
 
 import math
 
@@ -21,7 +21,7 @@ def unknowns(file: str, folder, **entries) -> tuple[int, float, solid_mesh.Solid
 
 
 def rounded_box(radius: float) -> float:
-    """The volume [m3] of the box with fillets of a radius [mm]."""
+    """The volume [m3] of the box with fillets of this radius [mm]."""
     a, b, c = (side - 2 * radius for side in (100, 60, 40))
     faces, edges, corners = a * b + b * c + c * a, a + b + c, 4 / 3 * math.pi * radius**3
     return 1e-9 * (a * b * c + 2 * radius * faces + math.pi * radius**2 * edges + corners)
@@ -29,9 +29,12 @@ def rounded_box(radius: float) -> float:
 
 @pytest.mark.robustness
 def test_fillets_that_touch_nothing_cost_little(tmp_path):
-    """A box with fillets of 2 mm on all edges, which its elements do not resolve, takes little
-    more than the box (six times as many with elements of its curvature); the volume is kept to a quarter
-    of the accuracy."""
+    """A box with fillets of 2 mm on all edges, which its elements do not resolve, costs little more
+    than the box.
+
+    With elements of their curvature it has six times as many unknowns. The volume is exact to a
+    quarter of the accuracy.
+    """
     write_step(tmp_path / "box.step")
     write_step(tmp_path / "small.step", 2)
     plain, *_ = unknowns("box.step", tmp_path)
@@ -42,8 +45,11 @@ def test_fillets_that_touch_nothing_cost_little(tmp_path):
 
 @pytest.mark.robustness
 def test_a_fillet_that_touches_is_resolved(tmp_path):
-    """On its edge the box meets the floor with a fillet: elements there are those of its curvature,
-    on other fillets they are not, as the volume does not ask for it."""
+    """A box comes into contact with a fillet on its edge: elements at this fillet have the size of
+    its curvature.
+
+    Elements at other fillets do not, as the volume does not require it.
+    """
     write_step(tmp_path / "part.step", 5)
     _, size, m = unknowns("part.step", tmp_path, turn=[0, 0, 30])
     assert size < 5e-3 and 0 < 1 - m.volumes.sum() / rounded_box(5) < 0.25 * 0.02
@@ -56,8 +62,8 @@ def test_a_fillet_that_touches_is_resolved(tmp_path):
 
 @pytest.mark.robustness
 def test_a_geometry_is_as_fine_as_the_shape(tmp_path):
-    """The contact of a box on its edge gets the element size of the built-in box, to a tenth: samples
-    of a mesh are counted by the area they stand for."""
+    """The contact of a box on its edge has the element size of the built-in box, to a tenth.
+    Samples of a mesh are weighted with their area."""
     write_step(tmp_path / "box.step")
     _, size, _ = unknowns("box.step", tmp_path, turn=[0, 0, 20])
     given = solid("box.step", turn=[0, 0, 20]) | {"accuracy": 0.02, "symmetry": "full"}

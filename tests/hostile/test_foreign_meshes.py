@@ -1,4 +1,5 @@
-"""Meshes of the user's own: what is wrong with a file is named, on both ways in; bodies of any outline; gmsh's files."""
+"""Meshes of the user: reports of errors in a file, with and without Python; bodies of any outline;
+gmsh files."""
 
 from dataclasses import replace
 
@@ -12,7 +13,8 @@ from tests.support.triangles import whole_of
 
 @pytest.mark.robustness
 def test_place_in_the_file_does_not_matter(tmp_path):
-    """The same disc elsewhere gives the same history, the centre of mass as far to the side as it is there: 1e-6, the solver's round-off."""
+    """The same disc at another position gives the same history with a shifted centre of mass, to
+    1e-6, the round-off of the solver."""
     m = mesh.disc(RADIUS, 0.015, 0.006, False)
     here, there = go(tmp_path / "here", m), go(tmp_path / "there", moved(m, 0.8, -3))
     agree(here, there, 1e-6)
@@ -21,7 +23,8 @@ def test_place_in_the_file_does_not_matter(tmp_path):
 
 @pytest.mark.robustness
 def test_whole_mesh_counts_once(tmp_path):
-    """A whole disc with symmetry=auto is a whole disc: history, impulse and contact time of the half disc's run, and it neither drifts nor turns."""
+    """A mesh of the whole disc with symmetry=auto gives history, impulse and contact time of the
+    half disc, without drift and rotation."""
     half = mesh.disc(RADIUS, 0.015, 0.006, True)
     one, two = go(tmp_path / "half", half), go(tmp_path / "whole", whole_of(half))
     agree(one, two, 1e-5)
@@ -32,7 +35,7 @@ def test_whole_mesh_counts_once(tmp_path):
 
 @pytest.mark.robustness
 def test_half_an_ellipse_is_the_ellipse(tmp_path):
-    """Half a body of straight edges and the whole of it give the same history."""
+    """Half of a body with straight edges and the whole body give the same history."""
     def half_ellipse(occ):
         occ.addDisk(0, 0, 0, 0.05, 0.03)
         occ.addRectangle(0, -1, 0, 1, 2)

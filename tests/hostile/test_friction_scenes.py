@@ -1,4 +1,4 @@
-"""Scenes with friction: that they load, run, are reported and drawn as the paper's figures 4 to 6 are."""
+"""Scenes with friction: loading, runs, reports and the figures 4 to 6 of the paper."""
 
 import pytest
 
@@ -7,7 +7,8 @@ from ffimpact.__main__ import main
 
 @pytest.mark.robustness
 def test_compare_runs_reports_and_draws(fake, tmp_path, capsys):
-    """Each scene is run once, with a coarser run for its error, and reported, then compared in one picture; a second time all is there."""
+    """Each scene runs once with a coarser run for its error, is reported and compared in one
+    figure. A second call reuses all."""
     arguments = ["compare", "disc-oblique-svk", "disc-oblique", "--out", str(tmp_path / "both"), "--set", "fields=0"]
     assert main(arguments) == 0 and fake.starts() == 4
     out = capsys.readouterr().out

@@ -1,4 +1,5 @@
-"""`integrator = auto`: explicit steps where their count says that they are the cheaper way, the default elsewhere; what was chosen is said."""
+"""`integrator = auto`: explicit steps if they are cheaper by their number, else the default. The
+choice is reported."""
 
 import pytest
 
@@ -8,8 +9,11 @@ from ffimpact.running import run
 
 @pytest.mark.robustness
 def test_a_stated_error_covers_an_explicit_answer(tmp_path):
-    """The run beside it, which estimates the error, takes the same integrator; the answers of the default's finer run are within what is stated, and the energy's
-    error is no less than its drift."""
+    """The second run, which estimates the error, has the same integrator.
+
+    The results of a finer run with the default integrator are within the error estimate. The
+    estimate of the energy is at least its drift.
+    """
     wanted = scene.load("ball-axisymmetric")
     found = run.run(wanted, {"integrator": "auto"}, tmp_path / "auto")
     assert len([words for words in found.summary["skipped"] if words.startswith("implicit steps (a step takes")]) == 1

@@ -1,4 +1,4 @@
-"""The compiled kernels: the same as the scripts; without them nothing changes."""
+"""The compiled kernels agree with the scripts. Without them nothing changes."""
 
 import pytest
 
@@ -10,7 +10,8 @@ from ffimpact.running import run
 
 @pytest.mark.robustness
 def test_answers_are_the_same_with_any_number_of_threads(tmp_path, monkeypatch):
-    """Two threads write the history that one writes, byte by byte; what is no number of threads is refused."""
+    """One thread and two threads write the same history, byte by byte. An invalid number of threads
+    is refused."""
     histories = []
     for threads in ("1", "2"):
         monkeypatch.setenv("FFIMPACT_THREADS", threads)

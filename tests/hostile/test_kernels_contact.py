@@ -7,7 +7,8 @@ from verification.measure import measure
 
 DISC = ("kernels-contact", dict(accuracy=0.1))
 BALL = ("kernels-contact-3d", dict(mesh_size=0.025, contact_mesh_size=0.015))
-FINER = ("kernels-contact-3d", dict(mesh_size=0.03, contact_mesh_size=0.0058))   # enough unknowns for its iterative solution
+# Enough unknowns for the iterative solution.
+FINER = ("kernels-contact-3d", dict(mesh_size=0.03, contact_mesh_size=0.0058))
 CASES = {"plane": (DISC, {}), "plane-steady": (DISC, STEADY), "plane-jumping": (DISC, JUMPING), "space": (BALL, {}), "space-steady": (BALL, STEADY),
          "space-jumping": (BALL, JUMPING), "many": (FINER, STEADY)}
 
@@ -15,8 +16,12 @@ CASES = {"plane": (DISC, {}), "plane-steady": (DISC, STEADY), "plane-jumping": (
 @pytest.mark.robustness
 @pytest.mark.parametrize("case", CASES)
 def test_tractions_and_solutions_are_those_of_the_scripts(case):
-    """Under all laws, anywhere in the step and with springs: tractions and their derivatives to round-off, solutions as far as the scripts take them, and each
-    satisfies the scripts' equations on the right side of the jump."""
+    """For all laws and positions in the step, tractions and their derivatives agree with the
+    scripts to round-off.
+
+    Solutions agree as far as the scripts iterate, and satisfy the equations of the scripts on the
+    correct branch of the jump.
+    """
     (script, mesh), friction = CASES[case]
     found = measure(script, **mesh, **friction)
     if not found["built"]:

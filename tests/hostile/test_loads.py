@@ -13,8 +13,11 @@ from verification.measure import bodies, outcome, prepared
 
 @pytest.mark.robustness
 def test_a_follower_turns_with_its_body(tmp_path):
-    """A pressure on one side of a stiff bar that turns half a turn pushes back in the end: the force on the
-    bar, by the change of its momentum, is -p A n with the normal of the state. A dead load keeps its direction."""
+    """A pressure on one side of a stiff bar that rotates by half a turn acts backwards at the end.
+
+    The force on the bar, from its change of momentum, is -p A n with the current normal. A dead
+    load keeps its direction.
+    """
     bar = {"shape": "rectangle", "width": 0.2, "height": 0.05, "position": [0, 0], "spin": math.pi / 2e-2, "mesh_size": 0.025}
     kinds = ({"where": "right", "pressure": 1e3}, {"where": "right", "traction": [-1e3, 0]})
     runs = [bodies(tmp_path / str(k), SOFT | {"young": 1e9, "accuracy": 0.05, "end_time": 0.02, "body": [bar | {"load": [one]}]}) for k, one in enumerate(kinds)]
@@ -28,8 +31,12 @@ def test_a_follower_turns_with_its_body(tmp_path):
 
 @pytest.mark.robustness
 def test_a_gas_begins_in_equilibrium(tmp_path):
-    """A ring flies at rest in itself: its hoop stress E e h/R bears what is left of the gauge pressure,
-    which is that in the undeformed cavity, once the cavity has grown with the strain e."""
+    """A flying ring is in internal equilibrium: its circumferential stress E e h/R balances the
+    gauge pressure in the expanded cavity.
+
+    The given gauge pressure is that in the undeformed cavity. The cavity has expanded with the
+    strain e.
+    """
     gauge, ambient = 2e3, 101325.0
     load = [{"where": "inner", "gas": {"gauge_pressure": gauge, "exponent": 1.0}}]
     run = bodies(tmp_path, THIN | {"end_time": 5e-4, "dt": 1e-4, "body": [thin("ring", load) | {"velocity": [3, 0]}]})
@@ -45,7 +52,8 @@ def test_a_gas_begins_in_equilibrium(tmp_path):
 
 @pytest.mark.robustness
 def test_half_a_run_with_a_gas_and_the_rest_are_the_whole(tmp_path):
-    """Killed twice, a run with a gas, dead and follower loads goes on as if nothing had happened."""
+    """A run with a gas, dead loads and follower loads is killed twice and continues with unchanged
+    results."""
     flags = prepared(tmp_path / "scene", PUSHED | {"end_time": 8e-3})
     straight = direct(flags, tmp_path / "straight", "bodies")
     assert straight.communicate(timeout=120) and straight.returncode == 0

@@ -1,4 +1,8 @@
-"""Malformed input over all three routes: each is one line on stderr that names what is wrong, exit code 10 or 14, nothing left behind, no hang."""
+"""Malformed input by all three interfaces.
+
+Each gives one line on stderr with the error and exit code 10 or 14, leaves no files and does not
+hang.
+"""
 
 import signal
 from pathlib import Path
@@ -10,7 +14,8 @@ from tests.support.malformed import directly, special
 
 @pytest.fixture(autouse=True)
 def place(tmp_path, monkeypatch):
-    """An empty working folder; afterwards nothing is in it but what the test itself put there. Twenty seconds at most."""
+    """An empty working folder that must be clean after the test. The test ends after twenty seconds
+    at most."""
     def too_long(*_):
         raise AssertionError("no answer after 20 s")
     before = signal.signal(signal.SIGALRM, too_long)
@@ -23,7 +28,8 @@ def place(tmp_path, monkeypatch):
 
 @pytest.mark.robustness
 def test_more_snapshots_than_memory(capsys):
-    """Snapshots that do not fit into the memory are refused with the number that does."""
+    """Snapshots that do not fit into the memory are refused. The message has the possible number.
+    """
     bytes_there = next(int(line.split()[1]) * 1024 for line in Path("/proc/meminfo").read_text().splitlines() if line.startswith("MemAvailable"))
     if bytes_there > 60e9:
         pytest.skip("so much memory that the mesh would be too fine for a test")
@@ -32,6 +38,7 @@ def test_more_snapshots_than_memory(capsys):
 
 @pytest.mark.robustness
 def test_path_of_a_checkpoint():
-    """A checkpoint that is not there, or is none: exit code 14, and the folders made for it are gone again."""
+    """A missing or invalid checkpoint gives exit code 14, and the folders made for the run are
+    removed."""
     for kind in ("pipe", "folder", "file", "nowhere", "loop", "device"):
         directly("checkpoint '", "-restart", special(kind), "-out", "a/b/out", code=14)

@@ -1,4 +1,4 @@
-"""The measurements: run time against error, savings left out, other units, phases."""
+"""Measurements of runs: run time against error, runs without savings, other units, phases."""
 
 import numpy as np
 import pandas as pd
@@ -10,7 +10,8 @@ from ffimpact.output import results
 
 @pytest.mark.robustness
 def test_bench_on_coarse_runs(tmp_path, monkeypatch, capsys):
-    """A row a setting with its time and errors, which fall with refinement; the page, the figure and the CSV are there."""
+    """There is a row for each setting with time and errors, which fall with refinement. The page,
+    the figure and the CSV file exist."""
     monkeypatch.setattr(bench, "settings", lambda *_: {"adaptive, P2": [{"accuracy": 0.05}, {"accuracy": 0.005}], "bdf2": [{"accuracy": 0.05, "integrator": "bdf2"}]})
     monkeypatch.setattr(bench, "references", lambda *_: [{"accuracy": 0.0025}, {"accuracy": 0.002}])
     monkeypatch.setattr(bench, "PEERS_QUICK", {"normal-svk": [("ngsolve", "tuned", 2, 1e-4), ("textbook", "FreeFEM", 2, 1e-4)]})
@@ -25,7 +26,8 @@ def test_bench_on_coarse_runs(tmp_path, monkeypatch, capsys):
 
 @pytest.mark.robustness
 def test_bench_of_the_ball(tmp_path, monkeypatch):
-    """The ball in three dimensions against the body of revolution: small errors, and the same settings asked of the other program as of ours."""
+    """The ball in three dimensions has small errors relative to the body of revolution, and the
+    other program gets the settings of ours."""
     asked = []
     monkeypatch.setattr(bench, "settings", lambda *_: {"adaptive, P2": [{"accuracy": 0.1}]})
     monkeypatch.setattr(bench, "references", lambda *_: [{"accuracy": 0.01}, {"accuracy": 0.008}])
@@ -38,7 +40,8 @@ def test_bench_of_the_ball(tmp_path, monkeypatch):
 
 @pytest.mark.robustness
 def test_bench_of_two_bodies(tmp_path, monkeypatch):
-    """The disc on the block: errors of both bodies' answers, and the other program's against the same reference, or why it gave none."""
+    """The disc on the block: errors of both bodies, errors of the other program for the same
+    reference, or the reason why it has no results."""
     monkeypatch.setattr(bench, "settings", lambda *_: {"adaptive, P2": [{"accuracy": 0.1}]})
     monkeypatch.setattr(bench, "references", lambda *_: [{"accuracy": 0.04}, {"accuracy": 0.03}])
     asked, ours = [], {}

@@ -1,4 +1,5 @@
-"""Points inside a body next to one of its vertices: a narrow block between two discs, whose corners press into them."""
+"""Points inside a body near one of its vertices: the corners of a narrow block press into two
+discs."""
 
 import pytest
 
@@ -8,6 +9,7 @@ from ffimpact.running import run
 
 @pytest.mark.robustness
 def test_three_in_a_row_takes_no_small_steps(tmp_path):
-    """The scene's block is narrower than what strikes it; no step of it is refused."""
+    """The block of the scene is narrower than the discs that strike it. None of its steps is
+    refused."""
     s = run.run(scene.load("three-in-a-row"), {"accuracy": 0.1, "fields": 0}, tmp_path / "run", estimate=False).summary
     assert s["rejected_steps"] <= 5 and s["factorizations"] < 1.5 * s["steps"] and s["newton_iterations"] < 20 * s["steps"]

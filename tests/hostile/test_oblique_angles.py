@@ -1,4 +1,5 @@
-"""make oblique-angles: what theory says in its limits, verdicts that can fail, bad input, and real impacts of a disc."""
+"""make oblique-angles: limits of the theories, verdicts that can fail, wrong input, and impacts of
+a disc."""
 
 import pandas as pd
 import pytest
@@ -9,7 +10,8 @@ from ffimpact.__main__ import guarded
 
 @pytest.mark.robustness
 def test_real_impacts_of_a_stiff_disc(tmp_path, capsys):
-    """It slides at 20 degrees and rolls at 60, as a rigid one; table, figure and page are there; what is finished is not run again."""
+    """A stiff disc slides at 20 degrees and rolls at 60 as a rigid one. Table, figure and page
+    exist; finished runs are reused."""
     call = ["oblique-angles", "--bodies", "disc", "--kinds", "stiff", "--angles", "60,20", "--friction", "0.2", "--out", str(tmp_path / "out"), "--page", str(tmp_path / "page.md")]
     assert guarded(measurements.main, call) == 0
     out = capsys.readouterr().out

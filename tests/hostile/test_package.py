@@ -1,4 +1,5 @@
-"""The installed package: what is in it, that it runs from any folder, and what it says where something is missing."""
+"""The installed package: its files, its use from any folder, and its messages if something is
+missing."""
 
 import shutil
 import subprocess
@@ -14,7 +15,8 @@ from tests.support.package import packed
 @pytest.mark.robustness
 @pytest.mark.parametrize("how", [[], ["-e"]])
 def test_pip_installs_it(how, tmp_path):
-    """pip install ., and -e, in a fresh environment: the command and the package; of a wheel exactly the files that are promised."""
+    """pip install . and -e in a fresh environment provide the command and the package; a wheel
+    contains exactly the expected files."""
     tree = shutil.copytree(ROOT, tmp_path / "tree", ignore=shutil.ignore_patterns(".venv", ".git", "results", "build"))
     venv.create(tmp_path / "venv", with_pip=True)
     subprocess.run([tmp_path / "venv/bin/pip", "install", "-q", *how, tree], check=True, timeout=600)

@@ -1,4 +1,4 @@
-"""What is shown while the program works: one line, nested parts in it, a sentence about a run that will take long."""
+"""The display of progress: one line with nested parts, and a sentence about long runs."""
 
 import pytest
 
@@ -8,7 +8,8 @@ from ffimpact.freefem import freefem
 @pytest.mark.robustness
 @pytest.mark.parametrize("script, flags, apart", [("disc-plane", {"accuracy": 0.003}, 1), ("disc-block", {"accuracy": 0.01, "end_time": 3e-3}, 2)])
 def test_scripts_report_the_share_of_their_steps(tmp_path, script, flags, apart):
-    """Near half of its steps a script says so, to a fifth; with them it reports unknowns, and how far the waves of its bodies are apart."""
+    """Near half of its steps a script reports this share, to a fifth, with the unknowns and the
+    spread of the waves of its bodies."""
     seen = []
     assert freefem.run(freefem.find(), f"edp/{script}.edp", flags | {"without": "kernels", "out": tmp_path / "out"}, tmp_path / "log.txt", seen.append)[0] == 0
     taken = (tmp_path / "out/history.csv").read_text().count("\n") - 2

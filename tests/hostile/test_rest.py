@@ -1,4 +1,5 @@
-"""`until = rest`: bodies bounce under gravity, each time lower, until all rests (edp/core/run/rest.idp)."""
+"""`until = rest`: bodies bounce under gravity with decreasing height until all are at rest
+(edp/core/run/rest.idp)."""
 
 import math
 
@@ -25,7 +26,8 @@ from verification.measure import bodies, disc
 
 @pytest.mark.robustness
 def test_a_ball_comes_to_rest(tmp_path):
-    """As a body of revolution: its contact is Hertz' circle, a^3 = 3 P R (1 - nu^2)/(4 E), to an element."""
+    """A ball of revolution: its contact is Hertz' circle, a^3 = 3 P R (1 - nu^2)/(4 E), to an
+    element."""
     found = disc(tmp_path, "ball-axisymmetric", **FALL | {"height": 0.02, "contact_mesh_size": 0.001, "loss": 2})
     load = weight(4 / 3 * math.pi * RADIUS**3)
     rests(found, load)
@@ -34,7 +36,8 @@ def test_a_ball_comes_to_rest(tmp_path):
 
 @pytest.mark.robustness
 def test_friction_stops_a_disc(tmp_path):
-    """With a backspin of 2 v/R friction takes sliding and spin alike: the disc stops where it no longer slides, on a rough plane after v^2/(2 mu g)."""
+    """With a backspin of 2 v/R friction stops sliding and spin together. On a rough plane the disc
+    stops after v^2/(2 mu g)."""
     found = disc(tmp_path, **REST | {"speed": 0.5, "angle": 0, "spin": 20, "friction_static": 0.5, "symmetry": "full"})
     rests(found, weight(math.pi * RADIUS**2))
     energy = weight(math.pi * RADIUS**2) / GRAVITY * (0.5**2 / 2 + (RADIUS * 20)**2 / 4)
@@ -44,8 +47,11 @@ def test_friction_stops_a_disc(tmp_path):
 
 @pytest.mark.robustness
 def test_what_rolls_on_ends_the_run(tmp_path):
-    """A soft disc that rolls loses a few percent of its energy a second: the run ends as it rolls, its weight on the plane, and says so; its outline is fine all around.
-    With an end_time it goes on."""
+    """A soft rolling disc loses a few percent of its energy per second: the run ends while it rolls
+    with its weight on the plane, and reports it.
+
+    Its outline is fine all around. With an end_time the run continues.
+    """
     rolls = REST | {"young": 7e5, "speed": 0.5, "angle": 0, "spin": -10, "friction_static": 0.5, "loss": 0.2, "accuracy": 0.2, "symmetry": "full", "mesh_size": 0.025,
                     "contact_mesh_size": 0.003}
     found = disc(tmp_path / "on", **rolls)
@@ -57,7 +63,8 @@ def test_what_rolls_on_ends_the_run(tmp_path):
 
 @pytest.mark.robustness
 def test_a_scene_says_it_in_toml_and_python(tmp_path):
-    """The built-in scene, coarser: the picture of its height is drawn; a word that is none is refused; a block that is free has nothing to rest on."""
+    """The built-in scene, coarser: the figure of its height is drawn, an unknown word is refused,
+    and a free block cannot come to rest."""
     coarse = {"mesh_size": 0.02, "contact_mesh_size": 0.005, "loss": 2, "penalty": 1e10, "height": 0.05, "accuracy": 0.2}
     found = run.run(scene.load("disc-rest"), coarse, tmp_path / "out", estimate=False)
     assert found.scene["until"] == "rest" and found.summary["ended"] == "rest"
@@ -71,7 +78,8 @@ def test_a_scene_says_it_in_toml_and_python(tmp_path):
 
 @pytest.mark.robustness
 def test_two_bodies_rest(tmp_path):
-    """A disc that falls on another one in a bowl: both rest, their weights on the bowl."""
+    """A disc falls on another one in a hollow circle: both come to rest, with their weights on the
+    circle."""
     body = {"shape": "disc", "radius": 0.05, "law": "neohookean", "young": 2e6, "nu": 0.3, "density": 1000.0, "loss": 2.0, "mesh_size": 0.03,
             "contact_mesh_size": 0.01}
     tables = {"gravity": 9.81, "until": "rest", "accuracy": 0.2, "contact": {"friction_static": 0.3},
@@ -85,7 +93,8 @@ def test_two_bodies_rest(tmp_path):
 
 @pytest.mark.robustness
 def test_nothing_rests_while_another_body_falls(tmp_path):
-    """A slab lies still long before the disc above it lands: the run ends when both do, with the weight of each on what bears it."""
+    """A slab lies still long before the disc above it lands. The run ends when both rest, each
+    weight on its support."""
     slab = {"name": "slab", "shape": "rectangle", "width": 0.4, "height": 0.1, "position": [0, 0.05], "loss": 2.0, "mesh_size": 0.05, "contact_mesh_size": 0.05}
     falls = {"name": "disc", "shape": "disc", "radius": 0.005, "position": [0, 0.16], "loss": 1.0, "mesh_size": 0.004}
     found = bodies(tmp_path / "out", REST | {"young": 1e6, "density": DENSITY, "loss": 0, "accuracy": 0.2, "body": [slab, falls], "obstacle": [

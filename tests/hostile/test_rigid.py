@@ -1,4 +1,4 @@
-"""Rigid bodies: the motions of rigid bodies exactly, and the limit of stiff ones."""
+"""Rigid bodies: exact rigid motions, and the limit of stiff bodies."""
 
 import pytest
 
@@ -7,7 +7,7 @@ from tests.support.rigid import ROLLER, run
 
 @pytest.mark.robustness
 def test_a_constant_motion_is_a_velocity(tmp_path):
-    """The way -2 t is the velocity -2."""
+    """The displacement -2 t gives the results of the velocity -2."""
     drive, _ = run(tmp_path, ROLLER.format('motion = [0, "-2*t"]'), "drive")
     speed, _ = run(tmp_path, ROLLER.format("velocity = [0, -2]"), "speed")
     assert drive["impulse"] == pytest.approx(speed["impulse"], rel=2e-2)
@@ -15,7 +15,8 @@ def test_a_constant_motion_is_a_velocity(tmp_path):
 
 @pytest.mark.robustness
 def test_a_circle_that_turns_about_its_centre_only_rubs(tmp_path):
-    """Gaps stay; the body is driven along, the other way where the circle turns the other way."""
+    """The gaps do not change. Friction accelerates the body, in the opposite direction for the
+    opposite rotation."""
     both = [run(tmp_path, ROLLER.format(f'motion = [0, "-0.3*t"]\nrotation = "{turn}*t"'), name)[0]
             for name, turn in (("left", 20000), ("right", -20000))]
     assert both[0]["rebound_vx"] == pytest.approx(-both[1]["rebound_vx"], rel=0.05) and abs(both[0]["rebound_vx"]) > 1e-3

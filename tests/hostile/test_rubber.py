@@ -1,4 +1,4 @@
-"""make rubber: the verdict can fail, and two runs make a row each and a figure."""
+"""make rubber: the verdict can fail, and two runs give a row each and a figure."""
 
 import pytest
 
@@ -7,7 +7,8 @@ from benchmarks import rubber
 
 @pytest.mark.robustness
 def test_runs_become_rows_and_a_figure(tmp_path, monkeypatch):
-    """Both bodies, with the mean volume and plain where they differ; the report ends with the verdict."""
+    """Both bodies run with the projected volume, and with the plain one where they differ. The
+    report ends with the verdict."""
     monkeypatch.setattr(rubber, "BASE", rubber.BASE | {"accuracy": 0.1})
     found = rubber.compare([0.45, 0.499], 60, tmp_path)
     assert len(found) == 6 and (found.outcome == "").all() and (found[found.volume == "projected"].energy < 1e-9).all()

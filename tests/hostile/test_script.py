@@ -1,4 +1,4 @@
-"""The Python interface in an environment that has the program and what it depends on, nothing else."""
+"""The Python interface in an environment that has only the program and its dependencies."""
 
 import shutil
 import subprocess
@@ -12,7 +12,8 @@ from tests.support.block import CELLS
 
 @pytest.mark.robustness
 def test_the_block_runs_where_only_the_package_is_installed(tmp_path, monkeypatch):
-    """pip install . in a fresh environment, and the block as a script in an empty folder; what is not installed is a line."""
+    """After pip install . in a fresh environment the block runs as a script in an empty folder. A
+    missing package gives one line."""
     for name in ("PYTHONPATH", "PYTHONHOME"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv("MPLBACKEND", "agg")

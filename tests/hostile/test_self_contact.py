@@ -1,4 +1,5 @@
-"""Bodies that touch themselves: what makes them, and that nothing is lost when they do."""
+"""Bodies that may come into contact with themselves: when they do, and conservation during this
+contact."""
 
 import numpy as np
 import pytest
@@ -32,7 +33,7 @@ from tests.support.self_contact import (
 
 @pytest.mark.robustness
 def test_with_and_without_kernels_it_is_the_same(tmp_path):
-    """The scripts find what the compiled kernel does, until round-off grows."""
+    """The scripts agree with the compiled kernel until round-off grows."""
     one, other = (ran(tmp_path, SCENE | {"body": [PIN], "end_time": 1.5e-3, "without": without}, without).history for without in ("none", "kernels"))
     assert len(one["t"]) == len(other["t"]) and one["contact"].max() > 0
     for column in ("momentum_y", "elastic", "contact"):
@@ -41,7 +42,10 @@ def test_with_and_without_kernels_it_is_the_same(tmp_path):
 
 @pytest.mark.robustness
 def test_a_ring_is_squeezed_flat(tmp_path):
-    """A plane comes down on a thin ring until less than a sixth of the hole is left: its inner sides lie on each other, folds and all, and nothing is lost."""
+    """A plane compresses a thin ring until less than a sixth of the hole is left.
+
+    Its inner sides are in contact, with folds, and momentum and energy are conserved.
+    """
     press = {"name": "press", "kind": "plane", "point": [0, 0.1002], "normal": [0, -1], "velocity": [0, -8]}
     found = ran(tmp_path, SCENE | {"body": [RING | {"velocity": [0, 0]}], "obstacle": [FLOOR, press], "end_time": 10.5e-3, "fields": 12})
     balanced(found)
@@ -51,7 +55,8 @@ def test_a_ring_is_squeezed_flat(tmp_path):
 
 @pytest.mark.robustness
 def test_a_hairpin_in_three_dimensions(tmp_path):
-    """With linear elements it stays apart where without self_contact = "on" it passes through itself."""
+    """With linear elements the sides stay apart. Without self_contact = "on" they pass through each
+    other."""
     corners = [[0, 0], [0.1, 0], [0.1, 0.01], [0.01, 0.01], [0.01, 0.02], [0.1, 0.02], [0.1, 0.03], [0, 0.03]]
     points = "".join(f"Point({k}) = {{{x}, {y}, 0, 0.01}};\n" for k, (x, y) in enumerate(corners, 1)) + "".join(f"Line({k}) = {{{k}, {k % 8 + 1}}};\n" for k in range(1, 9))
     (tmp_path / "pin.geo").write_text(points + "Curve Loop(1) = {1:8}; Plane Surface(1) = {1}; Extrude {0, 0, 0.02} { Surface{1}; }\n")
@@ -66,9 +71,11 @@ def test_a_hairpin_in_three_dimensions(tmp_path):
 
 @pytest.mark.robustness
 def test_what_a_file_excludes_is_watched(tmp_path):
-    """The curve `contact` of a file has the outer outline alone: the walls of its slot pass through
-    each other whatever self_contact says, and the warning says so; a run that fails after that says
-    it in its message."""
+    """The curve `contact` of a file has the outer outline only: the walls of the slot pass through
+    each other for any `self_contact`.
+
+    A warning reports it. If the run fails afterwards, its message contains the warning.
+    """
     given = PINCHED | {"body": [box_file(tmp_path, "outer")], "contact": {"self_contact": "on"}}
     def pinched(end: float):
         given["end_time"] = end
@@ -83,8 +90,10 @@ def test_what_a_file_excludes_is_watched(tmp_path):
 
 @pytest.mark.robustness
 def test_a_body_in_a_hole_that_may_not_touch(tmp_path):
-    """A disc that first comes to such a wall is refused. Where the box has touched something
-    before, the warning names both as the disc goes through."""
+    """A disc whose first contact would be such a wall is refused.
+
+    If the box was in contact before, the warning has both names when the disc passes through.
+    """
     tiny = DISC | {"radius": 5e-4, "mesh_size": 2e-4, "contact_mesh_size": 2e-4}
     inside = tiny | {"position": [0, 0.001], "velocity": [0, -3]}
     given = PINCHED | {"body": [box_file(tmp_path, "outer"), inside], "obstacle": []}
@@ -92,7 +101,8 @@ def test_a_body_in_a_hole_that_may_not_touch(tmp_path):
     said = r"^body\.1\.file: 'box' comes to 'disc' with \(.*\) m, which is no contact boundary"
     with pytest.raises(BadInput, match=said):
         assembly.prepare(read(given, tmp_path), tmp_path)
-    assembly.prepare(read(given | {"end_time": 4e-4}, tmp_path), tmp_path)       # it ends before
+    # The run ends before contact.
+    assembly.prepare(read(given | {"end_time": 4e-4}, tmp_path), tmp_path)
     given["body"] = [box_file(tmp_path, "all"), inside]
     assembly.prepare(read(given, tmp_path), tmp_path)
     above = tiny | {"name": "above", "position": [0.03, HIGH / 2 + 6e-4], "velocity": [0, -1]}
@@ -103,8 +113,11 @@ def test_a_body_in_a_hole_that_may_not_touch(tmp_path):
 
 @pytest.mark.robustness
 def test_which_inner_outlines_may_touch(tmp_path):
-    """Those of a body that touches itself, or with a body or an obstacle inside; others need no
-    contact points. What a file excludes stays out."""
+    """Inner outlines may be in contact if the body may come into contact with itself or with a body
+    or obstacle inside.
+
+    Others have no contact points. Boundaries that a file excludes stay excluded.
+    """
     def inner(body: dict, word: str, **more) -> set[int]:
         given = PINCHED | {"body": [body, *more.get("bodies", [])],
                            "contact": {"self_contact": word},
@@ -127,7 +140,7 @@ def test_which_inner_outlines_may_touch(tmp_path):
 
 @pytest.mark.robustness
 def test_a_disc_stays_in_the_hole_of_a_file(tmp_path):
-    """A disc flies against the wall of the slot from inside and pushes the box along."""
+    """A disc strikes the wall of the slot from inside and pushes the box."""
     fine = {"mesh_size": 5e-4, "contact_mesh_size": 5e-4}
     disc = DISC | fine | {"radius": 0.001, "velocity": [5, 0], "position": [0.027, 0]}
     given = PINCHED | {"obstacle": [], "body": [box_file(tmp_path), disc], "end_time": 1.5e-3}
@@ -140,8 +153,10 @@ def test_a_disc_stays_in_the_hole_of_a_file(tmp_path):
 
 @pytest.mark.robustness
 def test_walls_of_a_cavity(tmp_path):
-    """Likewise in three dimensions: on, the walls of a cavity of a file stop each other; by itself
-    none is in contact, and the warning says that they pass through each other."""
+    """In three dimensions, with `self_contact` on, the walls of a cavity of a file stop each other.
+
+    By default none is in contact, and a warning reports that they pass through each other.
+    """
     wide, slot = 0.05, 0.036
     def box(tag: int, x: float, y: float) -> str:
         return f"Box({tag}) = {{{-x / 2}, {-y / 2}, {-x / 2}, {x}, {y}, {x}}};\n"

@@ -1,4 +1,5 @@
-"""The runs of a scene: the one that estimates the error beside the main one where a core is free, and what is left where one of them is lost."""
+"""The runs of a scene: the run for the error estimate uses a second core if one is free; results
+after the loss of a run."""
 
 import pytest
 
@@ -10,7 +11,8 @@ from tests.support.solver import ANSWERS, go
 @pytest.mark.robustness
 @pytest.mark.parametrize("lost", ["checkpoint", "coarser/checkpoint"])
 def test_each_goes_on_from_its_own_checkpoint(monkeypatch, tmp_path, lost):
-    """Killed with a checkpoint of only one of the two, the same command makes the other anew, and the answer is the same."""
+    """If only one of the two runs has a checkpoint, the same command repeats the other one with the
+    same results."""
     monkeypatch.setattr(freefem, "CORES", 2)
     out, real = tmp_path / "out", freefem.Process.end
     straight = go("disc-normal", tmp_path / "straight", checkpoint_every="5")

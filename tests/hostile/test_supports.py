@@ -1,4 +1,4 @@
-"""Supports: parts of a boundary that are held or moved. What beams, rods and pressed discs do on them."""
+"""Supports: parts of a boundary that are held or moved, with beams, rods and pressed discs."""
 
 import numpy as np
 import pytest
@@ -10,10 +10,13 @@ from verification.measure import bodies, outcome, prepared
 
 @pytest.mark.robustness
 def test_stacked_cantilevers_rub(tmp_path):
-    """The scene of code_aster's V5.02.140: two beams of 1 x 0.1 m, E = 200 GPa, nu = 0, 7800 kg/m3, on
-    each other with friction 0.2, clamped at x = 0, a force on the upper one from the start on (10 kN/m;
-    there it is not printed). The beams are 1 um apart at the start. They bend together: friction takes
-    energy, the balance is closed, and both clamps bear the force in the mean."""
+    """The scene V5.02.140 of code_aster: two beams of 1 x 0.1 m, E = 200 GPa, nu = 0, 7800 kg/m3,
+    on each other with friction 0.2.
+
+    They are clamped at x = 0, and a force acts on the upper one from the start (10 kN/m; the source
+    does not print it). The initial gap is 1 um. The beams bend together: friction takes energy, the
+    balance closes, and both clamps carry the force in the mean.
+    """
     beams = [{"name": name, "shape": "rectangle", "width": 1, "height": 0.1, "position": [0.5, y], "mesh_size": 0.05,
               "contact_mesh_size": 0.05, "support": [{"where": "left"}]} for name, y in (("lower", 0), ("upper", 0.100001))]
     beams[1]["load"] = [{"where": "right", "traction": [0, -1e5]}]
@@ -28,7 +31,7 @@ def test_stacked_cantilevers_rub(tmp_path):
 
 @pytest.mark.robustness
 def test_the_kernels_hold_what_the_scripts_hold(tmp_path):
-    """Compiled and by the scripts' own lines: the same run to round-off."""
+    """Kernels and scripts give the same run to round-off."""
     runs = [bodies(tmp_path / word, RUBBED | {"end_time": 2e-3, "without": word}) for word in ("none", "kernels")]
     assert runs[0].summary["support_work"] == pytest.approx(runs[1].summary["support_work"], rel=1e-7)
     assert runs[0].history["x"][-1] == pytest.approx(runs[1].history["x"][-1], rel=1e-9)
@@ -47,8 +50,8 @@ def cantilever(symmetry: str, **support) -> dict:
 
 @pytest.mark.robustness
 def test_symmetric_supports_keep_the_symmetry(tmp_path):
-    """Half of a ball on a clamped beam gives the forces, moments and works of all of it, to what meshes
-    as coarse as these differ by."""
+    """Half of a ball on a clamped beam gives the forces, moments and works of the whole, to the
+    difference of such coarse meshes."""
     whole, half = (bodies(tmp_path / word, cantilever(word)) for word in ("full", "half"))
     assert half.summary["dofs"] < 0.7 * whole.summary["dofs"] and half.summary["momentum_drift"] < 1e-8
     assert half.summary["impulse"] == pytest.approx(whole.summary["impulse"], rel=0.03)
@@ -62,7 +65,8 @@ def test_symmetric_supports_keep_the_symmetry(tmp_path):
 
 @pytest.mark.robustness
 def test_half_a_run_with_supports_and_the_rest_are_the_whole(tmp_path):
-    """Killed before and after the release, a run goes on as if nothing had happened."""
+    """A run that is killed before and after the release of the support continues with unchanged
+    results."""
     scene = RUBBED | {"body": [RUBBED["body"][0] | {"support": [RUBBED["body"][0]["support"][0] | {"release": 8e-3}]}, RUBBED["body"][1]]}
     flags = prepared(tmp_path / "scene", scene)
     straight = direct(flags, tmp_path / "straight", "bodies")

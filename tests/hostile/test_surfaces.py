@@ -1,4 +1,4 @@
-"""Rigid obstacles whose surface is that of an STL file or of a mesh."""
+"""Rigid obstacles with the surface of an STL file or of a mesh."""
 
 import pytest
 
@@ -8,7 +8,7 @@ from tests.support.surfaces import run, slab, sphere
 
 @pytest.mark.robustness
 def test_a_ball_on_an_edge_keeps_energy(tmp_path):
-    """Points go from the face over the edge to the side."""
+    """Contact points pass from the face over the edge to the side."""
     slab(tmp_path / "slab.stl", size=(0.02, 0.05, 0.02))
     found = run(tmp_path, 'kind = "surface"\nfile = "slab.stl"\nrounding = 0.005', position="[0.03, 0.0545, 0.0]")
     assert found["contact_intervals"] > 0 and found["energy_drift"] < 1e-9 and found["momentum_drift"] < 1e-7
@@ -16,7 +16,8 @@ def test_a_ball_on_an_edge_keeps_energy(tmp_path):
 
 @pytest.mark.robustness
 def test_a_sphere_converges_with_its_triangles(tmp_path):
-    """Gaps and impacts are those of kind = "sphere", by the square of the triangles' size."""
+    """Gaps and impacts converge to those of kind = "sphere", quadratically in the size of the
+    triangles."""
     exact = run(tmp_path, 'kind = "sphere"\ncentre = [0, -0.1, 0]\nradius = 0.1', name="exact")
     off = []
     for splits in (3, 4):

@@ -1,4 +1,5 @@
-"""Sweeps: the file and its errors, the table, kills and two drivers at once, Snakemake, trends, maps and histories."""
+"""Sweeps: the file and its errors, the table, killed and simultaneous sweeps, Snakemake, trends,
+maps and histories."""
 
 import fcntl
 import os
@@ -19,7 +20,7 @@ from tests.support.sweep import DRAWN, SIX, orphans, table, write
 
 @pytest.mark.robustness
 def test_unknown_sweep_and_run():
-    """Exit code 10, one line, what there is."""
+    """Exit code 10 and one line with the existing names."""
     code, _, err = call("sweep", "nothing")
     assert code == 10 and "built in: calibrate, calibrate-ball, calibrate-ball-3d, calibrate-oblique, conservation, contact-time-neohookean" in err and err.count("\n") == 1
     code, _, err = call("sweep", "law-comparison", "--run", "speed=3")
@@ -28,7 +29,8 @@ def test_unknown_sweep_and_run():
 
 @pytest.mark.robustness
 def test_another_sweep_does_not_come_in_between(fake, tmp_path, monkeypatch, capsys):
-    """While a sweep runs, a driver with another sweep file on the same folder is refused; afterwards it is not."""
+    """While a sweep runs, another sweep file with the same folder is refused; afterwards it is not.
+    """
     path, out, other = write(tmp_path, SIX), tmp_path / "out", write(tmp_path / "other", SIX + "[[zip]]\ndt = [1e-5]\n")
     monkeypatch.setenv("FAKE", "brief")
     process = start("sweep", str(path), "--out", str(out))
@@ -42,7 +44,8 @@ def test_another_sweep_does_not_come_in_between(fake, tmp_path, monkeypatch, cap
 
 @pytest.mark.robustness
 def test_killed_freefem_costs_its_point_only(fake, tmp_path, monkeypatch):
-    """kill -9 of a FreeFem++: its point fails and says so, the others go on; the same command runs that point only."""
+    """After kill -9 of a FreeFem++ its point fails with a message and the others continue. The same
+    command repeats this point only."""
     path, out = write(tmp_path, DRAWN), tmp_path / "out"
     monkeypatch.setenv("FAKE", "brief")
     process = start("sweep", str(path), "--out", str(out))
@@ -57,7 +60,7 @@ def test_killed_freefem_costs_its_point_only(fake, tmp_path, monkeypatch):
 
 @pytest.mark.robustness
 def test_two_drivers_share_a_folder(fake, tmp_path, monkeypatch):
-    """Both end well with the same table, and no point is run twice."""
+    """Both processes finish with the same table, and no point runs twice."""
     path, out = write(tmp_path, DRAWN), tmp_path / "out"
     monkeypatch.setenv("FAKE", "brief")
     both = [start("sweep", str(path), "--out", str(out)) for _ in range(2)]
@@ -71,8 +74,11 @@ def test_two_drivers_share_a_folder(fake, tmp_path, monkeypatch):
 @pytest.mark.few(1)
 @pytest.mark.parametrize("dies", [False, True])
 def test_driver_waits_for_one_that_just_begins(fake, tmp_path, dies):
-    """A driver that finds another between locking the folder and writing sweep.toml waits, then shares the folder; it has
-    the folder to itself where the other dies over it."""
+    """A process that finds another one between locking the folder and writing sweep.toml waits,
+    then shares the folder.
+
+    If the other one dies meanwhile, it has the folder alone.
+    """
     path, out = write(tmp_path, SIX), tmp_path / "out"
     out.mkdir()
     first = os.open(out, os.O_RDONLY)
@@ -91,7 +97,7 @@ def test_driver_waits_for_one_that_just_begins(fake, tmp_path, dies):
 
 @pytest.mark.robustness
 def test_one_run_of_the_list(fake, tmp_path, capsys):
-    """--list names the runs, --run does one of them; the sweep then takes it as done."""
+    """--list prints the names of the runs, --run executes one of them, and the sweep reuses it."""
     path, out = write(tmp_path, SIX), tmp_path / "out"
     assert main(["sweep", str(path), "--out", str(out), "--list"]) == 0
     names = capsys.readouterr().out.split()
@@ -103,7 +109,7 @@ def test_one_run_of_the_list(fake, tmp_path, capsys):
 
 @pytest.mark.robustness
 def test_snakemake_takes_names_with_blanks(tmp_path):
-    """The names of runs and the folder may have blanks, as a pressure over time has."""
+    """The names of runs and the folder may contain blanks, as an expression of time does."""
     pytest.importorskip("snakemake", reason="the optional snakemake is not installed")
     disc = '[[body]]\nname = "{}"\nshape = "disc"\nradius = 0.05\nposition = [{}, 0]\nvelocity = [{}, 0]\n'
     (tmp_path / "pair.toml").write_text('law = "neohookean"\nyoung = 7e6\nnu = 0.3\ndensity = 1722\nend_time = 1e-4\naccuracy = 0.3\n'
@@ -118,7 +124,7 @@ def test_snakemake_takes_names_with_blanks(tmp_path):
 
 @pytest.mark.robustness
 def test_table_and_figure_have_the_same_error_bars(fake, tmp_path, monkeypatch):
-    """The error bars that are printed in the table are those that the figure draws, curve by curve."""
+    """The error bars in the table equal those of the figure, curve by curve."""
     text = DRAWN.replace("[figure]", "[refine]\naccuracy = 1e-3\n[figure]").replace("[product]", "accuracy = 5e-3\n[product]")
     wanted = sweep.load(str(write(tmp_path, text)))
     rows = sweep.table(wanted, tmp_path / "out").assign(contact_time_error=[1e-6, 4e-5, 6e-5, 2e-6, 3e-6, 5e-5])
@@ -131,7 +137,8 @@ def test_table_and_figure_have_the_same_error_bars(fake, tmp_path, monkeypatch):
     sweep_figures.draw(wanted, rows, tmp_path / "out")
     for nu, words in ((0.3, "ν = 0.3"), (0.4, "ν = 0.4")):
         assert np.array(printed)[rows.nu == nu] == pytest.approx(drawn[words], rel=0.03)
-    assert min(printed) > 2e-5                     # of no point what two runs have alike by chance
+    # No point has the error bar of two runs that agree by chance.
+    assert min(printed) > 2e-5
 
 
 @pytest.mark.robustness
@@ -140,7 +147,7 @@ def test_table_and_figure_have_the_same_error_bars(fake, tmp_path, monkeypatch):
     ('kind = "histories"\ny = "normal_force"\npanel = "speed"\nby = "nu"', "speed = 4 m/s: relative L2 difference of normal force, ν = 0.3 and ν = 0.4: 0.0 %"),
 ])
 def test_other_figures(fake, tmp_path, capsys, figure, words):
-    """Maps and histories are drawn and put into words."""
+    """Maps and histories are drawn and described in words."""
     out = tmp_path / "out"
     assert sweep.main([str(write(tmp_path, SIX + f"[figure]\n{figure}\n")), "--out", str(out)]) == 0
     assert words in capsys.readouterr().out and plt.imread(out / "sweep.png").std() > 0

@@ -7,7 +7,7 @@ from tests.support.tubes import run
 
 @pytest.mark.robustness
 def test_a_polygon_to_the_right_of_the_axis_is_the_same_tube(tmp_path):
-    """Its vertices in either direction."""
+    """The vertices may have either direction."""
     corners = [[0.02, 0], [0.03, 0], [0.03, 0.1], [0.02, 0.1]]
     tube = run(tmp_path, 'shape = "tube"\nradius = 0.03\ninner_radius = 0.02\nheight = 0.1\nposition = [0, 0.0501]', accuracy=0.1)
     for one in (corners, corners[::-1]):

@@ -1,4 +1,4 @@
-"""make viscoelastic: what the theory says in its limits, a verdict that can fail, and real impacts."""
+"""make viscoelastic: limits of the theory, a verdict that can fail, and impacts."""
 
 import pandas as pd
 import pytest
@@ -9,7 +9,10 @@ from ffimpact.__main__ import guarded
 
 @pytest.mark.robustness
 def test_impacts_agree_with_it(tmp_path, monkeypatch, capsys):
-    """Two speeds, a loss and a relaxation time: the requirement holds, table and figure are there; it fails where a balance does not close or 1 - e is off."""
+    """With two speeds, a loss and a relaxation time the requirement holds; table and figure exist.
+
+    It fails if a balance does not close or 1 - e deviates.
+    """
     for name, few in (("SPEEDS", (1e-3, 1e-2)), ("LOSSES", (0.0, 0.1)), ("TIMES", (0.3,))):
         monkeypatch.setattr(study, name, few)
     assert guarded(measurements.main, ["viscoelastic", "--out", str(tmp_path / "out"), "--page", str(tmp_path / "page.md")]) == 0

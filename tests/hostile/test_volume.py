@@ -1,4 +1,5 @@
-"""nu -> 0.5 (edp/core/law/volume.idp): volume in the mean of an element, without locking, in scripts and kernels."""
+"""nu -> 0.5 (edp/core/law/volume.idp): volume as the mean over an element, without locking, in
+scripts and kernels."""
 
 import numpy as np
 import pytest
@@ -13,15 +14,23 @@ from verification.measure import measure
 @pytest.mark.robustness
 @pytest.mark.parametrize("script, size, tens", [("spinning", 0.03, 3), ("spinning-3d", 0.04, 4)])
 def test_a_spinning_body_keeps_energy_and_momenta(script, size, tens):
-    """A free body that spins and vibrates a hundred turns at nu = 0.4999; a ball in 40 steps a turn (of 30 some fail, which a run would halve)."""
+    """A free body spins and vibrates for a hundred turns at nu = 0.4999.
+
+    The ball has 40 steps per turn; with 30 some steps fail, which a run would halve.
+    """
     found = measure(script, law="neohookean", nu=0.4999, spin=200, exponent=tens, tolerance=5e-14, mesh_size=size, contact_mesh_size=size)
     assert found["state"] == 0 and max(found["energy"], found["momentum"], found["angular"]) < 1e-9
 
 
 @pytest.mark.robustness
 def test_the_history_has_their_pressure(tmp_path):
-    """Its last row: the mean pressure is that of the last snapshot's field, over its deformed area, to 2 %; the largest is above all there, which are means around
-    corners, by less than a half. The picture is drawn. A plain body has no such columns, and the scene knows which has."""
+    """The mean pressure in the last row equals the mean of the field over its deformed area, to 2
+    %.
+
+    The largest pressure exceeds that of the field, which is averaged around vertices, by less than
+    a half. The figure is drawn. A plain body does not have these columns, and the scene knows which
+    bodies have them.
+    """
     found = run.run(scene.load("disc-normal-incompressible"), {"accuracy": 0.02, "end_time": 2e-3, "fields": 2}, tmp_path / "held", estimate=False)
     shot = vtu.read(found.folder / "fields/0001.vtu")
     field, moved = shot.fields["pressure"], shot.points + shot.fields["displacement"][:, :2]

@@ -26,7 +26,7 @@ def result(tmp_path_factory):
 
 @pytest.mark.parametrize("name", [name for name in files.built_in() if files.load(name).bodies])
 def test_a_built_in_scene_of_bodies_is_the_same_written_and_read_again(tmp_path, name):
-    """As objects it has the same bodies, obstacles and parameters as read from its file."""
+    """The scene as objects has the same bodies, obstacles and parameters as read from its file."""
     scene, read = ff.Scene.load(name), files.load(name)
     assert ff.Scene.load(scene.save(tmp_path / "scene.toml")) == scene
     again = scene.checked()
@@ -44,7 +44,8 @@ def test_a_built_in_scene_of_bodies_is_the_same_written_and_read_again(tmp_path,
 
 
 def test_numbers_have_errors_and_units(result):
-    """The impulse is that of the momentum; its error bar is the estimated share of it; a number that is not there is named."""
+    """The impulse is that of the momentum, and its error bar the estimated share of it. A missing
+    number is reported by name."""
     assert result["impulse"] == pytest.approx(
         1722 * np.pi * 0.05**2 * (8 + result["rebound_vy"]), rel=1e-3
     )
@@ -70,7 +71,7 @@ def test_numbers_have_errors_and_units(result):
 
 
 def test_units_of_a_ball_are_those_of_the_whole(tmp_path):
-    """Only plane strain is per metre of thickness; speeds keep their unit."""
+    """Only results in plane strain are per metre of thickness. Speeds keep their unit."""
     ball = ff.run("ball-axisymmetric", accuracy=0.2, estimate=False, out=tmp_path / "ball")
     assert [ball.units[name] for name in ("impulse", "peak_force", "energy_initial", "mass")] == [
         "N s",
@@ -93,7 +94,7 @@ def test_tables(result):
 
 
 def test_figures_are_drawn_into_axes(result):
-    """Force and energies are those of the history; a given panel is drawn into and returned."""
+    """Force and energies are those of the history. A given panel is used and returned."""
     plt = pytest.importorskip("matplotlib.pyplot")
     figure, panels = plt.subplots(2)
     assert (
@@ -122,7 +123,7 @@ def test_a_player_is_one_file(result, tmp_path):
 
 
 def test_a_player_shows_itself_as_html(result):
-    """A notebook, and a page that keeps its output, has the whole animation."""
+    """A notebook, and a page that keeps its output, contains the whole animation."""
     pytest.importorskip("k3d")
     shown = result.view()._repr_html_()
     assert len(shown) > 1e5 and shown.startswith("<iframe") and "&lt;script" in shown[:10_000]
@@ -136,7 +137,7 @@ def test_a_run_that_is_there_is_not_made_again(result):
 
 
 def test_comparison_says_what_agrees(result):
-    """A run agrees with itself; one with another impulse does not."""
+    """A run agrees with itself, and not with a run of another impulse."""
     other = ff.load(result.folder)
     assert ff.compare(result, other).agree.all()
     other.summary = other.summary | {"impulse": 2 * result["impulse"]}
@@ -144,7 +145,8 @@ def test_comparison_says_what_agrees(result):
 
 
 def test_results_are_compared_one_by_one_or_as_a_list(result):
-    """What is no result is refused in a line; a number that a run has not is not in it."""
+    """An object that is not a result is refused in one line. A number that a run does not have is
+    omitted."""
     assert ff.compare([result, result]).equals(ff.compare(result, result))
     with pytest.raises(ff.BadInput, match="'7' is no result"):
         ff.compare(result, 7)
@@ -154,7 +156,7 @@ def test_results_are_compared_one_by_one_or_as_a_list(result):
 
 
 def test_a_result_is_of_one_run(tmp_path):
-    """Where another run has taken its place in the folder, what is read later says so."""
+    """If another run has replaced the run in the folder, later reading raises an error."""
     first = ff.run(drop(), accuracy=0.2, estimate=False, out=tmp_path / "run")
     ff.run(drop(), {"body.1.velocity.2": -4}, accuracy=0.2, estimate=False, out=tmp_path / "run")
     with pytest.raises(ff.Unreadable, match="another run"):
@@ -162,14 +164,14 @@ def test_a_result_is_of_one_run(tmp_path):
 
 
 def test_states_are_as_many_as_the_scene_says(tmp_path):
-    """None where it says none; some where it is left open."""
+    """There are none if the scene requests none, and some if the entry is automatic."""
     none = ff.run(drop(fields=0), accuracy=0.3, estimate=False, out=tmp_path / "none")
     some = ff.run(drop(), accuracy=0.3, estimate=False, out=tmp_path / "some")
     assert len(none.fields) == 0 < len(some.fields) <= 41
 
 
 def test_friction_is_drawn_and_bodies_have_their_names(tmp_path):
-    """Of two discs that meet off their centres."""
+    """Two discs collide off centre."""
     disc = {"radius": 0.03, "material": RUBBER}
     pair = [
         ff.Disc(name="a", position=(-0.031, 0.01), velocity=(2, 0), **disc),
@@ -186,7 +188,8 @@ def test_friction_is_drawn_and_bodies_have_their_names(tmp_path):
 
 
 def test_a_sweep(tmp_path):
-    """A row for each combination, in order; a run that fails is a row with its code; what is there is not run again; error bars are drawn."""
+    """There is a row for each combination, in order. A failed run is a row with its code, existing
+    runs are reused, error bars are drawn."""
     values = {"body.1.velocity.2": [-2, -4], "contact.friction_static": [0.1]}
     study = ff.sweep(drop(accuracy=0.2, fields=0), values, workers=2, out=tmp_path / "study")
     assert list(study.table["body.1.velocity.2"]) == [-2, -4] and (study.table.exit == 0).all()
@@ -206,7 +209,7 @@ def test_a_sweep(tmp_path):
 
 
 def test_entries_of_a_sweep_hold_in_all_its_runs(tmp_path):
-    """Beside those that vary; without an estimate no run has errors."""
+    """Common entries apply to all runs. Without an estimate no run has errors."""
     study = ff.sweep(
         drop(accuracy=0.3, fields=0),
         {"body.1.velocity.2": [-2]},
@@ -218,7 +221,8 @@ def test_entries_of_a_sweep_hold_in_all_its_runs(tmp_path):
 
 
 def test_importing_it_changes_nothing_global():
-    """Neither matplotlib's settings and docstrings, nor signals, nor filters of warnings."""
+    """Importing changes neither settings and docstrings of matplotlib nor signals nor warning
+    filters."""
     state = (
         "import json, signal, warnings, matplotlib.pyplot, pandas, pydantic, scipy.spatial, matplotlib as mpl; from matplotlib.lines import Line2D; "
         "state = lambda: [str(dict(mpl.rcParams)), str(signal.getsignal(signal.SIGINT)), str(signal.getsignal(signal.SIGTERM)), "
@@ -246,7 +250,7 @@ def validator():
 
 @pytest.mark.parametrize("name", files.built_in())
 def test_built_in_scenes_are_valid_by_the_schema(validator, name):
-    """They name the schema, too, for editors."""
+    """They contain the name of the schema for editors."""
     text = (files.SCENES / f"{name}.toml").read_text()
     assert validator.is_valid(tomllib.loads(text))
     assert text.startswith(f"#:schema {schema.FILE.name}\n")

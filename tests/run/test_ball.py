@@ -1,4 +1,5 @@
-"""The ball in three dimensions: what its scenes take, leave and say, by either way in."""
+"""The ball in three dimensions: input, output and messages of its scenes, with and without Python.
+"""
 
 import math
 
@@ -33,8 +34,12 @@ def oblique(tmp_path_factory):
 
 
 def test_run_of_a_whole_ball(result):
-    """Energy in J, momentum in N s of the whole ball, to the mesh's geometric error; what was left out is named; its error is estimated; the
-    columns of the third dimension are there."""
+    """Energy [J] and momentum [N s] are those of the whole ball, to the geometric error of the
+    mesh.
+
+    Skipped effects are listed, the error is estimated, and the columns of the third dimension
+    exist.
+    """
     s, h = result.summary, result.history
     assert s["energy_initial"] == pytest.approx(MASS * 8**2 / 2, rel=2e-3)
     assert s["impulse"] == pytest.approx(MASS * (8 + s["rebound_vy"]), rel=2e-3)
@@ -46,7 +51,7 @@ def test_run_of_a_whole_ball(result):
 
 @pytest.mark.robustness
 def test_units_and_pictures_are_those_of_a_ball(result, oblique):
-    """Nothing is per metre; all pictures are drawn, of a quarter with its mirror image."""
+    """No unit is per metre. All figures of a quarter are drawn with its mirror image."""
     text = report.report(result, verbose=True)
     assert "N s" in text and "/m" not in text.replace("m/s", "").replace("Pa/m", "").replace("kg/m3", "")
     pictures = {"energies", "force", "velocity", "shapes", "contact"}
@@ -56,7 +61,7 @@ def test_units_and_pictures_are_those_of_a_ball(result, oblique):
 
 
 def test_scene_as_used_is_a_scene_again(result):
-    """scene.toml has every parameter that the ball takes, no other."""
+    """scene.toml has all parameters of the ball and no others."""
     known = set(parameters.names(SCRIPT))
     assert {"angle", "spin", "symmetry", "body_force_x"} <= known and {"block_width", "pairing"} & known == set()
     assert set(result.scene) == known | {"script"} and result.scene["symmetry"] == "quarter"
@@ -64,7 +69,11 @@ def test_scene_as_used_is_a_scene_again(result):
 
 
 def test_snapshots_are_cuts_through_the_middle(result, oblique):
-    """Of the quarter the half x >= 0 of the disc z = 0, of the half all of it; triangles counter-clockwise that fill it; the plane stays a plane."""
+    """Snapshots of a quarter show the half x >= 0 of the disc z = 0, snapshots of a half the whole
+    disc.
+
+    Triangles are counter-clockwise and fill it, and the plane stays a plane.
+    """
     for found, share in ((result, 0.5), (oblique, 1.0)):
         snapshot = vtu.read(vtu.series(found.folder / "fields.pvd")[-1][1])
         area = areas(snapshot)
@@ -74,8 +83,11 @@ def test_snapshots_are_cuts_through_the_middle(result, oblique):
 
 
 def test_contact_points_carry_the_load(oblique):
-    """The sum of pressure and shear over the surface are the forces of the history at that instant; half the ball has both sides of z = 0 in its
-    weights, and the shear along z cancels there."""
+    """The sums of pressure and shear over the surface are the forces of the history at this
+    instant.
+
+    The weights of half a ball contain both sides of z = 0, where the shear along z cancels.
+    """
     table, history = contact.read(oblique.folder), oblique.history
     for t in np.unique(table.t):
         rows = table[table.t == t]
@@ -93,12 +105,12 @@ def test_contact_points_carry_the_load(oblique):
     (("-mesh_size", "0.06"), "mesh_size: 0.06 is larger than the radius 0.05"),
 ])
 def test_what_is_refused(tmp_path, flags, said):
-    """By exit code 10 and the name."""
+    """Exit code 10 and the name of the entry."""
     code, _, error = call(*flags, cwd=tmp_path, script=SCRIPT)
     assert code == 10 and said in error
 
 
 def test_a_disc_has_no_quarter(tmp_path):
-    """symmetry = quarter is of three dimensions."""
+    """symmetry = quarter is possible in three dimensions only."""
     with pytest.raises(BadInput, match="symmetry: quarter, which only a body in three dimensions has .accepted: auto.full.half"):
         scene.load("disc-normal").override({"symmetry": "quarter"}).description()

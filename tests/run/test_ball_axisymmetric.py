@@ -1,4 +1,4 @@
-"""The axisymmetric ball: what its scenes take, leave and say, by either way in."""
+"""The axisymmetric ball: input, output and messages of its scenes, with and without Python."""
 
 import math
 
@@ -33,7 +33,8 @@ def ball(*flags: str, cwd):
 
 
 def test_run_of_a_whole_ball(result):
-    """Energy in J, momentum in N s of the whole ball, to the mesh's geometric error; what was left out is named; its error is estimated."""
+    """Energy [J] and momentum [N s] are those of the whole ball, to the geometric error of the
+    mesh. Skipped effects are listed, the error is estimated."""
     s = result.summary
     assert s["energy_initial"] == pytest.approx(MASS * 8**2 / 2, rel=1e-3)
     assert s["impulse"] == pytest.approx(MASS * (8 + s["rebound_vy"]), rel=1e-3)
@@ -43,7 +44,7 @@ def test_run_of_a_whole_ball(result):
 
 
 def test_units_are_those_of_a_ball(result):
-    """Nothing is per metre: not in the report, not in the figures, not in what the script prints."""
+    """No unit is per metre: in the report, in the figures and in the output of the script."""
     text = report.report(result, verbose=True)
     assert "N s" in text and "/m" not in text.replace("m/s", "").replace("Pa/m", "").replace("kg/m3", "")
     assert figures.per_metre(result.scene) == "" and figures.per_metre({"script": "disc-plane"}) == "/m"
@@ -53,7 +54,8 @@ def test_units_are_those_of_a_ball(result):
 
 
 def test_a_disc_beside_a_ball(result, tmp_path, monkeypatch):
-    """Figure 11: a disc, per metre, and a ball are compared by the accelerations of their centres, v'(t) of the histories, and by shares of energy."""
+    """Figure 11: a disc, per metre, and a ball are compared by the accelerations of their centres,
+    v'(t), and by shares of energy."""
     disc = run.run(scene.load("disc-normal-neohookean"), {"accuracy": 0.2}, tmp_path / "disc", estimate=False)
     assert compare.mass_of(disc) == pytest.approx(math.pi * 0.05**2 * 1722, rel=1e-3)
     assert compare.mass_of(result) == pytest.approx(MASS, rel=1e-3)
@@ -63,13 +65,14 @@ def test_a_disc_beside_a_ball(result, tmp_path, monkeypatch):
     assert "acceleration" in force.get_ylabel() and "over that at the start" in energy.get_ylabel()
     totals = [line for line in energy.lines if line.get_linewidth() > 2]
     assert len({line._unscaled_dash_pattern[0] for line in totals}) == len(totals) == 2     # noqa: SLF001 matplotlib tells an offset of dashes nowhere else; totals that lie on one another: dashes in turn
-    h, line = result.history, [line for line in force.lines if len(line.get_ydata()) > 2][1]     # not the marks of the last touch
+    # The lines that mark the end of contact are excluded.
+    h, line = result.history, [line for line in force.lines if len(line.get_ydata()) > 2][1]
     inside = slice(1, None)
     np.testing.assert_allclose(1e3 * line.get_ydata()[inside], np.diff(h["vy"]) / h["dt"][inside], rtol=1e-6, atol=1e-3)
 
 
 def test_scene_as_used_is_a_scene_again(result):
-    """scene.toml has every parameter that the ball takes, no other, and makes the same run."""
+    """scene.toml has all parameters of the ball, no others, and gives the same run."""
     known = set(parameters.names(SCRIPT))
     assert {"angle", "spin", "symmetry", "body_force_x", "block_width"} & known == set()
     assert set(result.scene) == known | {"script"}
@@ -78,7 +81,8 @@ def test_scene_as_used_is_a_scene_again(result):
 
 
 def test_fields_are_those_of_a_meridian_plane(result):
-    """Snapshots of the half x >= 0; its points on the axis stay there, and there the hoop stress is the radial one."""
+    """Snapshots show the half x >= 0. Points on the axis stay on it, and there the circumferential
+    stress equals the radial one."""
     snapshot = vtu.read(vtu.series(result.folder / "fields.pvd")[1][1])
     axis = np.abs(snapshot.points[:, 0]) < 1e-12
     assert snapshot.points[:, 0].min() > -1e-12 and axis.sum() > 5
@@ -90,7 +94,8 @@ def test_fields_are_those_of_a_meridian_plane(result):
 
 @pytest.mark.parametrize("name, value", [("angle", 60), ("spin", 3), ("body_force_x", 1), ("symmetry", "full")])
 def test_what_no_body_of_revolution_has(tmp_path, name, value):
-    """Speed along the axis, no spin, no force across: exit code 10 and the name, of the script and of Python."""
+    """Only the speed along the axis is possible, no spin and no transverse force: exit code 10 and
+    the name, from script and Python."""
     code, _, error = ball(f"-{name}", str(value), cwd=tmp_path)
     assert code == 10 and f"{name}: {SCRIPT} takes no such parameter (accepted: in disc-plane|disc-block" in error
     with pytest.raises(BadInput, match=f"{name}: {SCRIPT} takes no such parameter"):
@@ -100,7 +105,7 @@ def test_what_no_body_of_revolution_has(tmp_path, name, value):
 @pytest.mark.parametrize("shift, labels, said", [(0.0, True, None), (0.1, True, "its axis is x = 0.1 .accepted: half a meridian plane, to the right of its axis x = 0"),
                                                  (0.0, False, "no edge has the label 2 of the axis .accepted: half a meridian plane")])
 def test_a_mesh_is_half_a_meridian_plane(tmp_path, shift, labels, said):
-    """With its axis on x = 0, labelled as such; anything else is refused by exit code 10."""
+    """Its axis is on x = 0 with this label. Other meshes are refused with exit code 10."""
     given = mesh.disc(0.05, 0.02, 0.01, half=labels)
     mesh.write(mesh.Mesh(given.points + (shift, 0), given.triangles, given.edges, given.labels), tmp_path / "my.msh")
     if said:
@@ -113,7 +118,7 @@ def test_a_mesh_is_half_a_meridian_plane(tmp_path, shift, labels, said):
 
 
 def test_both_ways_in_run_the_same_flags(tmp_path):
-    """The script on Python's mesh, with Python's flags, leaves the very history."""
+    """The script on Python's mesh with Python's flags gives exactly the same history."""
     found = run.run(scene.load("ball-axisymmetric"), {"accuracy": 0.1, "end_time": 1e-3}, tmp_path / "ball", estimate=False)
     flags = freefem.words_of({name: value for name, value in found.scene.items() if name != "script"})
     code, _, _ = call(*flags, "-mesh", str(found.folder / "mesh.msh"), "-out", str(tmp_path / "direct"), cwd=tmp_path, script=SCRIPT)
@@ -122,7 +127,8 @@ def test_both_ways_in_run_the_same_flags(tmp_path):
 
 
 def test_sizes_follow_hertz():
-    """Mesh and penalty of a slower ball are finer and stiffer as Hertz' contact is narrower, (v/c)^(2/5); those of a disc are its own."""
+    """Mesh size and penalty of a slower ball scale with the width of Hertz' contact, (v/c)^(2/5); a
+    disc has values of its own."""
     fast, slow = (describe({"speed": speed, "law": "neohookean"}, SCRIPT)["used"] for speed in (1, 0.1))
     narrower = 10 ** -0.4
     assert slow["contact_mesh_size"] / fast["contact_mesh_size"] == pytest.approx(narrower, rel=1e-9)
@@ -132,8 +138,12 @@ def test_sizes_follow_hertz():
 
 
 def test_pressure_of_hertz(tmp_path):
-    """At the largest force of a slow impact the pressure over the radius is p0 sqrt(1 - r^2/a^2) of that force, to 4 % of p0 (rms over the area), and
-    the contact as wide, to 2 % (Johnson, Contact mechanics, 4.2); not that of twice the force."""
+    """At the largest force of a slow impact the pressure is p0 sqrt(1 - r^2/a^2) for this force, to
+    4 % of p0 (rms over the area).
+
+    The contact radius agrees to 2 % (Johnson, Contact mechanics, 4.2). The pressure of twice the
+    force does not agree.
+    """
     found = run.run(scene.load("ball-axisymmetric"), {"speed": 0.1, "nu": 0.3, "penalty": "auto", "fields": 20}, tmp_path / "slow", estimate=False)
     points = pd.DataFrame(contact.read(found.folder))
     force = points.assign(force=points.pressure * points.weight).groupby("t").force.sum()

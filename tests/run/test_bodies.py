@@ -1,4 +1,4 @@
-"""Scenes of one's own: what a file says becomes bodies, one mesh and a data file; whatever is wrong in it is named in one line."""
+"""Scenes from files: bodies, one mesh and a data file. Every error is reported in one line."""
 
 import itertools
 import math
@@ -16,7 +16,8 @@ from tests.support.triangles import areas, smallest_angle
 
 # ---- shapes
 
-SHAPES = {   # area, centre of area in the coordinates of the file, length
+# Area, centre of area in the coordinates of the file, and length.
+SHAPES = {
     "disc": ({"shape": "disc", "radius": 0.3}, math.pi * 0.09, 0.6 * math.pi),
     "ellipse": ({"shape": "ellipse", "semi_axes": [0.3, 0.1]}, math.pi * 0.03, 1.33649),
     "rectangle": ({"shape": "rectangle", "width": 0.4, "height": 0.1}, 0.04, 1.0),
@@ -33,7 +34,8 @@ def _shape(request):
 
 
 def test_shapes_have_their_area_and_are_about_their_centre(shape):
-    """Area and length of an outline are those of its shape, its centre of area is the origin, its outer loop is counter-clockwise."""
+    """Area and length of an outline are those of the shape, its centre of area is the origin, and
+    its outer loop is counter-clockwise."""
     entries, area, length = shape
     outline = read(with_body(**entries)).bodies[0].outline
     assert outline.area == pytest.approx(area, rel=1e-12)
@@ -44,8 +46,12 @@ def test_shapes_have_their_area_and_are_about_their_centre(shape):
 
 
 def test_bodies_are_meshed_to_their_outline(shape):
-    """A body's mesh fills the polygon of its boundary edges, which have it to their left, with sound triangles; every vertex of the
-    boundary lies on the outline; the area is that of the shape, to what straight edges leave of a curved one."""
+    """The mesh of a body fills the polygon of its boundary edges, which have it to their left, with
+    triangles of good shape.
+
+    Every vertex of the boundary lies on the outline. The area is that of the shape, except for the
+    error of straight edges.
+    """
     entries, area, _ = shape
     scene = read(with_body(**entries) | {"obstacle": [FLOOR | {"point": [0, -50]}]})
     built = assembly.assemble(scene)
@@ -65,7 +71,8 @@ def test_bodies_are_meshed_to_their_outline(shape):
 # ---- mesh files
 
 def test_a_body_may_be_a_mesh_file(tmp_path):
-    """A mesh file, beside the scene's, is a body of its own area, moved to its centre; its labels stay, its circle is found."""
+    """A mesh file beside the scene is a body of its own area, moved to its centre. It keeps its
+    labels, and its circle is recognised."""
     mesh.write(mesh.disc(0.05, 0.02, 0.01, False), tmp_path / "disc.msh")
     m = mesh.read(tmp_path / "disc.msh")
     scene = read(with_body(shape="mesh", file="disc.msh", position=[3, 4]), tmp_path)
@@ -78,7 +85,8 @@ def test_a_body_may_be_a_mesh_file(tmp_path):
 
 
 def test_a_body_may_be_a_file_of_gmsh(tmp_path):
-    """A plate with a round hole and a named curve: the hole is a circle, edges that are not of `contact` never touch."""
+    """A plate with a round hole and a physical curve: the hole is a circle. Edges outside of
+    `contact` never come into contact."""
     with mesh.gmsh_session() as gmsh:
         occ = gmsh.model.occ
         occ.cut([(2, occ.addRectangle(1, 1, 0, 4, 2))], [(2, occ.addDisk(2, 2, 0, 0.5, 0.5))])
@@ -100,8 +108,10 @@ def test_a_body_may_be_a_file_of_gmsh(tmp_path):
 
 
 def test_flats_among_the_arcs_of_a_file_stay_flat(tmp_path):
-    """A shaft with two flats, all corners on one circle, is arcs and flats: its area, centre and distances are theirs, in place and turned, and scene.dat has
-    the circle once."""
+    """A shaft with two flats, with all corners on one circle, consists of arcs and flats.
+
+    Its area, centre and distances are correct, also rotated, and scene.dat has the circle once.
+    """
     radius, flat = 0.5, math.acos(0.6)
     angles = np.concatenate([np.linspace(side + flat, side + math.pi - flat, 10) for side in (0, math.pi)])
     corners = radius * np.column_stack([np.cos(angles), np.sin(angles)])
@@ -116,10 +126,11 @@ def test_flats_among_the_arcs_of_a_file_stay_flat(tmp_path):
     assert lines[4] == "circles 1" and np.array(lines[5].split(), dtype=float) == pytest.approx([0, 0, 0, radius], abs=1e-12) and lines[6:8] == ["files 1", "0 1"]
 
 
-# ---- the assembly
+# ---- assembly
 
 def test_bodies_are_regions_apart_from_each_other():
-    """Region k is body k about its centre, the bodies share no vertex and their boxes are apart; the outlines have the label 1."""
+    """Region k is body k about its centre. Bodies share no vertex, their boxes are disjoint, and
+    the outlines have the label 1."""
     scene = load("three-in-a-row")
     built = assembly.assemble(scene)
     boxes = []
@@ -136,7 +147,8 @@ def test_bodies_are_regions_apart_from_each_other():
 
 
 def test_meshes_are_fine_where_bodies_touch():
-    """Disc and block have contact_mesh_size where they meet, the block's other sides mesh_size."""
+    """Disc and block have contact_mesh_size in the contact region and mesh_size on the other sides
+    of the block."""
     scene = read(SCENE | {"mesh_size": 0.3, "contact_mesh_size": 0.03})
     m = assembly.assemble(scene).mesh
     middle, length = m.points[m.edges].mean(axis=1), np.linalg.norm(m.points[m.edges[:, 1]] - m.points[m.edges[:, 0]], axis=1)
@@ -148,7 +160,8 @@ def test_meshes_are_fine_where_bodies_touch():
 
 
 def test_a_spinning_body_is_fine_where_it_will_touch():
-    """A square that turns by 45 degrees before it reaches the floor meets it with a corner: that one is fine."""
+    """A square that rotates by 45 degrees before it reaches the floor comes into contact with a
+    corner, which is fine."""
     fall = 1.0
     square = {"shape": "rectangle", "width": 1, "height": 1, "position": [0, math.sqrt(0.5) + fall], "velocity": [0, -1], "spin": math.pi / 4}
     scene = read(SCENE | {"body": [square | {"mesh_size": 0.25, "contact_mesh_size": 0.02}], "obstacle": [FLOOR | {"point": [0, 0]}]})
@@ -161,7 +174,11 @@ def test_a_spinning_body_is_fine_where_it_will_touch():
 
 
 def test_a_hole_touches_only_what_is_in_it():
-    """A ring's inner circle has the label 3; with a disc or an obstacle inside it, or where the ring may touch itself, the label 1."""
+    """The inner circle of a ring has the label 3.
+
+    With a disc or an obstacle inside, or if the ring may come into contact with itself, it has the
+    label 1.
+    """
     ring = {"shape": "ring", "radius": 1, "inner_radius": 0.8, "position": [0, 0]}
     thin = read(SCENE | {"body": [ring, DISC | {"position": [3, 0]}]})
     alone = read(SCENE | {"body": [ring, DISC | {"position": [3, 0]}], "contact": {"self_contact": "off"}})
@@ -175,7 +192,7 @@ def test_a_hole_touches_only_what_is_in_it():
 
 
 def test_pairs_inherit_from_contact():
-    """A [[contact.pair]] changes what it says; the rest is the scene's; it is stronger than what its obstacle says."""
+    """A [[contact.pair]] overrides the entries of the scene and of its obstacle."""
     given = changed(("contact.penalty", 1e9), ("contact.friction_static", 0.5), ("contact.slip_velocity", 0.1), ("obstacle.1.friction_static", 0.2))
     given["contact"]["pair"] = [{"bodies": ["floor", "disc"], "friction_static": 0.3, "friction_dynamic": 0.1}, {"bodies": ["block", "disc"], "penalty": 2e9}]
     lines = assembly.assemble(read(given)).data.splitlines()
@@ -187,8 +204,10 @@ def test_pairs_inherit_from_contact():
 @pytest.mark.few(5)
 @pytest.mark.parametrize("name", [name for name in built_in() if load(name).bodies])
 def test_the_scene_as_used_is_the_same_scene(name, tmp_path):
-    """Every scene that comes with the program makes a sound mesh of its bodies; scene.toml, which has everything that was left open, makes the same mesh, data and
-    values, byte for byte."""
+    """Every built-in scene has a mesh of good quality.
+
+    scene.toml, which has all automatic values, gives the same mesh, data and values, byte by byte.
+    """
     first, second, scene = tmp_path / "first", tmp_path / "second", load(name)
     for folder, source in ((first, name), (second, str(first / "scene.toml"))):
         folder.mkdir()
@@ -270,7 +289,8 @@ POLYGONS = [
     ({"vertices": SQUARE, "holes": [[[0, 0.5], [0.5, 0.5], [0.5, 0.6]]]}, "body.1.holes.1: is not inside body.1.vertices"),
     ({"vertices": SQUARE, "holes": [[[0.1, 0.1], [0.9, 0.1], [0.9, 0.9]], [[0.6, 0.5], [0.8, 0.5], [0.8, 0.6]]]}, "body.1.holes.2: overlaps body.1.holes.1 (accepted: holes apart"),
     ({"vertices": SQUARE, "holes": [[[0.2, 0.2], [0.5, 0.2], [0.4, 0.6]], [[0.4, 0.3], [0.8, 0.3], [0.8, 0.6]]]}, "body.1.holes.2: overlaps body.1.holes.1"),
-    ({"vertices": SQUARE, "holes": [[[0.2, 0.2], [0.5, 0.2], [0.4, 0.6]], [[0.5, 0.2], [0.8, 0.3], [0.8, 0.6]]]}, "body.1.holes.2: overlaps body.1.holes.1"),   # by a corner alone
+    # The holes overlap at a corner only.
+    ({"vertices": SQUARE, "holes": [[[0.2, 0.2], [0.5, 0.2], [0.4, 0.6]], [[0.5, 0.2], [0.8, 0.3], [0.8, 0.6]]]}, "body.1.holes.2: overlaps body.1.holes.1"),
 ]
 NO_OBSTACLES = [
     ({"kind": "cone"}, "obstacle.1.kind: 'cone' is not known (accepted: plane|circle|bowl|polyline|implicit)"),
@@ -291,15 +311,19 @@ REFUSED = [*((changed(*entries), words) for entries, words in BAD),
 
 @pytest.mark.parametrize("scene, words", REFUSED, ids=[words.split(" (")[0] for _, words in REFUSED])
 def test_what_is_wrong_is_named(scene, words):
-    """Bad input (entries, a material that neither the body nor the top gives, missing tables, polygons that cross, touch or repeat themselves and their holes, obstacles that
-    are none): exit code 10 and a line that names the entry, its value and what is accepted."""
+    """Bad input gives exit code 10 and one line with the entry, its value and what is accepted.
+
+    The cases are entries, a missing material, missing tables, polygons and holes that cross, touch
+    or repeat themselves, and invalid obstacles.
+    """
     with pytest.raises(BadInput) as caught:
         read(scene)
     assert words in str(caught.value) and caught.value.code == 10
 
 
 def test_overlaps_that_no_vertex_shows():
-    """Two crossed bars, a small body inside a large one, an obstacle inside a body: all overlap; a disc in a ring's hole does not."""
+    """Two crossed bars, a small body inside a large one and an obstacle inside a body overlap; a
+    disc in the hole of a ring does not."""
     bar = {"shape": "rectangle", "width": 10, "height": 0.1, "position": [0, 0]}
     for others in ([bar, bar | {"angle": 90}], [BLOCK, DISC | {"position": [0, 0], "radius": 0.01}]):
         with pytest.raises(BadInput, match="overlaps"):
@@ -310,7 +334,8 @@ def test_overlaps_that_no_vertex_shows():
 
 
 def test_touching_is_no_overlap():
-    """Bodies may touch at the start: discs, faces, a corner on a face, also turned and far from the origin."""
+    """Bodies may be in contact at the start: discs, faces, a corner on a face, also rotated and far
+    from the origin."""
     square = {"shape": "rectangle", "width": 1, "height": 1}
     read(SCENE | {"body": [DISC | {"position": [0, 0]}, DISC | {"name": "other", "position": [1, 0]}]})
     read(SCENE | {"body": [square | {"position": [1000, 0.3]}, square | {"position": [1001, 0]}]})
@@ -318,7 +343,7 @@ def test_touching_is_no_overlap():
 
 
 def test_sizes_that_do_not_fit_a_body_are_named():
-    """A mesh size beyond half the thickness of a body names the body's entry."""
+    """A mesh size beyond half the thickness of a body is reported with the entry of the body."""
     with pytest.raises(BadInput, match="^body.2.mesh_size: 3 is larger than the radius 1 .*'block'"):
         assembly.assemble(read(changed(("body.2.mesh_size", 3))))
 
@@ -341,7 +366,8 @@ OBSTACLES = [
 
 @pytest.mark.parametrize("entries, words, points, gaps", OBSTACLES)
 def test_obstacles_are_their_numbers_and_gaps(entries, words, points, gaps):
-    """An obstacle's line in scene.dat, its velocity behind its numbers; its gap is the signed distance, negative inside."""
+    """The line of an obstacle in scene.dat has its numbers and its velocity. The gap is the signed
+    distance, negative inside."""
     far = with_body(shape="disc", radius=0.01, position=[0.5, 5] if entries["kind"] != "bowl" else [1, 0]) | {"obstacle": [entries | {"velocity": [0.5, -0.25]}]}
     scene = read(far)
     assert f"\nobstacle1 {words} 0.5 -0.25\n" in assembly.assemble(scene).data

@@ -1,4 +1,5 @@
-"""Scenes of bodies in three dimensions: shapes and their distances, meshes, files, symmetry, what is refused, and runs."""
+"""Scenes of bodies in three dimensions: shapes and distances, meshes, files, symmetry, refused
+input, and runs."""
 
 import math
 import time
@@ -24,22 +25,25 @@ SCRIPT = "bodies-3d"
 
 
 def quality(m: solid_mesh.SolidMesh) -> np.ndarray:
-    """Volume over that of the regular tetrahedron with the same mean square edge: 1 is best."""
+    """The volume over that of the regular tetrahedron with the same mean square edge; 1 is best."""
     corners = m.points[m.cells]
     squares = [((corners[:, i] - corners[:, j])**2).sum(axis=1) for i in range(4) for j in range(i)]
     return m.volumes * 6 * math.sqrt(2) / np.mean(squares, axis=0) ** 1.5
 
 
 def full_on(m: solid_mesh.SolidMesh, label: int) -> int:
-    """Tetrahedra with all four corners on faces of a label."""
+    """The number of tetrahedra with all four corners on faces with this label."""
     on = np.zeros(len(m.points), dtype=bool)
     on[m.faces[m.labels == label]] = True
     return int(on[m.cells].all(axis=1).sum())
 
 
 def test_free_bodies_tumble():
-    """Euler's equations in the body's axes, J w' = J w x w, in small steps of another method; a ball, and a box about a principal axis, go on turning as they
-    began. No spin is above the bound."""
+    """Euler's equations in the axes of the body, J w' = J w x w, are integrated by another method
+    in small steps.
+
+    A ball, and a box about a principal axis, keep their rotation. No spin exceeds the bound.
+    """
     extent, spin, start, t = np.array([0.05, 0.1, 0.2]), np.array([12.0, 5, -8]), tumbling.rotation(np.array([0.3, -0.2, 0.5])), 0.6
     box, w, R, n, fastest = solids.box(extent), start.T @ spin, start, 10000, 0.0
     J = np.diag(box.moments)
@@ -59,8 +63,11 @@ def test_free_bodies_tumble():
 
 @pytest.mark.parametrize("symmetry, copies", [("full", 1), ("half", 2), ("quarter", 4)])
 def test_bodies_are_meshed_whole_or_by_symmetry(symmetry, copies):
-    """The mesh makes the bodies' volumes; spheres are spheres and planes of symmetry planes to rounding, with the labels 2 (x = 0) and 3 (z = 0);
-    sound tetrahedra, none with all corners on the surface of the ball."""
+    """The mesh has the volumes of the bodies. Spheres and planes of symmetry are exact to rounding,
+    with the labels 2 (x = 0) and 3 (z = 0).
+
+    The tetrahedra have a good shape, and none has all corners on the surface of the ball.
+    """
     scene = read(BALL, BLOCK, {"shape": "cylinder", "radius": 0.04, "height": 0.1, "position": [0, 0.2, 0]}, symmetry=symmetry)
     built = assembly.assemble(scene)
     m = built.mesh
@@ -76,11 +83,12 @@ def test_bodies_are_meshed_whole_or_by_symmetry(symmetry, copies):
     first = solid_mesh.SolidMesh(m.points, m.cells[built.regions == 0], m.faces, m.labels)
     assert full_on(first, 1) == 0
     edges = np.sort(m.faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-    assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()          # the surface is closed
+    assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()  # the surface is closed
 
 
 def test_bodies_stand_apart_above_each_other():
-    """On the axis y, no vertex in common, the shift of each leads to its place."""
+    """Bodies stand on the y axis without common vertices. The shift of each leads to its position.
+    """
     scene = load("ball-block")
     built = assembly.assemble(scene)
     heights = [built.mesh.points[np.unique(built.mesh.cells[built.regions == k])][:, 1] for k in (0, 1)]
@@ -93,7 +101,8 @@ def test_bodies_stand_apart_above_each_other():
 
 
 def test_too_many_unknowns_are_refused(monkeypatch):
-    """Before gmsh meshes for hours, and before FreeFEM runs for days: the number, and what helps."""
+    """They are refused before gmsh meshes for hours and FreeFEM runs for days, with their number
+    and advice."""
     began = time.monotonic()
     for entries in ({"mesh_size": 1e-4}, {"mesh_size": 0.01, "contact_mesh_size": 1e-4}):
         with pytest.raises(BadInput, match=r"mesh_size: 'ball' would have about .* tetrahedra \(accepted: up to 400000; larger mesh_size"):
@@ -108,7 +117,8 @@ def test_too_many_unknowns_are_refused(monkeypatch):
 
 @pytest.fixture(scope="module")
 def files(tmp_path_factory):
-    """A ball as a mesh in gmsh's formats, of second order and in Medit's, a pierced plate as geometry, a box with a named surface."""
+    """A ball as a mesh in gmsh's formats, of second order and in Medit's, a pierced plate as
+    geometry, and a box with a physical surface."""
     folder = tmp_path_factory.mktemp("files")
     with mesh.gmsh_session() as gmsh:
         gmsh.model.occ.addSphere(1, 2, 3, 0.05)
@@ -125,7 +135,7 @@ def files(tmp_path_factory):
         occ = gmsh.model.occ
         occ.cut([(3, occ.addBox(0, 0, 0, 200, 50, 100))], [(3, occ.addCylinder(50, -1, 50, 0, 60, 0, 20))])
         occ.synchronize()
-        gmsh.write(str(folder / "plate.step"))        # in mm, as the file says
+        gmsh.write(str(folder / "plate.step"))  # in mm, the unit of the file
     (folder / "named.geo").write_text('SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 0.2, 0.06, 0.2};\n'
                                       'Physical Surface("contact") = Surface In BoundingBox {-0.01, -0.01, -0.01, 0.21, 0.01, 0.21};\nPhysical Volume("body") = {1};\n')
     (folder / "other.geo").write_text('SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 0.2, 0.06, 0.2}; Physical Surface("top") = {4};\n')
@@ -139,7 +149,8 @@ def files(tmp_path_factory):
 
 @pytest.mark.parametrize("name", ["41.msh", "41-binary.msh", "22.msh", "22-binary.msh", "second-order.msh", "ball.mesh"])
 def test_meshes_of_files(files, name):
-    """The same ball in every format, of second order by its corners: found to be one, about its centre, all of its surface may touch."""
+    """The same ball in every format, of second order by its corners, is recognised and centred. All
+    of its surface may come into contact."""
     body, = read({"shape": "mesh", "file": name, "position": [0, 0.3, 0]}, folder=files).bodies
     assert body.outline.disc[1] == pytest.approx(0.05, rel=1e-8) if name != "ball.mesh" else body.outline.reach == pytest.approx(0.05, rel=1e-3)
     assert body.mesh.volumes.sum() == pytest.approx(4 / 3 * math.pi * 0.05**3, rel=0.05) and body.mesh.volumes.min() > 0
@@ -147,7 +158,8 @@ def test_meshes_of_files(files, name):
 
 
 def test_geometries_are_meshed_with_the_sizes_of_the_scene(files):
-    """A STEP file in its own unit: volume of the plate with its hole, finer where it will touch; turned and in place."""
+    """A STEP file in its own unit, rotated and shifted: the plate has its volume with the hole, and
+    is finer in the contact region."""
     scene = read({"shape": "mesh", "file": "plate.step", "position": [0, 0.3, 0], "turn": [0, 0, 30], "velocity": [0, -5, 0], "mesh_size": 0.025, "contact_mesh_size": 0.008},
                  folder=files, obstacles=[FLOOR | {"point": [0, 0, 0]}])
     m = assembly.assemble(scene).mesh
@@ -160,8 +172,10 @@ def test_geometries_are_meshed_with_the_sizes_of_the_scene(files):
 
 @pytest.mark.robustness
 def test_named_surfaces_may_touch(files):
-    """Faces of the physical surface `contact` have the label 1, all others 4; without one all have
-    1, those of a cavity where something reaches them."""
+    """Faces of the physical surface `contact` have the label 1, all others 4.
+
+    Without this surface all have 1, those of a cavity only if something reaches them.
+    """
     m = assembly.assemble(read({"shape": "mesh", "file": "named.geo", "position": [0, 0.1, 0]}, folder=files, obstacles=[FLOOR | {"point": [0, 0, 0]}])).mesh
     below = (m.points[m.faces][..., 1] < m.points[:, 1].min() + 1e-6).all(axis=1)
     assert np.array_equal(m.labels == 1, below) and set(m.labels) == {1, 4}
@@ -188,19 +202,23 @@ def test_named_surfaces_may_touch(files):
     ("twins.geo", "body.1.file: 'twins.geo': its tetrahedra are 2 pieces that hang together nowhere (accepted: one"),
     ("other.geo", "body.1.file: 'other.geo': none of its physical surfaces (top) has the name 'contact'")])
 def test_files_that_cannot_be_used_are_named(files, name, words):
-    """The entry, the file as given, and what is wrong with it, in one line."""
+    """One line with the entry, the file as given, and the error."""
     with pytest.raises(BadInput) as caught:
         read({"shape": "mesh", "file": name}, folder=files)
     assert words in str(caught.value) and "\n" not in str(caught.value) and caught.value.code == 10
-    assert not (files / "made").exists()              # gmsh would run a script that is called a mesh
+    # gmsh would run a script with the name of a mesh.
+    assert not (files / "made").exists()
 
 
 @pytest.mark.parametrize("corners, section, outline, warned", [
     (6, 1.5 * math.sqrt(3) * 0.05**2, "0 faces on spheres, 0 on cylinders, 20 flat faces; 20 may touch", ""),
     (24, math.pi * 0.05**2, "0 faces on spheres, 48 on cylinders, 44 flat faces; 92 may touch", "mass: body1 has 1.2 % more than the mesh in its file")])
 def test_the_mass_of_a_file_is_kept_or_warned_about(tmp_path, corners, section, outline, warned):
-    """The body of a file has the mass of its shape, a hexagonal prism that of one; where its sides are round the log says so, and a warning by how much that
-    is more than the file's."""
+    """The body of a file has the mass of its shape; a hexagonal prism has that of a prism.
+
+    If its sides are round the log reports it, and a warning has the difference from the mass of the
+    file.
+    """
     prism(corners, tmp_path / "prism.mesh")
     body = {"shape": "mesh", "file": "prism.mesh", "position": [0, 0.0402, 0], "velocity": [0, -1, 0]}
     found = run.run(read(body, obstacles=[FLOOR | {"point": [0, 0, 0]}], folder=tmp_path, end_time=4e-4), {}, tmp_path / "run", estimate=False)
@@ -213,7 +231,8 @@ def test_the_mass_of_a_file_is_kept_or_warned_about(tmp_path, corners, section, 
     ([(0, 1, 2, 3), (0, 1, 4, 5)], "it hangs together by an edge alone, from (0, 0, 0) to (0, 0, 0.1)"),
     ([(0, 1, 2, 3), (0, 4, 5, 6)], "it hangs together by a point alone, (0, 0, 0)")])
 def test_bodies_that_hang_together_by_less_than_a_face_are_refused(tmp_path, cells, words):
-    """Two tetrahedra with an edge, or a point, in common are no body, as triangles with a point in common are none in the plane."""
+    """Two tetrahedra with a common edge or point are not a body, as triangles with a common point
+    are not one in the plane."""
     points = 0.1 * np.array([(0, 0, 0), (0, 0, 1), (1, 0, 0), (0, 1, 0), (-1, 0, 0), (0, -1, 0), (0, 0, -1)])[:max(map(max, cells)) + 1]
     cells = solid_mesh.right_handed(points, np.array(cells))
     faces = mesh.boundary(cells)
@@ -224,7 +243,7 @@ def test_bodies_that_hang_together_by_less_than_a_face_are_refused(tmp_path, cel
 
 
 def test_three_numbers_of_obstacles():
-    """Planes, spheres and bowls with points and vectors [x, y, z], as scene.dat has them."""
+    """Planes, spheres and hollow spheres with points and vectors [x, y, z], as in scene.dat."""
     scene = read(BALL, obstacles=[FLOOR | {"normal": [0, 2, 0], "velocity": [0, 1, 0]}, {"kind": "sphere", "centre": [0, -1, 0], "radius": 0.5}])
     lines = assembly.assemble(scene).data.splitlines()
     assert "floor plane 6 0.0 -0.5 0.0 0.0 1.0 0.0 0.0 1.0 0.0" in lines and "obstacle2 sphere 4 0.0 -1.0 0.0 0.5 0.0 0.0 0.0" in lines
@@ -236,7 +255,7 @@ def test_three_numbers_of_obstacles():
 
 @pytest.fixture(scope="module")
 def falls(tmp_path_factory):
-    """A ball on a rigid plane: a quarter of it, half, and all, on meshes of the same sizes."""
+    """A ball on a rigid plane as a quarter, half and whole, on meshes of the same sizes."""
     folder, found = tmp_path_factory.mktemp("falls"), {}
     for symmetry in ("quarter", "half", "full"):
         scene = read(BALL | {"position": [0, 0.05, 0], "velocity": [0, -2, 0]}, obstacles=[FLOOR | {"point": [0, 0, 0]}], symmetry=symmetry, fields=2)
@@ -246,8 +265,12 @@ def falls(tmp_path_factory):
 
 @pytest.mark.robustness
 def test_parts_stand_for_the_whole(falls):
-    """Mass, momentum and energy of the whole ball, whatever was computed; the rebounds and impulses agree to what the meshes differ. A part has the angular
-    momentum that contact gives it about the axes about which the whole may turn: of a quarter none is stated."""
+    """Mass, momentum and energy are those of the whole ball. Rebounds and impulses agree to the
+    difference of the meshes.
+
+    Half a ball has the angular momentum about the axes about which the whole may rotate; a quarter
+    has none.
+    """
     for symmetry, found in falls.items():
         s = found.summary
         assert s["energy_initial"] == pytest.approx(4 / 3 * math.pi * 0.05**3 * 1722 * 2**2 / 2, rel=0.01), symmetry
@@ -258,8 +281,12 @@ def test_parts_stand_for_the_whole(falls):
 
 
 def test_a_cylinder_rolls(tmp_path):
-    """Down 5 degrees, bouncing a little, a solid cylinder on a coarse mesh has v = 2/3 g sin(5 deg) t on the mean, to 2 %; friction and its moment about the axis
-    agree to 0.5 %, as normal forces on a round side pass through that."""
+    """On a slope of 5 degrees, with small bounces, a solid cylinder on a coarse mesh has v = 2/3 g
+    sin(5 deg) t in the mean, to 2 %.
+
+    Friction and its moment about the axis agree to 0.5 %, as normal forces on a round side pass
+    through the axis.
+    """
     slope, end = math.radians(5), 0.06
     pull = 9.81 * math.sin(slope)
     body = {"shape": "cylinder", "radius": 0.05, "height": 0.05, "position": [0, 0.05, 0], "turn": [90, 0, 0], "mesh_size": 0.025, "contact_mesh_size": 0.025}
@@ -272,8 +299,8 @@ def test_a_cylinder_rolls(tmp_path):
 
 
 def test_report_and_figures(falls, tmp_path):
-    """Forces in N, energies in J of a body in three dimensions; the parts are drawn with their mirror images among the obstacles, a whole
-    body cut at z = 0."""
+    """Forces are in N, energies in J. Parts are drawn with their mirror images among the obstacles,
+    a whole body as its section z = 0."""
     found = falls["quarter"]
     text = report.report(found, verbose=True)
     assert "N s" in text and "/m" not in text.replace("m/s", "").replace("Pa/m", "").replace("kg/m3", "")
@@ -285,7 +312,7 @@ def test_report_and_figures(falls, tmp_path):
 
 
 def test_it_is_the_ball_of_the_other_dimension(falls, tmp_path):
-    """The same scene as a body of revolution, to the coarse meshes' error."""
+    """It agrees with the same scene as a body of revolution, to the error of the coarse meshes."""
     scene = read_scene(SCENE | {"dimension": "axisymmetric", "body": [{"shape": "ball", "radius": 0.05, "position": 0.05, "velocity": -2}],
                                     "obstacle": [{"kind": "plane", "point": [0, 0], "normal": [0, 1]}]}, tmp_path, "flat")
     flat, solid = run.run(scene, {}, tmp_path / "flat", estimate=False).summary, falls["quarter"].summary
@@ -294,7 +321,8 @@ def test_it_is_the_ball_of_the_other_dimension(falls, tmp_path):
 
 
 def test_the_scene_as_used_makes_the_same_run(falls, tmp_path):
-    """scene.toml says dimension and symmetry as used and makes the same data file again; the script alone leaves the same history."""
+    """scene.toml has dimension and symmetry as used and gives the same data file. The script alone
+    gives the same history."""
     found = falls["quarter"]
     again = load(str(found.folder / "scene.toml"))
     assert again.script == SCRIPT and set(again.values) <= set(parameters.names(SCRIPT)) and again.given["symmetry"] == "quarter"
@@ -307,7 +335,8 @@ def test_the_scene_as_used_makes_the_same_run(falls, tmp_path):
 
 
 def test_a_ball_on_a_free_block(tmp_path):
-    """A quarter of both, coarse and until shortly after the touch: no force from outside, so the momentum stays, and energy; the block is pushed down."""
+    """A quarter of both bodies, coarse, until shortly after contact: momentum and energy are
+    constant, and the block is pushed down."""
     found = run.run(read(BALL, BLOCK, obstacles=(), end_time=8e-4, mesh_size=0.04, contact_mesh_size=0.025), {}, tmp_path / "block", estimate=False)
     h, s = found.history, found.summary
     assert s["dofs"] < 4000 and h["normal_force"].max() > 100 and s["energy_drift"] < 1e-8

@@ -1,4 +1,5 @@
-"""Scenes of bodies of revolution: sections, their meshes and places, what is refused, and two balls against Hertz."""
+"""Scenes of bodies of revolution: sections, meshes and positions, refused input, and two balls
+against Hertz."""
 
 import math
 
@@ -22,7 +23,7 @@ SCRIPT = "bodies-axisymmetric"
 
 
 def volumes(m: mesh.Mesh) -> tuple[float, float]:
-    """The volume that a section's half makes about x = 0, and the height of its centre."""
+    """The volume of revolution of half a section about x = 0, and the height of its centre."""
     x, y = np.moveaxis(m.points[m.triangles], 2, 0)
     area = areas(m)
     volume = (2 * math.pi * area * x.mean(axis=1)).sum()
@@ -31,8 +32,11 @@ def volumes(m: mesh.Mesh) -> tuple[float, float]:
 
 @pytest.mark.parametrize("name", SHAPES)
 def test_bodies_are_half_sections_about_their_centres(name):
-    """The mesh is the half x >= 0 of the section: it makes the body's volume, its centre where scene.dat says; edges on the axis, and no others,
-    have the label 2; vertices of the boundary lie on the outline."""
+    """The mesh is the half x >= 0 of the section, with the volume of the body and the centre of
+    scene.dat.
+
+    Edges on the axis, and no others, have the label 2. Vertices of the boundary lie on the outline.
+    """
     entries, volume = SHAPES[name]
     scene = read(entries | {"position": [0, 5]}, mesh_size=0.05, contact_mesh_size=0.02)
     built = assembly.assemble(scene)
@@ -48,7 +52,8 @@ def test_bodies_are_half_sections_about_their_centres(name):
 
 
 def test_bodies_stand_above_each_other():
-    """On the axis, apart from each other, region k body k, one circle of the ball in scene.dat; a fall finds its place by position alone."""
+    """Bodies are on the axis, apart from each other, region k is body k, and scene.dat has one
+    circle of the ball. A number as position is the height."""
     scene = load("ball-cylinder")
     built = assembly.assemble(scene)
     assert (built.centres[:, 0] == 0).all() and scene.bodies[0].position.tolist() == [0, 0.051]
@@ -59,7 +64,7 @@ def test_bodies_stand_above_each_other():
 
 
 def test_meshes_are_fine_where_bodies_touch():
-    """Near the axis, on both faces that meet."""
+    """Both faces in contact are fine near the axis."""
     m = assembly.assemble(read(BALL, {"shape": "cylinder", "radius": 2, "height": 1, "position": 0.4}, obstacles=(), mesh_size=0.3, contact_mesh_size=0.02)).mesh
     surface = m.labels == 1
     length, middle = np.linalg.norm(m.points[m.edges[:, 1]] - m.points[m.edges[:, 0]], axis=1), m.points[m.edges].mean(axis=1)
@@ -68,7 +73,8 @@ def test_meshes_are_fine_where_bodies_touch():
 
 
 def test_a_body_may_be_a_mesh_file(tmp_path):
-    """Half a section in a file, its axis labelled 2: about its centre of volume, the circle found; a whole section is refused."""
+    """Half a section in a file, with the label 2 on its axis, is centred at its centre of volume,
+    and its circle is recognised. A whole section is refused."""
     mesh.write(mesh.disc(0.05, 0.02, 0.01, True), tmp_path / "half.msh")
     mesh.write(mesh.disc(0.05, 0.02, 0.01, False), tmp_path / "whole.msh")
     body, = read({"shape": "mesh", "file": "half.msh", "position": 3}, folder=tmp_path).bodies
@@ -79,7 +85,8 @@ def test_a_body_may_be_a_mesh_file(tmp_path):
 
 
 def test_open_values_are_those_of_a_ball():
-    """Penalty and sizes are what the ball on the plane gets of the same speed, not the disc."""
+    """Automatic penalty and sizes are those of the ball on the plane at the same speed, not those
+    of the disc."""
     ball = {"shape": "ball", "radius": 0.05, "position": 0.0501, "velocity": -8}
     body = assembly.assemble(read(ball, obstacles=[FLOOR | {"point": [0, 0]}])).used
     alone = load("ball-axisymmetric").override({"law": "svk", "penalty": "auto"}).description()["used"]
@@ -92,7 +99,8 @@ def test_open_values_are_those_of_a_ball():
     ("plane 4 0.0 -1.0 0.0 1.0", "plane 4 0.0 -1.0 1.0 1.0", "obstacle 1 is none of revolution"),
     (" 2\n", " 1\n", "has the label 1 (accepted: 2 on x = 0")])
 def test_the_script_looks_at_its_files(tmp_path, old, new, said):
-    """Of files that were made by hand the script refuses what is not of revolution, with exit code 10 and one line."""
+    """The script refuses files made by hand that are not of revolution, with exit code 10 and one
+    line."""
     assembly.assemble(read(BALL, mesh_size=0.3, contact_mesh_size=0.1)).write(tmp_path)
     file = tmp_path / ("mesh.msh" if "\n" in old else "scene.dat")
     text = file.read_text().replace("0.0 1.5 0.0 0.0 -10", "0 1.5 0.0 0.0 -10")
@@ -114,8 +122,12 @@ def slow(tmp_path_factory):
 
 
 def test_two_balls_of_hertz(slow):
-    """Contact time, largest force and approach of a slow impact are Hertz' to 2 % (Johnson, Contact mechanics, 11.4), the momentum of each
-    ball turns round, the other axes stay empty, and nothing is per metre."""
+    """Contact time, largest force and approach of a slow impact agree with Hertz to 2 % (Johnson,
+    Contact mechanics, 11.4).
+
+    The momentum of each ball is reversed, columns of other axes are empty, and no unit is per
+    metre.
+    """
     h, s = slow.history, slow.summary
     mass, stiff, radius, closing = 4 / 3 * math.pi * 1e-6 * 2500, 1e8 / (1 - 0.3**2) / 2, 0.005, 0.02
     approach = (15 * mass / 2 * closing**2 / (16 * math.sqrt(radius) * stiff)) ** 0.4
@@ -132,8 +144,8 @@ def test_two_balls_of_hertz(slow):
 
 @pytest.mark.robustness
 def test_the_scene_as_used_makes_the_same_run(slow, tmp_path):
-    """scene.toml names the dimension, has only parameters that the script takes, and makes the same data file and mesh again; the very same
-    history comes from the script alone."""
+    """scene.toml has the dimension and only parameters of the script, and gives the same data file
+    and mesh. The script alone gives exactly the same history."""
     again = load(str(slow.folder / "scene.toml"))
     assert again.script == SCRIPT and set(again.values) <= set(parameters.names(SCRIPT))
     made = assembly.assemble(again)
@@ -145,7 +157,8 @@ def test_the_scene_as_used_makes_the_same_run(slow, tmp_path):
 
 
 def test_a_ball_alone_is_that_of_its_own_script(tmp_path):
-    """On a rigid plane, of the same mesh sizes, penalty and step, it is ball-axisymmetric's ball to what their meshes differ."""
+    """On a rigid plane, with equal mesh sizes, penalty and step, it agrees with ball-axisymmetric
+    to the difference of the meshes."""
     given = {"law": "neohookean", "nu": 0.3, "accuracy": 0.02, "speed": 2}
     alone = run.run(load("ball-axisymmetric"), given | {"penalty": "auto", "fields": 0}, tmp_path / "alone", estimate=False).summary
     scene = read({"shape": "ball", "radius": 0.05, "position": 0.05, "velocity": -2}, obstacles=[FLOOR | {"point": [0, 0]}], law="neohookean", nu=0.3, accuracy=0.02)
@@ -155,7 +168,8 @@ def test_a_ball_alone_is_that_of_its_own_script(tmp_path):
 
 
 def test_a_ball_falls_through_a_rigid_funnel_with_friction(tmp_path):
-    """A ball falls into a conical bowl under gravity: friction of the radial creep takes energy, and the balance stays closed."""
+    """A ball falls into a cone under gravity: friction on the radial creep takes energy, and the
+    balance closes."""
     scene = read({"shape": "ball", "radius": 0.05, "position": 0.0715, "velocity": -3}, obstacles=[{"kind": "polyline", "vertices": [[0, 0], [1, 1]]}],
                  law="neohookean", accuracy=0.1, gravity=9.81, contact={"friction_static": 0.3}, end_time=4e-3)
     summary = run.run(scene, {}, tmp_path / "funnel", estimate=False).summary
@@ -165,8 +179,11 @@ def test_a_ball_falls_through_a_rigid_funnel_with_friction(tmp_path):
 @pytest.mark.parametrize("wall", [
     {"kind": "implicit", "distance": "y - sqrt(x^2 + 1e-10)"}, {"kind": "polyline", "vertices": [[0, 0], [1, 1]]}])
 def test_a_ball_in_a_funnel_touches_its_wall(tmp_path, wall):
-    """A ball comes down a funnel of 45 degrees: its centre, on the axis, is nearer to the wall than to
-    the tip. It touches the wall when its centre is sqrt(2) radii above the tip, and energy is kept."""
+    """A ball falls into a funnel of 45 degrees. Its centre on the axis is nearer to the wall than
+    to the apex.
+
+    Contact begins when the centre is sqrt(2) radii above the apex, and energy is conserved.
+    """
     ball = {"shape": "ball", "radius": 0.03, "position": 0.05, "velocity": -2}
     given = read(ball, obstacles=(wall,), young=7e6, nu=0.3, density=1000, law="neohookean", accuracy=0.1)
     s = run.run(given, {}, tmp_path / "out", estimate=False).summary

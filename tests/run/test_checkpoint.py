@@ -1,4 +1,5 @@
-"""Checkpoint and restart: a run that is killed goes on from its last checkpoint as if nothing had happened."""
+"""Checkpoint and restart: a killed run continues from its last checkpoint with unchanged results.
+"""
 
 import json
 import re
@@ -19,7 +20,9 @@ from tests.support.cli import call, is_alive, start, wait_for
 from verification.measure import prepared
 
 COARSE = dict(law="neohookean", nu=0.4)
-SCENES = {   # flags of edp/disc-plane.edp, steps between checkpoints, rows of history that the last checkpoint must know
+# Flags of edp/disc-plane.edp, steps between checkpoints, and rows of the history that the last
+# checkpoint must have.
+SCENES = {
     "energy-momentum": (COARSE | dict(accuracy=0.2, angle=60, friction_static=0.7, friction_dynamic=0.5, fields=5), 7, 20),
     "relaxing": (COARSE | dict(accuracy=0.2, relaxation_modulus=2e6, relaxation_time=1e-3, viscosity=5), 7, 20),
     "until rest": (COARSE | dict(accuracy=0.2, loss=2, speed=0, height=0.05, gravity=9.81, until="rest"), 7, 60),
@@ -32,14 +35,16 @@ SCENES = {   # flags of edp/disc-plane.edp, steps between checkpoints, rows of h
     "central-difference": (COARSE | dict(accuracy=0.2, angle=60, friction_static=0.5, friction_dynamic=0.4, slip_velocity=0.1,
                                          dt=3e-5, integrator="central-difference"), 10, 80),
 }
-OFTEN = ("energy-momentum", "relaxing", "bdf2", "central-difference")     # the others keep no more between steps: make robustness
+# The other scenes, run by `make robustness`, keep no further state between steps.
+OFTEN = ("energy-momentum", "relaxing", "bdf2", "central-difference")
 
 
 @pytest.mark.parametrize("name", [name if name in OFTEN else pytest.param(name, marks=pytest.mark.robustness) for name in SCENES])
 def test_half_a_run_and_the_rest_are_the_whole(tmp_path, name):
-    """A run that is killed twice, and goes on each time, equals the run without checkpoints in every column and number.
+    """A run that is killed twice, and continues each time, equals the run without checkpoints in
+    every column and number.
 
-    So checkpoints do not change the answer either.
+    Hence checkpoints do not change the results.
     """
     flags, every, rows = SCENES[name]
     straight = direct(flags, tmp_path / "straight")
@@ -60,11 +65,12 @@ def test_half_a_run_and_the_rest_are_the_whole(tmp_path, name):
 
 BALL = COARSE | dict(mesh_size=0.03, contact_mesh_size=0.015, accuracy=0.2, fields=2, end_time=1e-3, dt=2e-5, checkpoint_every=7)
 SOFT = {"law": "neohookean", "young": 2e6, "nu": 0.4, "density": 1000.0}
-# two balls of revolution on a surface of its own expression
+# Two balls of revolution on a surface given by an expression.
 BALLS = {"dimension": "axisymmetric", "accuracy": 0.2, "end_time": 6e-3, "checkpoint_every": 4, "obstacle": [{"kind": "implicit", "distance": "y + 10*x^2"}],
          "body": [SOFT | {"shape": "ball", "radius": 0.04, "mesh_size": 0.015, "contact_mesh_size": 0.006, "name": name, "position": [0.0, y], "velocity": [0.0, v]}
                   for name, y, v in (("a", 0.0403, -3.0), ("b", 0.1205, -5.0))]}
-# a rigid disc on a pad that is moved from below, a ring with air in it beside it, and a roller that turns
+# A rigid disc on a pad that is moved from below, beside a ring with air inside, and a rotating
+# roller.
 DRIVEN = SOFT | {"accuracy": 0.2, "end_time": 8e-3, "checkpoint_every": 4, "gravity": 9.81, "contact": {"friction_static": 0.4}, "body": [
     {"shape": "disc", "radius": 0.03, "rigid": True, "position": [0.0, 0.0502], "velocity": [0.5, -1.0]},
     {"shape": "rectangle", "width": 0.3, "height": 0.04, "position": [0.0, 0.0],
@@ -79,8 +85,9 @@ DRIVEN = SOFT | {"accuracy": 0.2, "end_time": 8e-3, "checkpoint_every": 4, "grav
     ("bodies", DRIVEN), ("bodies-axisymmetric", BALLS), ("disc-block", COARSE | dict(radius=0.5, speed=10, accuracy=0.02, pairing="pairwise", checkpoint_every=10)),
     ("ball-plane", BALL), ("ball-plane", BALL | dict(angle=60, friction_static=0.5, friction_dynamic=0.4))])
 def test_bodies_go_on_to_the_last_bit(tmp_path, script, flags):
-    """Bodies of revolution, bodies that are rigid, held, driven or filled with air, a disc on a block by pairs of points, and balls in
-    space: what steps have learnt of gaps and of the contact's window goes on with the run."""
+    """The state of gaps and of the active set is restored for bodies of revolution, bodies that are
+    rigid, held, driven or filled with air, a disc on a block in pairwise contact, and balls in
+    space."""
     flags = prepared(tmp_path, flags) if "body" in flags else flags
     out = tmp_path / "out"
     assert direct(flags, tmp_path / "straight", script).communicate(timeout=120)
@@ -91,7 +98,7 @@ def test_bodies_go_on_to_the_last_bit(tmp_path, script, flags):
     assert results.read_summary(out)["resumed_at"] > 0 and (out / "history.csv").read_bytes() == (tmp_path / "straight/history.csv").read_bytes()
 
 
-# ---- the same command
+# ---- repeated command
 
 SET = dict(law="neohookean", nu=0.4, accuracy=0.1, dt=2e-5, fields=2, checkpoint_every=10)
 COMMAND = ("run", "disc-normal", "--quiet", "--checkpoint-every", "10", "--set",
@@ -109,13 +116,13 @@ def children(process: subprocess.Popen) -> list[int]:
 
 @pytest.fixture(scope="module")
 def straight(tmp_path_factory) -> results.Record:
-    """The run that is never killed."""
+    """A run that is never killed."""
     return go(tmp_path_factory.mktemp("straight") / "out", checkpoint_every=0)
 
 
 @pytest.fixture(scope="module")
 def killed(tmp_path_factory) -> Path:
-    """out.part of a run whose driver was killed."""
+    """out.part of a run whose Python process was killed."""
     out = tmp_path_factory.mktemp("killed") / "out"
     process = start(*COMMAND, str(out))
     wait_for(lambda: rows_known(out.with_name("out.part") / "checkpoint") > 100)
@@ -123,8 +130,9 @@ def killed(tmp_path_factory) -> Path:
     process.kill()
     process.communicate()
     assert freefems
-    wait_for(lambda: not any(map(is_alive, freefems)))   # nothing is orphaned
-    time.sleep(0.5)                          # but for a shell that is just putting a checkpoint in its place
+    wait_for(lambda: not any(map(is_alive, freefems)))  # no process is left
+    # A shell may just move a checkpoint to its place.
+    time.sleep(0.5)
     assert not out.exists()
     return out.with_name("out.part")
 
@@ -137,7 +145,8 @@ def out(killed, tmp_path) -> Path:
 
 
 def test_killed_driver(out, straight):
-    """After kill -9 of the driver the same command goes on, and leaves the folder that a straight run leaves."""
+    """After kill -9 of the Python process the same command continues and leaves the folder of a run
+    without interruption."""
     assert call(*COMMAND, str(out)) == (0, "", "")
     result = results.Record(out, results.read_summary(out), False)
     assert result.summary["resumed_at"] > 1.5e-3
@@ -168,7 +177,8 @@ velocity = [0, 3]
 
 @pytest.mark.robustness
 def test_killed_behind_the_run_that_estimates_the_error(tmp_path):
-    """What that run has left is known as of this scene, its moving obstacle too: the same stated errors, and no needless finer run."""
+    """The results of the second run are recognised as those of this scene with its moving obstacle:
+    equal error estimates, no needless finer run."""
     (tmp_path / "rising.toml").write_text(RISING)
     out, stage, command = tmp_path / "out", tmp_path / "out.part", ["run", str(tmp_path / "rising.toml"), "--quiet", "--out"]
     assert call(*command, str(tmp_path / "straight"))[0] == 0
@@ -184,7 +194,7 @@ def test_killed_behind_the_run_that_estimates_the_error(tmp_path):
 
 @pytest.mark.robustness
 def test_killed_freefem(tmp_path, straight):
-    """After kill -9 of FreeFem++ one line says that the same command goes on, and so it does."""
+    """After kill -9 of FreeFem++ one line reports that the same command continues, and it does."""
     out, stage = tmp_path / "out", tmp_path / "out.part"
     process = start(*COMMAND, str(out))
     wait_for(lambda: rows_known(stage / "checkpoint") > 50)
@@ -199,7 +209,7 @@ def test_killed_freefem(tmp_path, straight):
 @pytest.mark.parametrize("changed", [{"speed": 7.5}, {"force": True}, {"mesh_file": True}, {}],
                          ids=["scene", "force", "mesh", "code"])
 def test_another_run_starts_anew(out, straight, monkeypatch, changed):
-    """Another scene, mesh or code, and --force, do not go on from the checkpoint that is there: it goes."""
+    """Another scene, mesh or code, and --force, delete the checkpoint and start again."""
     if "mesh_file" in changed:
         changed = {"mesh_file": straight.folder / "mesh.msh"}
     if not changed:
@@ -210,13 +220,14 @@ def test_another_run_starts_anew(out, straight, monkeypatch, changed):
 
 
 def test_checkpoints_are_not_part_of_the_run(out, straight):
-    """How often checkpoints are made decides neither whether a run goes on nor whether a finished one is reused."""
+    """The frequency of checkpoints affects neither continued nor reused runs."""
     assert go(out, checkpoint_every=0).summary["resumed_at"] > 0
     assert go(out, checkpoint_every=1000).reused
 
 
 def test_failed_run_leaves_no_checkpoint(tmp_path):
-    """A run that fails of itself keeps its files as ever, and no checkpoint from which it would only fail again."""
+    """A run that fails by itself keeps its files, but no checkpoint, from which it would fail
+    again."""
     with pytest.raises(Failure) as error:
         go(tmp_path / "out", law="svk", speed=60, dt=0, checkpoint_every=1)
     assert error.value.code in (11, 12) and error.value.folder == tmp_path / "out"
@@ -227,7 +238,8 @@ def test_failed_run_leaves_no_checkpoint(tmp_path):
 @pytest.mark.few(2)
 @pytest.mark.parametrize("damage", ["empty", "text", "cut"])
 def test_unreadable_checkpoint(out, damage):
-    """A checkpoint that cannot be read ends with exit code 14 and a line that names it and says what to do; it stays."""
+    """An unreadable checkpoint gives exit code 14 and one line with its name and advice. The
+    checkpoint stays."""
     checkpoint = out.with_name("out.part") / "checkpoint"
     content = checkpoint.read_bytes()
     middle = len(content) // 2
@@ -240,7 +252,7 @@ def test_unreadable_checkpoint(out, damage):
 
 
 def test_checkpoint_of_nobody_knows_what(out):
-    """Where it cannot be read whose checkpoint it is, exit code 14 says so."""
+    """If the owner of a checkpoint cannot be read, the run ends with exit code 14."""
     (out.with_name("out.part") / "checkpoint.json").write_text("{")
     with pytest.raises(Unreadable, match="checkpoint.json cannot be read.*delete .*out.part"):
         go(out)
@@ -253,7 +265,8 @@ def test_checkpoint_of_nobody_knows_what(out):
     ({"out": "elsewhere"}, "does not have the .* rows before it"),
 ])
 def test_restart_without_python(out, tmp_path, changed, words):
-    """FreeFem++ itself refuses a checkpoint of another scene or mesh, none at all, or one without its history: exit code 14."""
+    """FreeFem++ itself refuses a checkpoint of another scene or mesh, a missing one, or one without
+    its history: exit code 14."""
     stage = out.with_name("out.part")
     used = json.loads((stage / "checkpoint.json").read_text())["asked"]
     flags = {name: used[name] for name in parameters.names() if name in used}

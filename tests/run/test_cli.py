@@ -1,4 +1,5 @@
-"""The command line: exit codes, one-line errors, interruption, and that `make` lists its targets."""
+"""The command line: exit codes, one-line errors, interruption, and the list of targets of `make`.
+"""
 
 import os
 import pty
@@ -17,7 +18,8 @@ from tests.support.cli import call, is_alive, start, wait_for
 
 
 def test_run_reports_beside_the_published_numbers(fake, tmp_path):
-    """The report shows the key figures, the paper's contact time and what it leaves open, and the pictures."""
+    """The report shows the key results, the contact time of the paper, missing statements of the
+    paper, and the figures."""
     code, out, err = call("run", "disc-normal", "--out", str(tmp_path / "out"))
     assert code == 0 and err == ""
     assert re.search(r"contact time +4.67 ms +4.67 ± 0.02 \(NGSolve", out)
@@ -27,7 +29,8 @@ def test_run_reports_beside_the_published_numbers(fake, tmp_path):
 
 
 def test_a_run_needs_no_matplotlib(fake, tmp_path, monkeypatch, capsys):
-    """Where nothing can be drawn one line says so, and the run is finished and reported all the same; drawn once it can be."""
+    """If drawing is impossible, one line reports it, and the run is finished and reported. It is
+    drawn when possible."""
     with monkeypatch.context() as without:
         without.setitem(sys.modules, "ffimpact.report.drawing", None)
         without.delattr("ffimpact.report.drawing", raising=False)
@@ -39,14 +42,14 @@ def test_a_run_needs_no_matplotlib(fake, tmp_path, monkeypatch, capsys):
 
 
 def test_published_numbers_are_not_shown_beside_another_scene(fake, tmp_path, capsys):
-    """At another speed the paper has no number, and none is shown."""
+    """The paper has no number at another speed, and none is shown."""
     assert main(["run", "disc-normal", "--set", "speed=4", "--set", "fields=0", "--out", str(tmp_path / "out")]) == 0
     out = capsys.readouterr().out
     assert "contact time" in out and "paper" not in out and "NGSolve" not in out
 
 
 def test_quiet_is_quiet(fake, tmp_path):
-    """--quiet prints warnings alone, not even where an earlier run of another scene goes."""
+    """--quiet prints warnings only, not even the new place of an earlier run of another scene."""
     for speed in ("4", "5"):
         words = "run", "disc-normal", "--quiet", "--set", f"speed={speed}", "fields=0", "--out", str(tmp_path / "out")
         code, out, error = call(*words)
@@ -55,7 +58,8 @@ def test_quiet_is_quiet(fake, tmp_path):
 
 
 def test_scripts_that_do_not_answer_are_one_line(monkeypatch, capsys):
-    """Where FreeFem++ is not done in time with what its scripts are asked: a line and exit code 13."""
+    """If FreeFem++ does not finish the description of a scene in time, there is one line and exit
+    code 13."""
     monkeypatch.setattr(describe, "LIMIT", 1e-3)
     assert main(["run", "disc-normal", "--set", "nu=0.43210987"]) == 13
     error = capsys.readouterr().err
@@ -72,7 +76,8 @@ def test_quiet_leaves_warnings(fake, tmp_path, capsys, monkeypatch):
 
 
 def test_failure_of_the_script_is_passed_on(fake, tmp_path):
-    """The script's own line arrives on stderr as it is, with its exit code; stdout says where the files are."""
+    """The line of the script appears on stderr unchanged, with its exit code. stdout has the place
+    of the files."""
     fake("step")
     code, out, err = call("run", "disc-normal", "--out", str(tmp_path / "out"))
     assert code == 11 and err == "ffimpact: step: no convergence at t = 1.2e-3 s, dt = 1e-9 s, residual 3e-4\n"
@@ -81,7 +86,7 @@ def test_failure_of_the_script_is_passed_on(fake, tmp_path):
 
 @pytest.mark.parametrize("number, code", [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
 def test_interrupted_run_leaves_nothing(fake, tmp_path, number, code):
-    """Ctrl-C (or SIGTERM) ends FreeFem++ too and leaves no folder, finished or half-finished."""
+    """Ctrl-C (or SIGTERM) ends FreeFem++, too, and leaves no folder, finished or not."""
     fake("slow")
     process = start("run", "disc-normal", "--out", str(tmp_path / "out"))
     wait_for(fake.starts)
@@ -93,7 +98,8 @@ def test_interrupted_run_leaves_nothing(fake, tmp_path, number, code):
 
 
 def test_progress_is_shown_on_a_terminal_only(fake, tmp_path):
-    """On a terminal one line shows which run it is, of how many, what it is at and the time left of all, from the mesh on; elsewhere there is none."""
+    """On a terminal one line shows the run, the number of runs, the state and the total remaining
+    time, from the mesh on; elsewhere it is not shown."""
     master, slave = pty.openpty()
     termios.tcsetwinsize(slave, (24, 100))
     process = start("run", "disc-normal", "--set", "fields=0", "--out", str(tmp_path / "out"), stderr=slave)
@@ -102,7 +108,7 @@ def test_progress_is_shown_on_a_terminal_only(fake, tmp_path):
     try:
         while block := os.read(master, 10000):
             seen += block.decode()
-    except OSError:   # the other end is closed
+    except OSError:  # the other end is closed
         os.close(master)
     process.communicate(timeout=60)
     assert re.search(r"disc-normal: main run 1 of 2, t = 3.000 ms, 150 steps +55% .*, \d\d:\d\d left", seen) and process.returncode == 0

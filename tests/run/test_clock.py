@@ -1,4 +1,4 @@
-"""The preloaded clock(): the same bytes, half the time; without it nothing changes."""
+"""The preloaded clock(): equal output in half the time. Without it nothing changes."""
 
 import json
 import os
@@ -10,7 +10,8 @@ from ffimpact.freefem import freefem
 
 
 def test_histories_are_equal_to_the_byte_with_and_without_it(tmp_path):
-    """The clock decides nothing; the summary says whether it served; the processor time it counts is that of the process."""
+    """The clock does not affect results. The summary reports its use, and its processor time is
+    that of the process."""
     given, histories = freefem.find().environment, []
     if "libclock.so" not in given.get("LD_PRELOAD", ""):
         pytest.skip("no compiler here")
@@ -26,7 +27,8 @@ def test_histories_are_equal_to_the_byte_with_and_without_it(tmp_path):
 
 
 def test_it_serves_on_a_path_that_cannot_be_preloaded_by_its_name(monkeypatch, tmp_path):
-    """LD_PRELOAD ends names at blanks and colons: there the library is an open file, which goes to every process of the program."""
+    """LD_PRELOAD separates names at blanks and colons. For such paths the library is an open file
+    that all processes of the program inherit."""
     program = freefem.find()
     if "LD_PRELOAD" not in program.environment:
         pytest.skip("no compiler here")

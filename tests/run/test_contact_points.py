@@ -1,4 +1,5 @@
-"""fields/contact.csv: what bears load along the outlines, against the forces of the history."""
+"""fields/contact.csv: the loaded contact points along the outlines, against the forces of the
+history."""
 
 import numpy as np
 import pandas as pd
@@ -20,7 +21,7 @@ CORNER = {"law": "neohookean", "young": 7e6, "nu": 0.4, "density": 1722, "accura
 
 @pytest.fixture(scope="module")
 def ran(tmp_path_factory):
-    """ran(name, **set): the scene, coarse, with 8 snapshots or as set."""
+    """ran(name, **set): a coarse run of the scene with 8 snapshots or the entries `set`."""
     def at(name: str, **given) -> Record:
         folder = tmp_path_factory.mktemp("run")
         wanted = read_scene(CORNER, folder, name) if name == "corner" else scene.load(name)
@@ -29,7 +30,8 @@ def ran(tmp_path_factory):
 
 
 def summed(result: Record) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """Forces [N/m] by instant and partner from contact.csv, and the rows of the history at the same instants."""
+    """Forces [N/m] by instant and counter-body from contact.csv, and the rows of the history at
+    these instants."""
     points = pd.DataFrame(contact.read(result.folder))
     points = points.assign(pressure=points.pressure * points.weight, shear=points.shear * points.weight)
     forces = points.groupby(["t", "partner"])[["pressure", "shear"]].sum().unstack(fill_value=0)
@@ -40,7 +42,8 @@ def summed(result: Record) -> tuple[pd.DataFrame, pd.DataFrame]:
 @pytest.mark.parametrize("name, given", [("disc-normal", {}), ("disc-normal", {"symmetry": "full", "integrator": "newmark"}), ("disc-oblique", {}),
                                          ("disc-oblique", {"degree": 1, "regularization": "tanh"})])
 def test_forces_on_a_plane(ran, name, given):
-    """Pressure and shear times weight add up to the normal and the friction force of the history, at every instant, of the whole body."""
+    """Pressure and shear times weight add up to normal and friction force of the history at every
+    instant, for the whole body."""
     forces, there = summed(ran(name, **given))
     assert len(forces) > 8 and (there.normal_force > 0).all()
     np.testing.assert_allclose(forces.pressure[-1], there.normal_force, rtol=1e-6)
@@ -50,10 +53,11 @@ def test_forces_on_a_plane(ran, name, given):
 @pytest.mark.few(1)
 @pytest.mark.parametrize("given", [{}, {"pairing": "pairwise"}, {"angle": 60, "friction_static": 0.4, "contact_mesh_size": 0.03}])
 def test_both_bodies_bear_the_force_between_them(ran, given):
-    """Of two bodies each carries the normal load once (each takes both roles: to 10 % on coarse elements, shear on finer ones), both together twice of it exactly."""
+    """Each body carries the normal load once (to 10 % on coarse elements, as each has both roles;
+    shear on finer ones), both together exactly twice."""
     result = ran("disc-block", **given)
     forces, there = summed(result)
-    if "pairing" not in given:      # its forces differ in direction
+    if "pairing" not in given:  # pairwise forces differ in direction
         np.testing.assert_allclose(forces.pressure[[1, 2]].sum(axis=1), 2 * there.normal_load, rtol=1e-6)
     shares = pd.DataFrame(contact.read(result.folder)).eval("load = pressure * weight").groupby("body").load.sum()
     assert shares[1] == pytest.approx(shares[2], rel=0.1)
@@ -61,14 +65,18 @@ def test_both_bodies_bear_the_force_between_them(ran, given):
 
 
 def test_projected_pressure_has_the_same_resultant_and_moment(tmp_path):
-    """On the outline's own functions the force is that of the points, to round-off, and its moment as far as the outline is that of
-    the elements."""
+    """In terms of the shape functions of the outline the force equals that of the points to
+    round-off.
+
+    The moment agrees as far as the outline is that of the elements.
+    """
     found = runs.measure("homogeneous", accuracy=0.1, out=tmp_path)
     assert abs(found["resultant"]) < 1e-12 and abs(found["moment"]) < 1e-6
 
 
 def test_two_obstacles_at_once(ran):
-    """A disc in a corner: forces on floor and wall are apart, numbered -1 and -2; the friction of each is within its cone."""
+    """A disc in a corner: forces on floor (-1) and wall (-2) are separate, and the friction of each
+    is within its cone."""
     forces, there = summed(ran("corner"))
     np.testing.assert_allclose(forces.pressure.sum(axis=1), there.normal_force, rtol=1e-6)
     assert {-1, -2} == set(forces.pressure) and (np.abs(forces.shear) <= 0.3000001 * forces.pressure).all(axis=None)
@@ -76,21 +84,22 @@ def test_two_obstacles_at_once(ran):
 
 @pytest.mark.parametrize("symmetry", ["half", "full"])
 def test_arcs(ran, symmetry):
-    """s is the way along the circle, counterclockwise, 0 at the first touch."""
+    """s is the arc length along the circle, counter-clockwise, 0 at the first contact."""
     points = contact.read(ran("disc-normal", symmetry=symmetry).folder)
-    assert np.abs(points.s - 0.05 * np.arcsin(points.X / 0.05)).max() < (0.0015 if symmetry == "full" else 1e-4)   # a Gauss point beside the lowest one
+    # A Gauss point beside the lowest point.
+    assert np.abs(points.s - 0.05 * np.arcsin(points.X / 0.05)).max() < (0.0015 if symmetry == "full" else 1e-4)
     assert (points.partner == -1).all() and (points.body == 1).all()
 
 
 def test_nothing_that_nobody_asked_for(ran):
-    """Without snapshots there is no file; the answers are those of the run with them."""
+    """Without snapshots there is no file, and the results do not change."""
     with_it, without = ran("disc-oblique"), ran("disc-oblique", fields=0)
     assert not (without.folder / "fields").exists()
     assert with_it.summary["impulse"] == without.summary["impulse"]
 
 
 def test_picture(ran):
-    """The figure is drawn where there was contact."""
+    """The figure is drawn if there was contact."""
     result = ran("disc-oblique")
     report.draw(result)
     assert (result.folder / "figures/contact.png").stat().st_size > 10000
@@ -98,7 +107,8 @@ def test_picture(ran):
 
 
 def test_a_profile_is_a_line_alone():
-    """Where the pressure has a projection it is drawn as a line, without its points; where it has none the points are."""
+    """A projected pressure is drawn as a line without its points. Without projection the points are
+    drawn."""
     table = pd.DataFrame({"t": 1e-3, "s": [-1e-3, 0, 1e-3], "pressure": [1e5, 3e5, 1e5], "projected_pressure": [1e5, 2e5, 1e5]}).to_records()
     for line, drawn in (("-", ("-", "")), ("", ("None", "."))):
         figure, axes = plt.subplots()

@@ -1,4 +1,5 @@
-"""contacts.csv: every interval of contact in numbers, on scenes whose numbers are known from momenta, energies and the history."""
+"""contacts.csv: the numbers of every contact interval, in scenes with known momenta, energies and
+histories."""
 
 import numpy as np
 import pandas as pd
@@ -20,21 +21,27 @@ def go(tmp_path, name: str, values: dict) -> tuple[pd.DataFrame, run.Record]:
 
 @pytest.mark.parametrize("given", [{}, {"integrator": "newmark"}, {"integrator": "bdf2"}], ids=str)
 def test_an_interval_adds_up_to_the_history(tmp_path, given):
-    """A single impact is one row: its times, impulses, work and energies are those of summary and history."""
+    """A single impact is one row with the times, impulses, work and energies of summary and
+    history."""
     rows, found = go(tmp_path, "disc-normal", OBLIQUE | given)
     row, s, h = rows.iloc[0], found.summary, found.history
     assert len(rows) == 1 and (row.body, row.partner, row.over) == (1, -1, 1)
     for name, other in {"time": "contact_time", "thresholded_time": "thresholded_contact_time", "start": "contact_start", "impulse": "impulse",
                         "friction_work": "friction_work", "creep_work": "creep_work", "slip_work": "slip_work", "restitution": "restitution"}.items():
         assert row[name] == pytest.approx(s[other], rel=1e-9), name
-    for along in "xy" if given != {"integrator": "bdf2"} else "":      # whose momentum is no sum of impulses
+    # The momentum of bdf2 is not a sum of impulses.
+    for along in "xy" if given != {"integrator": "bdf2"} else "":
         assert row[f"impulse_{along}"] == pytest.approx(h[f"momentum_{along}"][-1] - h[f"momentum_{along}"][0], rel=1e-7)
     assert 0 < row.creep_work < row.friction_work and row.creep_work + row.slip_work == pytest.approx(row.friction_work)
 
 
 def test_restitution_and_angles_of_an_oblique_impact(tmp_path):
-    """Newton's is that of the centre's velocities across the plane, the tangential one that of v_x + spin times R; without gravity Poisson's and
-    the energetic one are the same as Newton's; the impulse along the plane over that across is their ratio."""
+    """Newton's restitution follows from the normal velocities of the centre, the tangential one
+    from v_x + spin times R.
+
+    Without gravity Poisson's and the energetic restitution equal Newton's. The impulse ratio is the
+    tangential over the normal impulse.
+    """
     rows, found = go(tmp_path, "disc-normal", OBLIQUE)
     row, s, h = rows.iloc[0], found.summary, found.history
     last = np.flatnonzero(h["normal_force"] > 0)[-1]
@@ -51,14 +58,16 @@ def test_restitution_and_angles_of_an_oblique_impact(tmp_path):
 
 
 def test_a_touch_on_the_way_up(tmp_path):
-    """A body that vibrates touches again while its centre leaves: a row without approach, without restitution, also where nothing slides."""
+    """A vibrating body comes into contact again while its centre leaves: a row without approach and
+    restitution, also without sliding."""
     rows, found = go(tmp_path, "disc-normal", {"fields": 0, "mesh_size": 0.016, "contact_mesh_size": 0.006, "dt": 2e-5})
     assert len(rows) == found.summary["contact_intervals"] == 2 and rows.approach[1] < 0 < rows.separation[1]
     assert rows.restitution.notna().tolist() == [True, False] and rows.restitution_tangential.isna().all()
 
 
 def test_bounces_are_rows(tmp_path):
-    """Several bounces under gravity are several impacts, one after the other; what a body loses in one is missing in the next approach."""
+    """Several bounces under gravity are consecutive impacts. The energy lost in one is missing in
+    the next approach."""
     rows, _ = go(tmp_path, "disc-normal", COARSE | {"speed": 0, "height": 0.02, "gravity": 9.81, "end_time": 0.5, "accuracy": 0.3})
     assert len(rows) >= 3 and (rows.start[1:].to_numpy() > rows.end[:-1].to_numpy()).all()
     first, second = rows.iloc[0], rows.iloc[1]
@@ -69,8 +78,11 @@ def test_bounces_are_rows(tmp_path):
 
 @pytest.mark.parametrize("pairing", ["closest-point", "pairwise"])
 def test_two_bodies_and_three(tmp_path, pairing):
-    """The disc on the block is one meeting, of body 1 with body 2: impulse and normal force are resultants, what each has of momentum, and less than the sum of
-    magnitudes; the acceleration that is compared with other runs is the disc's."""
+    """The disc on the block is one contact pair of bodies 1 and 2.
+
+    Impulse and normal force are resultants, equal to changes of momentum and less than the sum of
+    magnitudes. The acceleration that is compared with other runs is that of the disc.
+    """
     rows, found = go(tmp_path, "disc-block", {"law": "neohookean", "accuracy": 0.3, "fields": 0, "pairing": pairing})
     assert (rows.body == 1).all() and (rows.partner == 2).all()
     assert rows.impulse_y.sum() == pytest.approx(found.summary["impulse_y_1"], rel=1e-9)
@@ -87,7 +99,8 @@ def test_two_bodies_and_three(tmp_path, pairing):
 
 
 def test_meetings_are_told_apart(tmp_path):
-    """Three discs in a row: the first hits the second, the second the third; each pair has its row, and the run has no restitution of its own."""
+    """Three discs in a row: the first hits the second, the second the third. Each pair has a row,
+    and the run has no restitution."""
     rows, found = go(tmp_path, "three-in-a-row", {"accuracy": 0.3, "fields": 0})
     assert set(zip(rows.body, rows.partner)) == {(1, 2), (2, 3)}
     per = rows.groupby(["body", "partner"])[["impulse_x", "impulse_y"]].sum()
@@ -97,14 +110,15 @@ def test_meetings_are_told_apart(tmp_path):
 
 
 def test_of_a_ball(tmp_path):
-    """Bodies of revolution and three dimensions have the same columns; the axis takes no impulse along the plane."""
+    """Bodies of revolution and in three dimensions have the same columns. Bodies of revolution have
+    no tangential impulse."""
     rows, found = go(tmp_path, "ball-axisymmetric", COARSE)
     assert rows.iloc[0].impulse_y == pytest.approx(found.summary["impulse"]) and rows.iloc[0].impulse_x == 0
     assert rows.iloc[0].restitution == pytest.approx(found.summary["rebound_vy"] / 8)
 
 
 def test_in_contact_at_the_end(tmp_path):
-    """What is not over says so, and ends with the run."""
+    """An interval that is not over is marked and ends with the run."""
     rows, _ = go(tmp_path, "disc-normal", COARSE | {"end_time": 1e-3})
     assert rows.over.tolist() == [0] and rows.end.tolist() == [1e-3]
     rows, found = go(tmp_path, "disc-normal", COARSE | {"end_time": 1e-3, "height": 1.0})
@@ -112,7 +126,8 @@ def test_in_contact_at_the_end(tmp_path):
 
 
 def test_bounces_are_drawn(tmp_path):
-    """Where a meeting has several impacts there is a figure of restitution; grazing intervals are none; a damaged table is said."""
+    """A contact pair with several impacts has a figure of restitution without grazing intervals. A
+    damaged table is reported."""
     rows, found = go(tmp_path, "disc-normal", COARSE | {"speed": 0, "height": 0.02, "gravity": 9.81, "end_time": 0.25, "accuracy": 0.3})
     impacts.plt.close(figure := impacts.draw(rows.to_records(), ["body"], ["plane"]))
     assert figure.axes[0].get_ylabel() == "restitution" and len(figure.axes[0].lines[0].get_xdata()) == len(rows)

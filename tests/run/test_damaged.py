@@ -1,4 +1,8 @@
-"""Results that were damaged: one line that names the file, exit code 14, on every command that reads them; never a traceback, never half a table in silence."""
+"""Damaged results: every command that reads them prints one line with the file and ends with exit
+code 14.
+
+There is never a traceback nor an incomplete table without a message.
+"""
 
 import json
 import os
@@ -18,7 +22,7 @@ FILES = ("scene.toml", "history.csv", "contacts.csv", "modes.csv", "fields/conta
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
-    """A small run that writes all of these."""
+    """A small run that writes all of these files."""
     folder = tmp_path_factory.mktemp("whole") / "run"
     found = run.run(scene.load("disc-oblique"), {"accuracy": 0.4, "fields": 3, "modes": 4}, folder)
     report.draw(found)
@@ -27,7 +31,7 @@ def whole(tmp_path_factory):
 
 
 def damages(content: bytes, seed: int) -> dict[str, bytes]:
-    """What becomes of a file."""
+    """Damaged versions of a file."""
     rng, lines = np.random.default_rng(seed), content.splitlines(keepends=True)
     cut = [content[:n] for n in (0, 1, len(content) // 3, len(content) - 1, *rng.integers(1, len(content), 4))]
     names = lines[0].split(b",")
@@ -42,7 +46,7 @@ def damages(content: bytes, seed: int) -> dict[str, bytes]:
 
 
 def refused(capsys, name: str, *arguments: str) -> str:
-    """The line of a command that does not take a result."""
+    """The line of a command that refuses a result."""
     capsys.readouterr()
     code, said = program.main(list(arguments)), capsys.readouterr().err
     assert code == 14 and said.count("\n") == 1 and said.startswith("ffimpact: ") and name in said and len(said) < 600, said
@@ -52,7 +56,8 @@ def refused(capsys, name: str, *arguments: str) -> str:
 @pytest.mark.few(2)
 @pytest.mark.parametrize("name", FILES)
 def test_a_damaged_result_is_one_line(whole, tmp_path, capsys, name):
-    """Every damage of every file that is read again is refused by `figures` and by `run`, which names the file and what to do."""
+    """`figures` and `run` refuse every damaged version of every file that is read again. The line
+    has the file and advice."""
     folder = tmp_path / "run"
     shutil.copytree(whole, folder)
     content = (folder / name).read_bytes()
@@ -67,7 +72,8 @@ def test_a_damaged_result_is_one_line(whole, tmp_path, capsys, name):
 
 
 def test_what_is_no_result_is_one_line(whole, tmp_path, capsys):
-    """A folder that is none of a run, a pipe or a folder in the place of a file: one line at once, and no advice to delete what is not ours."""
+    """A folder without a run, or a pipe or folder in place of a file, gives one line at once,
+    without advice to delete foreign files."""
     assert "--force" not in refused(capsys, "summary.json", "figures", str(tmp_path)) and "delete" not in refused(capsys, "nowhere", "figures", "nowhere")
     shutil.copytree(whole, tmp_path / "run")
     for k, name in enumerate(FILES):
@@ -81,7 +87,8 @@ def test_what_is_no_result_is_one_line(whole, tmp_path, capsys):
 @pytest.mark.robustness
 @pytest.mark.parametrize("name", FILES[:-1])
 def test_a_damaged_result_of_a_direct_run(whole, tmp_path, capsys, monkeypatch, name):
-    """Without Python nothing says what the files were: what can still be told from them is refused in one line, and nothing else but one line is said."""
+    """Without Python the original files are unknown. Detectable damage is refused in one line, and
+    there is no other output."""
     monkeypatch.setattr(Figure, "savefig", lambda *_, **__: None)
     folder = tmp_path / "run"
     shutil.copytree(whole, folder)

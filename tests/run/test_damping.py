@@ -1,4 +1,7 @@
-"""Kelvin-Voigt damping and a Maxwell branch (edp/core/law/damping.idp, relaxation.idp): exact decays, objective, counted exactly, in scripts and kernels."""
+"""Kelvin-Voigt damping and a Maxwell branch (edp/core/law/damping.idp, relaxation.idp).
+
+Tested are exact decay, objectivity and the exact energy balance, in scripts and kernels.
+"""
 
 import numpy as np
 import pytest
@@ -13,7 +16,8 @@ from verification.measure import bodies, disc, measure
 IMPACT = {"law": "neohookean", "nu": 0.4, "speed": 4, "angle": 60, "friction_static": 0.3, "accuracy": 0.1}
 NU = 0.3
 ETA = 100.0
-PROPORTIONAL = {"nu": NU, "viscosity": ETA, "bulk_viscosity": ETA * 2 * NU / (1 - 2 * NU)}      # zeta/lambda = eta/mu: eta_E/E, too
+# Zeta/lambda = eta/mu, hence the same ratio eta_E/E.
+PROPORTIONAL = {"nu": NU, "viscosity": ETA, "bulk_viscosity": ETA * 2 * NU / (1 - 2 * NU)}
 MODES = {"extension": ("damped-mode", {"nu": 0.0, "loss": 0.1}), "with volume": ("damped-mode", {"law": "neohookean"} | PROPORTIONAL),
          "midpoint": ("damped-mode", {"integrator": "midpoint"} | PROPORTIONAL),
          "shear": ("damped-mode-3d", {"symmetry": "full", "nu": NU, "loss": 0.1, "mesh_size": 0.03, "contact_mesh_size": 0.03})}
@@ -21,8 +25,12 @@ MODES = {"extension": ("damped-mode", {"nu": 0.0, "loss": 0.1}), "with volume": 
 
 @pytest.mark.parametrize("name", MODES)
 def test_a_mode_decays_as_theory_has_it(name):
-    """A free body's first mode decays as exp(-eta omega^2 t/(2 mu)) to 1 %, in shear whatever zeta is; each step takes energy, the balance closes; rotations take
-    nothing, and turn neither stress nor work."""
+    """The first mode of a free body decays as exp(-eta omega^2 t/(2 mu)) to 1 %, in shear for any
+    zeta.
+
+    Each step takes energy, and the balance closes. Rotations take no energy and change neither
+    stress nor work.
+    """
     script, flags = MODES[name]
     found = measure(script, **{"mesh_size": 0.015, "contact_mesh_size": 0.015, "tolerance": 1e-12} | flags)
     assert found["state"] == 0 and found["decay"] == pytest.approx(1, abs=0.01)
@@ -34,8 +42,12 @@ def test_a_mode_decays_as_theory_has_it(name):
 @pytest.mark.parametrize("name", ["extension", "shear", "midpoint"])
 @pytest.mark.parametrize("relaxation", [0.3, 1.0, 3.0])
 def test_a_mode_of_the_standard_linear_solid_is_the_exact_one(name, relaxation):
-    """A free body's first mode, nu = 0 or in shear, with G = 0.4 mu that relaxes in `relaxation`/omega: its coordinate is that of s^2 + omega^2 (1 + G/mu s tau/(1 + s tau)) = 0
-    to 1 %, after three periods; each step takes energy, the balance closes; rotations turn nothing."""
+    """The first mode of a free body, for nu = 0 or in shear, with G = 0.4 mu that relaxes within
+    `relaxation`/omega.
+
+    Its coordinate satisfies s^2 + omega^2 (1 + G/mu s tau/(1 + s tau)) = 0 to 1 % after three
+    periods. Each step takes energy, the balance closes, and rotations change nothing.
+    """
     script = "damped-mode-3d" if name == "shear" else "damped-mode"
     size, nu = (0.03, NU) if name == "shear" else (0.015, 0.0)
     flags = {"nu": nu, "mesh_size": size, "contact_mesh_size": size, "tolerance": 1e-12, "law": "neohookean"}
@@ -45,7 +57,8 @@ def test_a_mode_of_the_standard_linear_solid_is_the_exact_one(name, relaxation):
     found = measure(script, **flags | {"relaxation_modulus": 0.4 * mu, "relaxation_time": tau})
     omega, t = found["omega"], found["seconds"]
     rates = np.roots([tau, 1, 1.4 * omega**2 * tau, omega**2])
-    weights = np.linalg.solve([rates**0, rates, rates**2], [0, 1, 0])      # x = 0, x' = 1, x'' = 0 at the start, the branch at rest
+    # x = 0, x' = 1, x'' = 0 at the start, with the branch at rest.
+    weights = np.linalg.solve([rates**0, rates, rates**2], [0, 1, 0])
     assert found["state"] == 0 and omega * found["place"] == pytest.approx((weights @ np.exp(rates * t)).real * omega, abs=0.01)
     assert found["balance"] < (1e-6 if name == "midpoint" else 1e-9) and found["least"] > 0
     assert found["turned"] < 1e-12 and found["objective"] < 1e-12
@@ -53,7 +66,8 @@ def test_a_mode_of_the_standard_linear_solid_is_the_exact_one(name, relaxation):
 
 @pytest.mark.parametrize("nu", [0.0, 0.45])
 def test_loss_is_that_of_the_first_mode(nu):
-    """`loss` is eta omega/mu at the first mode of the disc, and the scene as used says the viscosity."""
+    """`loss` is eta omega/mu at the first mode of the disc, and the scene as used has the
+    viscosity."""
     found = measure("damped-mode", nu=nu, loss=0.1, mesh_size=0.015, contact_mesh_size=0.015, tolerance=1e-12)
     assert found["tangent"] == pytest.approx(0.1, rel=0.01)
     mu, rho, radius = 7e6 / (2 * (1 + nu)), 1722, 0.05
@@ -65,7 +79,8 @@ def test_loss_is_that_of_the_first_mode(nu):
                                            ("ball-plane", {"end_time": 5e-4})])
 @pytest.mark.parametrize("damping", [{"viscosity": 20, "bulk_viscosity": 10}, {"relaxation_modulus": 2e6, "relaxation_time": 1e-3}], ids=["viscous", "relaxing"])
 def test_an_impact_with_friction_closes_its_balance(tmp_path, script, flags, damping):
-    """viscous_work never falls, is in the balance to 1e-9, and within the contact what contacts.csv has; with kernels as without."""
+    """`viscous_work` never falls, closes the balance to 1e-9, and during contact equals that of
+    contacts.csv, with and without kernels."""
     given = {name: value for name, value in (IMPACT | damping | flags).items() if value is not None}
     run, scripted = (disc(tmp_path / without, script, **given | {"tolerance": 1e-14}, without=without) for without in ("none", "kernels"))
     work = run.history["viscous_work"]
@@ -79,14 +94,16 @@ def test_an_impact_with_friction_closes_its_balance(tmp_path, script, flags, dam
 
 
 def test_restitution_falls_with_viscosity(tmp_path):
-    """The more viscous, the less rebound; without viscosity nothing is said of it but that it was skipped."""
+    """More viscosity gives less rebound. Without viscosity the run only reports that it was
+    skipped."""
     runs = [disc(tmp_path / str(eta), **IMPACT | {"angle": 90, "friction_static": 0}, viscosity=eta) for eta in (0, 20, 80, 300)]
     assert (np.diff([run.summary["restitution"] for run in runs]) < -1e-3).all()
     assert "viscous_work" not in runs[0].summary and "viscous_work" not in runs[0].history and "damping" in runs[0].summary["skipped"]
 
 
 def test_steps_go_with_a_short_relaxation(tmp_path):
-    """Adaptive steps are no longer than a relaxation_time asks for: what the branch takes is that of steps of a twentieth of it, to the accuracy."""
+    """Adaptive steps are short enough for the relaxation_time: the work of the branch agrees with
+    steps of a twentieth of it, to the accuracy."""
     given = {"law": "neohookean", "nu": 0.3, "speed": 6, "accuracy": 0.1, "relaxation_modulus": 2.7e6, "relaxation_time": 1e-4}
     found, fine = (disc(tmp_path / str(dt), "ball-axisymmetric", **given, dt=dt).summary for dt in (0, 5e-6))
     assert found["viscous_work"] == pytest.approx(fine["viscous_work"], rel=0.1) and not any(said.startswith("relaxation") for said in found["warnings"])
@@ -101,7 +118,8 @@ def scene(**more):
 
 @pytest.mark.parametrize("damping", [{"viscosity": 20}, {"relaxation_modulus": 2e6, "relaxation_time": 1e-3}], ids=["viscous", "relaxing"])
 def test_each_body_has_its_own(tmp_path, damping):
-    """Of two bodies one is damped: its work is its own, and all of it; the columns are those the scene knows of."""
+    """One of two bodies is damped. Its work is the total work, and the columns are those that the
+    scene announces."""
     run = bodies(tmp_path, scene(**damping))
     assert run.summary["viscous_work_1"] == run.summary["viscous_work"] > 0 == run.summary["viscous_work_2"]
     assert run.summary["energy_drift"] < 1e-9 and list(run.history) == read(scene(**damping), ROOT, "scene").columns
@@ -109,8 +127,11 @@ def test_each_body_has_its_own(tmp_path, damping):
 
 
 def test_a_body_has_the_viscosity_of_its_loss():
-    """A loss becomes the viscosity of a disc as thick, told in the scene as used, which is read again as the same; a body's own loss stands before a viscosity
-    at the top."""
+    """A loss becomes the viscosity of a disc of equal thickness, in the scene as used, which reads
+    back equal.
+
+    The loss of a body has priority over a viscosity at the top.
+    """
     made = assembly.assemble(read({"viscosity": 3.0} | scene(loss=0.1), ROOT, "scene"))
     damped, elastic = made.used["body"]
     assert damped["viscosity"] == pytest.approx(describe({"nu": 0.4, "loss": 0.1})["used"]["viscosity"]) and elastic["viscosity"] == 0
@@ -123,7 +144,8 @@ def test_a_body_has_the_viscosity_of_its_loss():
                                          ({"relaxation_modulus": 1e6}, "relaxation_time: 0 s with relaxation_modulus 1.*accepted: both above 0, or none"),
                                          ({"relaxation_time": 1e-3}, "accepted: both above 0, or none")])
 def test_bad_values_are_refused(flags, said):
-    """Negative, no number, too large, two that contradict each other: one line with what is accepted, of a disc and of a body."""
+    """Negative, invalid, too large or contradictory values give one line with what is accepted, for
+    a disc and for a body."""
     with pytest.raises(BadInput, match=said):
         describe(flags)
     with pytest.raises(BadInput, match=said):
@@ -131,6 +153,6 @@ def test_bad_values_are_refused(flags, said):
 
 
 def test_integrators_that_would_not_count_it_are_refused(tmp_path):
-    """Damping is of the integrators that take forces in the middle of a step."""
+    """Damping requires an integrator that evaluates forces in the middle of a step."""
     with pytest.raises(Exception, match="integrator: newmark takes no viscosity"):
         disc(tmp_path, viscosity=1, integrator="newmark")

@@ -1,4 +1,5 @@
-"""Restitution, angles and slip of bodies that spin, and which of a run's numbers have no meaning and are not written."""
+"""Restitution, angles and slip of spinning bodies, and results that are omitted because they have
+no meaning."""
 
 import json
 import math
@@ -27,7 +28,8 @@ def go(out, name: str, values: dict | None = None, mesh_file=None) -> tuple[pd.S
 @pytest.mark.few(1)
 @pytest.mark.parametrize("name, speed, spin", [("disc-normal", 1, 100), ("ball", 3, 400)])
 def test_spin_has_no_part_in_restitution(tmp_path, name, speed, spin):
-    """A round body without friction: approach and all three restitutions are the centre's, whatever its spin; the slip is that of the rim."""
+    """For a round body without friction, approach and all three restitutions are those of the
+    centre for any spin. The slip is that of the rim."""
     row, found = go(tmp_path / "out", name, COARSE | {"speed": speed, "spin": spin, "height": 0.01})
     e = found.summary["rebound_vy"] / speed
     assert row.approach == pytest.approx(speed, rel=1e-9) and row.separation == pytest.approx(e * speed, rel=1e-6)
@@ -37,7 +39,8 @@ def test_spin_has_no_part_in_restitution(tmp_path, name, speed, spin):
 
 
 def test_spin_of_two_discs(tmp_path):
-    """Two discs that meet off their centres and spin: the approach is that of their centres along the line between them at the touch."""
+    """Two spinning discs collide off centre: the approach velocity is that of the centres along the
+    line between them at contact."""
     text = (ROOT / "orchestrate/ffimpact/scenes/two-discs.toml").read_text().replace("friction_static = 0.3", "friction_static = 0")
     path = tmp_path / "spinning.toml"
     path.write_text("accuracy = 0.1\n" + text.replace("velocity = [3, 0]", "velocity = [3, 0]\nspin = 200").replace("velocity = [-3, 0]", "velocity = [-3, 0]\nspin = 150"))
@@ -47,15 +50,16 @@ def test_spin_of_two_discs(tmp_path):
 
 
 def test_no_reverse_slip_of_many_bodies(tmp_path):
-    """In a scene of bodies no direction is the first one: what slides back is not measured, and no number stands for it."""
+    """A scene of bodies has no main direction: reverse slip is not measured and its entry is empty.
+    """
     _, found = go(tmp_path / "out", "two-discs", {"accuracy": 0.3, "fields": 0})
     assert found.summary["sliding_time"] > 0 and found.summary["reverse_slip_time"] is None
     assert "sliding_fraction" in found.history and "reverse_fraction" not in found.history
 
 
 def test_circle_about_another_point(tmp_path):
-    """A disc with a hole beside its centre, which has turned on its way down: the point of touch is below the circle's centre, which goes round the
-    centre of mass."""
+    """A disc with a hole beside its centre has rotated before contact. The contact point is below
+    the centre of the circle, which rotates about the centre of mass."""
     hole, beside = 0.02, 0.025
     with mesh.gmsh_session() as gmsh:
         gmsh.option.setNumber("Mesh.MeshSizeMax", 0.008)
@@ -85,28 +89,33 @@ def of(tmp_path, text: str, values: dict | None = None) -> tuple[pd.DataFrame, r
 
 
 def test_a_corner_has_the_normal_of_its_contact(tmp_path):
-    """Of a square that comes down on a block with a corner, whose two faces are touched one after the other, the approach is the speed and Newton's restitution
-    that of Poisson."""
+    """A square lands on a block with a corner, whose two faces come into contact one after the
+    other.
+
+    The approach velocity is the speed, and Newton's restitution equals Poisson's.
+    """
     rows, found = of(tmp_path, SQUARE.format(angle=45, y=0.0731, v=-2) + BLOCK)
     assert rows.approach[0] == pytest.approx(2, rel=1e-3) and rows.restitution[0] == pytest.approx(rows.restitution_poisson[0], rel=5e-3)
     assert rows.restitution_energetic[0] == pytest.approx(rows.restitution_poisson[0], rel=5e-3) and found.summary["restitution"] == pytest.approx(rows.restitution[0])
 
 
 def test_a_body_at_rest_has_no_restitution(tmp_path):
-    """A square that lies on the floor, pressed by its weight, approaches with round-off, and never leaves."""
+    """A square on the floor under its weight approaches with round-off and never leaves."""
     rows, found = of(tmp_path, SQUARE.format(angle=0, y=0.05, v=-1e-13) + FLOOR, {"gravity": 9.81, "end_time": 0.01, "body.1.contact_mesh_size": 0.01})
     assert len(rows) == 1 and rows.loc[0, [*ABOUT_AN_IMPACT, "restitution_poisson", "restitution_energetic", "separation", "angle_in"]].isna().all()
     assert all(found.summary[name] is None for name in (*ABOUT_AN_IMPACT, "angle_in")) and found.summary["impulse_ratio"] == 0
 
 
 def test_two_corners_are_two_impacts(tmp_path):
-    """A square on one corner, then on the other: each impact has its restitution, the run of both has none."""
+    """A square lands on one corner, then on the other: each impact has its restitution, the run has
+    none."""
     rows, found = of(tmp_path, SQUARE.format(angle=20, y=0.08, v=-2) + FLOOR, {"end_time": 0.045})
     assert 0.5 < rows.restitution[0] < 1 and rows.approach[1] > 0.3 and found.summary["restitution"] is found.summary["angle_out"] is None
 
 
 def test_a_head_on_hit_has_no_tangential_restitution(tmp_path):
-    """What two discs slide that meet head-on is of their meshes; without friction no impulse is along the contact, also where both drift."""
+    """In a central impact of two discs the meshes cause the slip. Without friction there is no
+    tangential impulse, also if both drift."""
     discs = [DISC.format(name=name, x=x, v=v, across=40) for name, x, v in (("left", -0.0502, 3), ("right", 0.0502, -3))]
     rows, found = of(tmp_path, "".join(discs), {"contact.friction_static": 0.3})
     assert rows.restitution_tangential.isna().all() and found.summary["restitution_tangential"] is None and 0.5 < found.summary["restitution"] <= 1
@@ -116,7 +125,8 @@ def test_a_head_on_hit_has_no_tangential_restitution(tmp_path):
 
 @pytest.mark.parametrize("spin", [50, 60])
 def test_angles_of_a_body_that_comes_along_the_normal(tmp_path, spin):
-    """Its centre has no way along the plane before, but for round-off of either sign: the angle after is to the side that it leaves to."""
+    """The tangential velocity of its centre before the impact is round-off of either sign. The
+    angle afterwards is on the side to which it leaves."""
     flags = f"-law neohookean -speed 4 -spin {spin} -friction_static 0.3 -accuracy 0.1 -fields 0 -out out".split()
     freefem.find().call(ROOT / "edp/disc-plane.edp", *flags, cwd=tmp_path, check=True)
     row, s = pd.read_csv(tmp_path / "out/contacts.csv").iloc[0], json.loads((tmp_path / "out/summary.json").read_text())
@@ -125,7 +135,8 @@ def test_angles_of_a_body_that_comes_along_the_normal(tmp_path, spin):
 
 
 def test_reverse_slip_is_the_same_elsewhere(tmp_path):
-    """A disc that is five metres lower in its file, and lifted onto the plane, slides back for as long as at home."""
+    """A disc that is five metres lower in its file, and lifted to the plane, slips backwards for
+    the same time."""
     here = mesh.disc(RADIUS, 0.016, 0.006, False)
     times = []
     for name, below in (("here", 0), ("lower", 5)):
@@ -136,7 +147,8 @@ def test_reverse_slip_is_the_same_elsewhere(tmp_path):
 
 
 def test_a_spin_about_x_strains_too(tmp_path):
-    """The flight to the touch is of an unstressed body: what its spin would strain it by is said, about whichever axis."""
+    """The flight to contact is that of an unstressed body. The strain that its spin would cause is
+    reported for any axis."""
     ball = {"shape": "ball", "radius": 0.05, "position": [0, 0.06, 0], "velocity": [0, -1, 0], "spin": [700, 0, 0], "mesh_size": 0.03, "contact_mesh_size": 0.02}
     given = {"dimension": "3d", "law": "neohookean", "young": 7e6, "nu": 0.45, "density": 1722, "accuracy": 0.2, "degree": 1, "dt": 5e-5, "end_time": 0.0107,
              "body": [ball], "obstacle": [{"kind": "plane", "point": [0, 0, 0], "normal": [0, 1, 0]}]}

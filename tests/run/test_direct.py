@@ -1,4 +1,5 @@
-"""FreeFem++ without Python: its folder is as safe as Python's, and nothing that the user gives reaches a shell as a command."""
+"""FreeFem++ without Python: its result folder is as safe, and no input reaches a shell as a
+command."""
 
 import resource
 import signal
@@ -18,7 +19,8 @@ from ffimpact.output import results
 from ffimpact.running import run
 from tests.support.direct import COARSE, call, start
 
-ODD = "it's; touch pwned #$(touch pwned)`touch pwned`\"\\ *"     # a name that a shell would make something of
+# A name with special characters of shells.
+ODD = "it's; touch pwned #$(touch pwned)`touch pwned`\"\\ *"
 
 
 def names(folder: Path) -> set[str]:
@@ -31,7 +33,8 @@ RESULTS = {"scene.toml", "history.csv", "contacts.csv", "summary.json"}
 @pytest.mark.few(2)
 @pytest.mark.parametrize("name", [ODD, "-out", "-", "--", "a b/c d", "é", "a\nb"])
 def test_any_name_will_do(tmp_path, name):
-    """Folders, meshes and checkpoints may be called what they want: the run works, and no command in a name is run."""
+    """Folders, meshes and checkpoints may have any name: the run works, and no command in a name is
+    executed."""
     flags = ("-checkpoint_every", "5", "-fields", "2")
     given = name if name != "-out" else "./-out"
     assert call(*COARSE, *flags, "-out", given, cwd=tmp_path)[0::2] == (0, "")
@@ -48,7 +51,7 @@ def test_any_name_will_do(tmp_path, name):
 
 
 def test_any_name_will_do_for_python(tmp_path):
-    """The same through Python, which hands its paths to the script."""
+    """The same through Python, which passes its paths to the script."""
     result = run.run(scene.load("disc-normal"), {"accuracy": 0.4, "law": "neohookean", "nu": 0.4, "checkpoint_every": 5}, tmp_path / ODD)
     assert result.summary["status"] == "ok" and not list(tmp_path.rglob("pwned"))
 
@@ -91,11 +94,13 @@ def test_bad_input_leaves_nothing(tmp_path):
 @pytest.mark.few(1)
 @pytest.mark.parametrize("size", [0, 200, 3000, 6000])
 def test_full_disk(tmp_path, size):
-    """Where files cannot grow as they have to, the exit code is 14 with one line, nothing finished is there, and an earlier result stays."""
+    """If files cannot grow, the exit code is 14 with one line, there are no finished results, and
+    an earlier result stays."""
     assert call(*COARSE, "-out", "out", cwd=tmp_path)[0] == 0
     before = {name: (tmp_path / name).read_bytes() for name in names(tmp_path)}
 
-    def small_files():   # as a full disk: a write fails, without the signal
+    # As on a full disk, a write fails without the signal.
+    def small_files():
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
         resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
     for flags in (("-out", "new/out"), ("-out", "new/out", "-fields", "2")):
@@ -107,8 +112,11 @@ def test_full_disk(tmp_path, size):
 @pytest.mark.few(1)
 @pytest.mark.parametrize("files", [2, 3, 4, 5, 6, 8, 10])
 def test_full_disk_of_its_own(tmp_path, files):
-    """On a disk that takes so many files and no more, whichever of them is the first that does not fit: exit code 14 with one line, and
-    with more room the run goes on from its last checkpoint, or from the start."""
+    """On a disk that accepts a limited number of files, whichever file is the first that does not
+    fit: exit code 14 with one line.
+
+    With more space the run continues from its last checkpoint, or from the start.
+    """
     program, disk = freefem.find(), tmp_path / "disk"
     disk.mkdir()
     words = program.words(parameters.ROOT / "edp/disc-plane.edp", *COARSE, "-fields", "4", "-checkpoint_every", "10", "-out", "disk/out")
@@ -130,7 +138,7 @@ def test_full_disk_of_its_own(tmp_path, files):
      "nu": ("00.1234567890123", 0.1234567890123), "checkpoint_every": ("1E3", 1000)},
     {"speed": (".5", 0.5), "spin": ("-00012.3456789", -12.3456789)}, {"speed": ("007", 7)}, {"speed": ("+007.1234567890123", 7.1234567890123)}])
 def test_numbers_are_written_as_toml(tmp_path, given):
-    """However a number is written as a flag, scene.toml has it in TOML's way, to the last digit."""
+    """scene.toml has numbers of flags in TOML's format, to the last digit."""
     assert call("-accuracy", "0.4", "-law", "neohookean", "-end_time", "1e-5", *freefem.words_of({name: text for name, (text, _) in given.items()}), "-out", "out",
                 cwd=tmp_path)[0] == 0
     found = tomllib.loads((tmp_path / "out/scene.toml").read_text())
@@ -139,8 +147,12 @@ def test_numbers_are_written_as_toml(tmp_path, given):
 
 @pytest.mark.parametrize("script, accuracy", [("disc-plane", "0.01"), ("disc-block", "0.03")])
 def test_a_stiff_penalty_does_not_cost(tmp_path, script, accuracy):
-    """Ten and a hundred times the penalty of `auto` take as many steps and at most 1.5 times the iterations: steps do not follow single
-    points that bounce. Impulse and rebound stay within the accuracy, the energy balance closed."""
+    """With ten and a hundred times the automatic penalty there are as many steps and at most 1.5
+    times as many iterations.
+
+    Steps do not follow single points that bounce. Impulse and rebound stay within the accuracy, and
+    the energy balance closes.
+    """
     ends = {}
     for times in (1, 10, 100):
         out = tmp_path / str(times)

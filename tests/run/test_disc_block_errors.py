@@ -1,4 +1,5 @@
-"""The disc on the free block with error bars: answers of a summary, bars, checks and comparisons that can fail, the page's text, a coarse real run."""
+"""The disc on the free block with error bars: results, error bars, checks and comparisons that can
+fail, text of the page, a coarse run."""
 
 import math
 
@@ -15,7 +16,8 @@ from tests.support.disc_block_errors import tables
     ({"exit": 11, "message": "no step"}, "no answer: no step")])
 @pytest.mark.parametrize("which", [1, 2])
 def test_checks_fail_on_a_run_that_is_wrong(monkeypatch, tmp_path, change, word, which):
-    """Each check names the run and what is wrong with it, of the reference too; the page says whether the requirement holds."""
+    """Each check reports the run and the error, also for the reference. The page has the verdict on
+    the requirement."""
     table = tables(monkeypatch, tmp_path, *[{}] * which, change)
     said = block.violations(table)
     assert any(word in sentence for sentence in said) if word else not said
@@ -25,7 +27,7 @@ def test_checks_fail_on_a_run_that_is_wrong(monkeypatch, tmp_path, change, word,
 
 
 def test_a_coarse_real_run(tmp_path, monkeypatch, capsys):
-    """One case at an accuracy of 0.1: every check holds, tables and page are written."""
+    """One case at an accuracy of 0.1 passes every check and writes tables and page."""
     monkeypatch.setattr(peers, "find", lambda _: None)
     assert block.main(["--cases", "1", "--accuracy", "0.1", "--out", str(tmp_path / "out"), "--page", str(tmp_path / "page.md")]) == 0
     printed, page = capsys.readouterr().out, (tmp_path / "page.md").read_text()

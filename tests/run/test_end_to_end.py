@@ -1,4 +1,5 @@
-"""disc-normal with the real FreeFem++: what the folder holds, and that both ways in say the same."""
+"""disc-normal with the real FreeFem++: content of the result folder, and agreement of runs with and
+without Python."""
 
 import json
 import re
@@ -30,23 +31,24 @@ def result(tmp_path_factory):
 
 
 def test_folder_holds_what_the_contract_says(result):
-    """scene.toml has every parameter, figures/ every picture of such a run."""
+    """scene.toml has every parameter, figures/ every figure of such a run."""
     assert set(parameters.names("disc-plane")) <= set(result.scene)
     assert {p.name for p in (result.folder / "figures").iterdir()} == {
         "contact.png", "energies.png", "force.png", "shapes.png", "velocity.png"}
 
 
 def test_scripts_describe_what_they_write(result):
-    """The columns and numbers that the scripts say they write are those of the files, in their order."""
+    """The columns and numbers that the scripts describe are those of the files, in their order."""
     told, written = describe_results(), json.loads((result.folder / "summary.json").read_text())
     assert (result.folder / "history.csv").read_text().splitlines()[0].split(",") == told["columns"]
     assert [key for key in written if key in told["summary"]] == told["summary"]
     numbers = {key for key, value in written.items() if type(value) in (int, float)}
-    assert numbers - {"estimate_cpu_seconds", "refinements", "total_seconds"} <= set(told["summary"])   # these join it from beside the run
+    # These come from other runs or from Python.
+    assert numbers - {"estimate_cpu_seconds", "refinements", "total_seconds"} <= set(told["summary"])
 
 
 def test_history_and_summary_agree(result):
-    """What the summary says can be found in the history again."""
+    """The numbers of the summary agree with the history."""
     h, s = result.history, result.summary
     assert len(h["t"]) == s["steps"] + (h["dt"][0] == 0)
     assert (np.diff(h["t"]) > 0).all()
@@ -59,7 +61,8 @@ def test_history_and_summary_agree(result):
 
 
 def test_result_meets_the_independent_programs(result):
-    """Contact time, impulse and rebound agree with NGSolve and GetFEM to the 0.5 % that the scene asks for, beside what those are known to."""
+    """Contact time, impulse and rebound agree with NGSolve and GetFEM to the 0.5 % accuracy of the
+    scene plus their error bars."""
     for key, numbers in literature.references("disc-plane", result.scene).items():
         for number in numbers:
             if "error" in number:
@@ -67,7 +70,8 @@ def test_result_meets_the_independent_programs(result):
 
 
 def test_snapshots_can_be_read(result):
-    """As many snapshots as asked for, with the fields that the figures need, on points that fill half the disc."""
+    """There are as many snapshots as requested, with the fields for the figures, on points that
+    fill half the disc."""
     series = vtu.series(result.folder / "fields.pvd")
     assert len(series) == result.scene["fields"]
     snapshot = vtu.read(series[-1][1])
@@ -77,7 +81,8 @@ def test_snapshots_can_be_read(result):
 
 @pytest.mark.parametrize("kernels", [True, False])
 def test_von_mises_stress_of_the_snapshots_is_that_of_their_stress(tmp_path, kernels):
-    """At every node von_mises and pressure are those of cauchy_stress there, to the digits of the file, on a coarse mesh, too."""
+    """At every node von_mises and pressure follow from cauchy_stress to the digits of the file,
+    also on a coarse mesh."""
     given = {"accuracy": 0.2, "fields": 4} | ({} if kernels else {"without": "kernels"})
     result = run.run(scene.load("disc-normal"), given, tmp_path / "out", estimate=False)
     for _, path in vtu.series(result.folder / "fields.pvd"):
@@ -90,7 +95,7 @@ def test_von_mises_stress_of_the_snapshots_is_that_of_their_stress(tmp_path, ker
 
 
 def test_freefem_alone_gives_the_same(result, tmp_path):
-    """FreeFem++ without Python, on the same mesh, writes the same history to the last digit."""
+    """FreeFem++ without Python on the same mesh writes the same history to the last digit."""
     used = freefem.words_of({name: value for name, value in result.scene.items() if name in parameters.names()})
     process = direct(*used, "-mesh", str(result.folder / "mesh.msh"), "-out", str(tmp_path / "alone"))
     assert process.returncode == 0, process.stdout + process.stderr
@@ -98,19 +103,20 @@ def test_freefem_alone_gives_the_same(result, tmp_path):
 
 
 def said(process: subprocess.CompletedProcess) -> list[str]:
-    """The lines for the user in what a process printed."""
+    """The lines for the user in the output of a process."""
     return re.findall(r"^ffimpact: (.*)$", process.stdout + process.stderr, re.MULTILINE)
 
 
 def check_failure(process: subprocess.CompletedProcess, code: int, words: str) -> None:
-    """The exit code, and one line without a traceback."""
+    """Asserts the exit code and one line without a traceback."""
     assert process.returncode == code, process.stderr
     assert len(said(process)) == 1 and re.search(words, said(process)[0]), process.stderr
     assert "Traceback" not in process.stderr
 
 
 def test_step_that_cannot_converge_is_11(tmp_path):
-    """At 10 km/s no step converges: exit code 11 with the time, the smallest step and the last residual."""
+    """At 10 km/s no step converges: exit code 11 with the time, the smallest step and the last
+    residual."""
     check_failure(call("speed=1e4", "law=neohookean", "accuracy=0.4", "end_time=0.01", out=tmp_path / "out"), 11,
                   r"the step at t = \S+ s did not converge: smallest step tried \S+ s, work of the residual \S+ .*accepted: \S+\)")
     record = json.loads((tmp_path / "out/failure.json").read_text())
@@ -118,7 +124,8 @@ def test_step_that_cannot_converge_is_11(tmp_path):
 
 
 def test_material_breakdown_is_12(tmp_path):
-    """St. Venant-Kirchhoff at 14 m/s inverts: exit code 12 with time, place and smallest stretch, and when and where ellipticity was lost."""
+    """St. Venant-Kirchhoff inverts at 14 m/s: exit code 12 with time, place and smallest stretch,
+    and time and place of lost ellipticity."""
     process = call("speed=14", out=tmp_path / "out")
     check_failure(process, 12, r"(det F <= 0|a point loses four fifths of its volume in the smallest step, det F \S+) at t = \S+ s near X = \(\S+, \S+\) m; smallest stretch reached \S+, "
                   r"St. Venant-Kirchhoff had lost ellipticity at t = \S+ s near X = \(\S+, \S+\) m .*breakdown=continue")
@@ -130,14 +137,15 @@ def test_material_breakdown_is_12(tmp_path):
 
 
 def test_files_that_may_not_grow_are_14(tmp_path):
-    """Where no file may be larger than 8 kB the run is one line with exit code 14, and leaves nothing."""
+    """If no file may exceed 8 kB, the run gives one line with exit code 14 and leaves no files."""
     command = [sys.executable, "-m", "ffimpact", "run", "disc-normal", "--set", "accuracy=0.1", "--out", str(tmp_path / "out")]
     ended = subprocess.run(command, cwd=run.ROOT, capture_output=True, text=True, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (8192, 8192)))
     assert (ended.returncode, ended.stderr.count("\n")) == (14, 1) and "ulimit -f" in ended.stderr and not list(tmp_path.iterdir())
 
 
 def test_breakdown_can_be_run_through(tmp_path):
-    """With breakdown=continue the same impact is computed to its end, and its summary tells when the law broke down."""
+    """With breakdown=continue the same impact is computed to its end, and the summary has the time
+    of the breakdown."""
     process = call("speed=14", "breakdown=continue", "accuracy=0.1", out=tmp_path / "out")
     assert process.returncode == 0, process.stderr
     summary = results.read_summary(tmp_path / "out")
@@ -149,7 +157,7 @@ def test_breakdown_can_be_run_through(tmp_path):
 
 
 def test_neohookean_does_not_break_down(tmp_path):
-    """The same impact under the neo-Hookean law keeps det F > 0."""
+    """The same impact with the neo-Hookean law keeps det F > 0."""
     process = direct("-speed", "14", "-law", "neohookean", "-accuracy", "0.1", "-end_time", "0.006", "-out", str(tmp_path / "out"))
     assert process.returncode == 0
     summary = results.read_summary(tmp_path / "out")
@@ -158,7 +166,7 @@ def test_neohookean_does_not_break_down(tmp_path):
 
 @pytest.mark.parametrize("environment", [{"FREEFEM": "/no/such/FreeFem++"}, {"PATH": "/no/such/folder"}])
 def test_missing_freefem_is_13(tmp_path, environment):
-    """Without FreeFem++ the exit code is 13 and the line says how to install it."""
+    """Without FreeFem++ the exit code is 13, and the line has the installation command."""
     check_failure(call(out=tmp_path / "out", environment=environment), 13, "not found; run: make setup.*apt-get install freefem")
 
 
@@ -167,8 +175,8 @@ def test_missing_freefem_is_13(tmp_path, environment):
 @pytest.mark.parametrize("given", [{}, {"friction_static": 0.3}, {"angle": 60, "exponent": 1.5, "spin": 20}, {"accuracy_of": "peak_force", "young": 2.1e11, "density": 7850},
                                    {"mesh_size": 0.02}, {"speed": 0, "gravity": 9.81, "height": 0.01, "penalty": 1e9}], ids=lambda given: ",".join(given) or "default")
 def test_both_ways_choose_the_same_scene(tmp_path, given):
-    """Every parameter of a direct run, those that were left to the program too, is what the scripts describe to Python; a run of the
-    recorded scene is that scene."""
+    """Every parameter of a direct run, also the automatic ones, equals the description that Python
+    gets. A run of the recorded scene is that scene."""
     given = given | {"accuracy": 0.1, "end_time": 1e-6}
     assert direct(*freefem.words_of(given | {"out": tmp_path})).returncode == 0
     found, told = results.read_scene(tmp_path), describe(given)
@@ -178,7 +186,7 @@ def test_both_ways_choose_the_same_scene(tmp_path, given):
 
 
 def test_what_the_scripts_refuse_is_bad_input():
-    """Their own line reaches Python; what they are not told, they do not say."""
+    """The line of the scripts reaches Python. Parameters that they do not get are not in it."""
     with pytest.raises(parameters.BadInput) as error:
         describe({"mesh_size": 0.06})
     assert str(error.value) == "mesh_size: 0.06 is larger than the radius 0.05" and error.value.code == 10
@@ -186,7 +194,7 @@ def test_what_the_scripts_refuse_is_bad_input():
 
 
 def test_no_description_without_freefem(tmp_path, monkeypatch):
-    """Exit code 13, whether it is missing or does not run the script."""
+    """Exit code 13 if it is missing or does not run the script."""
     monkeypatch.setenv("FREEFEM", "/no/such/FreeFem++")
     with pytest.raises(NotInstalled, match="not found"):
         describe({"speed": 1.25})
@@ -199,8 +207,11 @@ def test_no_description_without_freefem(tmp_path, monkeypatch):
 
 
 def test_a_step_far_too_large_for_friction_ends_early(tmp_path):
-    """A fixed step that leaves a handful in the contact, whose friction grinds, is exit code 11 in one line that names dt and the largest that is taken for long; the
-    adaptive step of the same impact is below that."""
+    """A fixed step that leaves few steps in the contact with friction gives exit code 11 in one
+    line with dt and the largest suitable step.
+
+    The adaptive step of the same impact is smaller.
+    """
     given = ("-law", "neohookean", "-speed", "12", "-angle", "60", "-friction_static", "0.7", "-friction_dynamic", "0.5", "-slip_velocity", "0.1", "-penalty", "1e10")
     process = direct(*given, "-dt", "4e-4", "-out", str(tmp_path / "out"))
     assert process.returncode == 11 and re.search(r"dt = 0.0004 s is too long for its friction, .* take dt = 0, or up to 0.00024\d+ s", process.stderr)
@@ -210,8 +221,12 @@ def test_a_step_far_too_large_for_friction_ends_early(tmp_path):
 @pytest.mark.few(1)
 @pytest.mark.parametrize("how", ["stop", "continue"])
 def test_chatter_is_11_or_a_warning(tmp_path, how):
-    """A single node of a coarse mesh on a far too stiff penalty, at steps that follow it, bounces without end: exit code 11, or with
-    chatter=continue a finished run that warns in its summary and in print, in both ways to start it."""
+    """A single node of a coarse mesh on a far too stiff penalty, with steps that resolve it,
+    bounces without end.
+
+    The exit code is 11, or with chatter=continue the run finishes with a warning in the summary and
+    in print, with and without Python.
+    """
     given = COARSE | {"penalty": "8.39e12", "dt": "4e-6", "chatter": how}
     process = call(*(f"{name}={value}" for name, value in given.items()), out=tmp_path / "out")
     plain = direct(*freefem.words_of(given | {"fields": 0, "out": tmp_path / "direct"}))

@@ -1,4 +1,5 @@
-"""Who takes how long at equal errors: what counts as reaching a level, references that must agree, the verdict, the page. No other program is needed."""
+"""Run times at equal errors: safe settings, references that must agree, the verdict, the page. No
+other program is needed."""
 
 import pandas as pd
 import pytest
@@ -8,7 +9,8 @@ from benchmarks import equal_errors as equal
 
 @pytest.mark.parametrize("installed, code", [(True, 0), (False, 1)])
 def test_page(monkeypatch, tmp_path, capsys, installed, code):
-    """Every program's seconds and errors, its command and commit, and what is not installed; without a peer no agreement is claimed."""
+    """The page has the seconds and errors of every program, command, commit and missing programs.
+    Without another program it reports no agreement."""
     def once(case, program, point):
         if program not in equal.OWN and not (installed and program == equal.TUNED):
             return None, f"{program} is not installed (pip)"

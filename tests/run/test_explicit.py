@@ -1,4 +1,7 @@
-"""Central differences: contact and friction are solved on the lumped mass, so that the bodies' own waves alone set the parts of a step."""
+"""Central differences: contact and friction are solved on the lumped mass.
+
+Hence only waves in the bodies determine the substeps of a step.
+"""
 
 from functools import cache
 
@@ -12,13 +15,14 @@ from verification.measure import disc
 
 @pytest.fixture(scope="module")
 def explicit(tmp_path_factory):
-    """explicit(name=value, ...): the oblique disc by explicit steps, every run once."""
+    """explicit(name=value, ...): a run of the oblique disc with explicit steps. Every run is made
+    once."""
     return cache(lambda **more: disc(tmp_path_factory.mktemp("explicit"), **OBLIQUE | EXPLICIT | more))
 
 
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory, explicit):
-    """The oblique disc by the implicit default and by explicit steps."""
+    """The oblique disc with the implicit default and with explicit steps."""
     return {"implicit": disc(tmp_path_factory.mktemp("implicit"), **OBLIQUE), "explicit": explicit()}
 
 
@@ -32,7 +36,8 @@ def conserves(found, drift: float) -> None:
 
 
 def test_explicit_steps_agree_with_the_conserving_ones(runs):
-    """Impulse, rebound and friction work are those of the implicit run on the same mesh; momenta exact, the energy drift small and told."""
+    """Impulse, rebound and friction work agree with the implicit run on the same mesh. Momenta are
+    exact, and the small energy drift is reported."""
     there, found = runs["implicit"].summary, runs["explicit"].summary
     assert found["impulse"] == pytest.approx(there["impulse"], rel=0.002)
     for name, scale in (("rebound_vx", 12), ("rebound_vy", 12), ("rebound_spin", 12 / 0.05)):
@@ -45,7 +50,8 @@ def test_explicit_steps_agree_with_the_conserving_ones(runs):
 @pytest.mark.few(1)
 @pytest.mark.parametrize("change", [{"penalty": 1e11}, {"penalty": 1e12}, {"slip_velocity": 0.01}], ids=str)
 def test_penalty_and_slip_velocity_do_not_set_the_step(runs, explicit, change):
-    """Ten and a hundred times the penalty, a tenth of slip_velocity take the parts that they took before."""
+    """Ten and a hundred times the penalty, and a tenth of slip_velocity, do not change the number
+    of substeps."""
     found = explicit(**change)
     assert parts(found) == pytest.approx(parts(runs["explicit"]), rel=0.05)
     assert found.summary["impulse"] == pytest.approx(runs["explicit"].summary["impulse"], rel=0.01)
@@ -54,8 +60,11 @@ def test_penalty_and_slip_velocity_do_not_set_the_step(runs, explicit, change):
 
 @pytest.mark.robustness
 def test_no_node_bounces_alone(runs, explicit, tmp_path):
-    """However stiff the penalty, rebound and spin stay within 0.5 % of the speed of the implicit run at 1e11, friction work within 1 % of the energy, and
-    the run says on which one nodes do not bounce."""
+    """For any penalty, rebound and spin agree with the implicit run at 1e11 to 0.5 % of the speed,
+    the friction work to 1 % of the energy.
+
+    The run reports the penalty at which nodes do not bounce.
+    """
     there = disc(tmp_path / "implicit", **OBLIQUE | {"penalty": 1e11}).summary
     for penalty in (1e11, 1e13):
         found = explicit(penalty=penalty)
@@ -67,7 +76,8 @@ def test_no_node_bounces_alone(runs, explicit, tmp_path):
 
 
 def test_records_follow_the_accuracy(runs):
-    """Steps are recorded as often as an implicit run would take them, whatever the parts; their forces add up to the impulse."""
+    """The number of recorded steps is that of an implicit run, whatever the substeps. Their forces
+    add up to the impulse."""
     found = runs["explicit"]
     assert found.summary["steps"] < 1.5 * runs["implicit"].summary["steps"] and parts(found) > 5 * found.summary["steps"]
     assert (found.history["dt"] * found.history["normal_force"]).sum() == pytest.approx(found.summary["impulse"], rel=1e-12)
@@ -75,7 +85,8 @@ def test_records_follow_the_accuracy(runs):
 
 @pytest.mark.robustness
 def test_a_step_that_is_given_is_parted(runs, tmp_path):
-    """`dt` is the step that is recorded; contact instants are those of its parts, and hardly change with it."""
+    """`dt` is the recorded step. Contact times have the resolution of the substeps and hardly
+    depend on `dt`."""
     found = disc(tmp_path, **OBLIQUE | EXPLICIT | {"dt": 2e-5})
     for name in ("contact_start", "contact_time"):
         assert found.summary[name] == pytest.approx(runs["explicit"].summary[name], rel=0.005, abs=1e-7), name
@@ -84,7 +95,8 @@ def test_a_step_that_is_given_is_parted(runs, tmp_path):
 @pytest.mark.few(2)
 @pytest.mark.parametrize("name, settings", [("two-discs", {}), ("disc-corner", {}), ("ball", {"end_time": 2e-3}), ("ball-axisymmetric", {})], ids=str)
 def test_every_kind_of_scene_conserves(tmp_path, name, settings):
-    """Rows that turn with two bodies are iterated until momenta are exact; so they are at several obstacles, in space and of revolution."""
+    """Gap Jacobians that rotate with two bodies are iterated until momenta are exact, also with
+    several obstacles, in space and of revolution."""
     conserves(run.run(scene.load(name), settings | EXPLICIT | {"accuracy": 0.2}, tmp_path / "out", estimate=False), 5e-3)
 
 

@@ -1,4 +1,5 @@
-"""docs/how-to/extending.md, block by block: what it shows is applied to a copy of the program, runs there, and has the answers that the page names."""
+"""docs/how-to/extending.md: every block is applied to a copy of the program, runs there, and gives
+the results on the page."""
 
 import json
 import os
@@ -17,12 +18,12 @@ from ffimpact.places import ROOT
 
 NEW = re.compile(r"`([\w./-]+)`, new\b[^`]*?(?:`[^`]+`[^`]*?)?:\n```\w*\n(.*?)```", re.DOTALL)
 YOUNG, NU = 7e6, 0.3
-F = np.array([[1.2, 0.3, 0], [-0.1, 0.7, 0], [0, 0, 1]])   # of verification/homogeneous.edp
+F = np.array([[1.2, 0.3, 0], [-0.1, 0.7, 0], [0, 0, 1]])  # as in verification/homogeneous.edp
 
 
 @pytest.fixture
 def extended(tmp_path):
-    """extended(heading): a copy of the program with all that the page has below this heading."""
+    """extended(heading): a copy of the program with all blocks of the page below this heading."""
     def apply(heading: str) -> Path:
         section = re.search(rf"(?ms)^## {heading}\n(.*?)(?=^## |\Z)", (ROOT / "docs/how-to/extending.md").read_text())[1]
         for name in ("edp", "orchestrate", "verification"):
@@ -39,27 +40,28 @@ def extended(tmp_path):
 
 
 def go(folder: Path, *words: str, given: str | None = None) -> str:
-    """What a command prints that is run there, and must not fail."""
+    """The output of a command in the folder. Asserts that it succeeds."""
     ended = subprocess.run(words, cwd=folder, input=given, capture_output=True, text=True, env=os.environ | {"GIT_CEILING_DIRECTORIES": str(folder.parent), "PYTHONPATH": str(folder / "orchestrate")})
     assert ended.returncode == 0, ended.stderr
     return ended.stdout
 
 
 def run(folder: Path, *words: str) -> dict:
-    """The summary of a run there, into out/."""
+    """The summary of a run in the folder, into out/."""
     go(folder, sys.executable, "-m", "ffimpact", "run", *words, "--out", "out", "--force", "--quiet")
     return results.read_summary(folder / "out")
 
 
 def measured(folder: Path, script: str, **flags) -> dict[str, float]:
-    """What a script of verification/ prints there."""
+    """The numbers that a script of verification/ prints in the folder."""
     call = f"import json; from verification.measure import measure; print(json.dumps(measure({script!r}, **{flags!r})))"
     return json.loads(go(folder, sys.executable, "-c", call))
 
 
 @pytest.mark.robustness
 def test_obstacle_is_the_built_in_one(extended):
-    """An ellipse of equal semi-axes is a circle: a disc that hits it off its centre leaves with the same velocity, impulse and vibration."""
+    """An ellipse of equal semi-axes is a circle: an eccentric impact of a disc gives equal
+    velocity, impulse and vibration."""
     folder = extended("An obstacle")
     ellipse = run(folder, "peg.toml")
     text = (folder / "peg.toml").read_text().replace('"ellipse"', '"circle"').replace("semi_axes = [0.03, 0.03]", "radius = 0.03")
@@ -72,7 +74,7 @@ def test_obstacle_is_the_built_in_one(extended):
 
 @pytest.mark.robustness
 def test_friction_law_has_its_closed_form(extended):
-    """A block on an incline creeps at the speed at which the law holds it."""
+    """A block on an incline creeps at the speed at which the law carries it."""
     folder = extended("A friction law")
     creeps = [list(map(float, line.split())) for line in go(folder, sys.executable, "creep.py").splitlines()]
     assert len(creeps) == 3
@@ -81,7 +83,8 @@ def test_friction_law_has_its_closed_form(extended):
 
 
 def test_figure_is_drawn_and_encloses_what_translation_lost(extended):
-    """Every run on the plane has the figure; the area of its loop is the energy of translation before less that after."""
+    """Every run on the plane has the figure. The area of its loop is the loss of translational
+    energy."""
     folder = extended("A figure")
     summary = run(folder, "disc-normal", "--set", "accuracy=0.05")
     assert (folder / "out/figures/loop.png").stat().st_size > 10_000
@@ -92,7 +95,8 @@ def test_figure_is_drawn_and_encloses_what_translation_lost(extended):
 
 @pytest.mark.robustness
 def test_law_has_its_stress_its_tangent_and_its_energy(extended):
-    """Homogeneous stress by the closed form, tangent by differences, and the balance of an impact closed to round-off, beside another law, too."""
+    """Homogeneous stress in closed form, tangent by differences, and an energy balance closed to
+    round-off, also beside another law."""
     folder = extended("A constitutive law")
     measured(folder, "homogeneous", law="ciarlet", young=YOUNG, nu=NU, accuracy=0.1, out=str(folder / "fields"))
     l, mu, J = YOUNG * NU / ((1 + NU) * (1 - 2 * NU)), YOUNG / (2 * (1 + NU)), np.linalg.det(F)

@@ -1,4 +1,4 @@
-"""Figures and the snapshots they are drawn from."""
+"""Figures and the snapshots from which they are drawn."""
 
 import xml.etree.ElementTree as xml
 
@@ -12,7 +12,7 @@ from tests.support.triangles import areas
 
 
 def test_all_figures_are_drawn(finished_folder):
-    """A folder with snapshots gives four pictures that are not empty."""
+    """A folder with snapshots gives four figures that are not empty."""
     files = drawing.draw(finished_folder)
     assert {file.stem for file in files} <= set(folder.FIGURES)
     assert sorted(f.name for f in files) == ["energies.png", "force.png", "shapes.png", "velocity.png"]
@@ -20,13 +20,13 @@ def test_all_figures_are_drawn(finished_folder):
 
 
 def test_no_snapshots_no_shapes(finished_folder):
-    """Without snapshots the shapes are left out and nothing else."""
+    """Without snapshots only the shapes are missing."""
     (finished_folder / "fields.pvd").unlink()
     assert sorted(f.stem for f in drawing.draw(finished_folder)) == ["energies", "force", "velocity"]
 
 
 def test_half_a_body_is_mirrored(finished_folder):
-    """The picture of half a disc shows the whole: symmetric in x, twice the area."""
+    """The figure of half a disc shows the whole disc: symmetric in x with twice the area."""
     _, path = vtu.series(finished_folder / "fields.pvd")[0]
     snapshot = vtu.read(path)
     body = figures.deformed(snapshot, half=True)
@@ -35,7 +35,8 @@ def test_half_a_body_is_mirrored(finished_folder):
 
 
 def test_quadratic_triangles_are_split(finished_folder):
-    """The four straight triangles of each quadratic one cover the disc: none turned over, the area of the half circle."""
+    """The four straight triangles of each quadratic one cover the half disc, with the correct
+    orientation and area."""
     snapshot = vtu.read(finished_folder / "fields/0000.vtu")
     area = areas(snapshot)
     assert abs(area).sum() == pytest.approx(np.pi * 0.05**2 / 2, rel=0.01)
@@ -43,7 +44,7 @@ def test_quadratic_triangles_are_split(finished_folder):
 
 
 def test_series_is_in_the_order_of_time(finished_folder):
-    """The list of snapshots gives their times, and files that exist."""
+    """The list of snapshots has their times and existing files."""
     series = vtu.series(finished_folder / "fields.pvd")
     assert len(series) == 9 and [t for t, _ in series] == sorted(t for t, _ in series)
     assert all(path.exists() for _, path in series)
@@ -51,7 +52,7 @@ def test_series_is_in_the_order_of_time(finished_folder):
 
 @pytest.mark.parametrize("damage", ["", "<VTKFile/>", "<VTKFile"])
 def test_broken_snapshot_is_named(finished_folder, damage):
-    """A snapshot that is cut off or empty is named, without a traceback from the parser."""
+    """A truncated or empty snapshot is reported, without a traceback of the parser."""
     path = finished_folder / "fields/0003.vtu"
     path.write_text(damage)
     with pytest.raises(Unreadable, match="0003.vtu"):
@@ -59,7 +60,7 @@ def test_broken_snapshot_is_named(finished_folder, damage):
 
 
 def test_unsupported_cells_are_named(finished_folder):
-    """Cells that are not triangles are refused, not drawn wrongly."""
+    """Elements other than triangles are refused."""
     path = finished_folder / "fields/0003.vtu"
     tree = xml.parse(path)
     types = tree.getroot().find(".//Cells/DataArray[@Name='types']")

@@ -1,5 +1,5 @@
-"""Bodies from files: where they are sought, how they are read, sized, scaled and kept, and what of
-them may touch."""
+"""Bodies from files: search paths, reading, sizes, scaling, copies, and the boundaries that may
+come into contact."""
 
 import math
 import re
@@ -21,12 +21,12 @@ from ffimpact.sweeps import sweep
 from tests.support.files import FLOOR, solid, tables, write_step
 
 BALL = {"name": "ball", "shape": "disc", "radius": 0.02, "position": [0, 0.05], "velocity": [0, -2]}
-BOX = 'SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 100, 60, 40};\n'        # mm
-VOLUME = 0.1 * 0.06 * 0.04                                                     # of the same [m3]
+BOX = 'SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 100, 60, 40};\n'  # mm
+VOLUME = 0.1 * 0.06 * 0.04  # volume of the box [m3]
 
 
 def write_plane(path, draw, size: float = 0.01, version: float = 4.1) -> None:
-    """A file of gmsh with the triangles of what draw(gmsh.model) makes."""
+    """Writes a gmsh file with the triangles of the shape that draw(gmsh.model) makes."""
     with mesh.gmsh_session() as gmsh:
         draw(gmsh.model)
         gmsh.option.setNumber("Mesh.MeshSizeMax", size)
@@ -36,7 +36,7 @@ def write_plane(path, draw, size: float = 0.01, version: float = 4.1) -> None:
 
 
 def block(contact: str = ""):
-    """Draws a block of 0.1 x 0.05 m; where a side is named, that one alone may touch."""
+    """Draws a block of 0.1 x 0.05 m. If a side is given, only this side may come into contact."""
     def draw(model):
         model.occ.addRectangle(0, 0, 0, 0.1, 0.05)
         model.occ.synchronize()
@@ -47,10 +47,11 @@ def block(contact: str = ""):
     return draw
 
 
-# ---- where they are sought
+# ---- search paths
 
 def test_a_file_is_sought_beside_its_scene(tmp_path, monkeypatch):
-    """From any working folder, also from one that changes after the scene is read: STEP and .geo."""
+    """STEP and .geo files are found from any working folder, also if it changes after the scene is
+    read."""
     folder = tmp_path / "scenes"
     folder.mkdir()
     write_step(folder / "part.step")
@@ -66,7 +67,7 @@ def test_a_file_is_sought_beside_its_scene(tmp_path, monkeypatch):
 
 
 def test_gmsh_works_in_the_working_folder(tmp_path, monkeypatch):
-    """Relative paths mean the same to gmsh, which has a process of its own."""
+    """Relative paths have the same meaning for gmsh, which has a process of its own."""
     write_step(tmp_path / "part.step")
     monkeypatch.chdir(tmp_path)
     volume = solid_file.meshed(Path("part.step")).volumes.sum()
@@ -77,8 +78,8 @@ def test_gmsh_works_in_the_working_folder(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("side", ["", "contact"])
 def test_elements_in_two_groups_are_read_once_in_the_plane(tmp_path, side):
-    """gmsh 2.2 writes the triangles and lines of two physical groups twice: the mesh and its labels
-    are those of a file that has each once."""
+    """gmsh 2.2 writes triangles and lines of two physical groups twice. Mesh and labels equal those
+    of a file that has each once."""
     def draw(twice: bool):
         def model_of(model):
             block("lower" if side else "")(model)
@@ -104,7 +105,7 @@ def test_elements_in_two_groups_are_read_once_in_the_plane(tmp_path, side):
 
 @pytest.mark.parametrize("side", ["", "contact"])
 def test_elements_in_two_groups_are_read_once_in_space(tmp_path, side):
-    """Tetrahedra and faces likewise."""
+    """The same for tetrahedra and faces."""
     def draw(model):
         model.occ.addBox(0, 0, 0, 0.1, 0.03, 0.04)
         model.occ.synchronize()
@@ -126,7 +127,8 @@ def test_elements_in_two_groups_are_read_once_in_space(tmp_path, side):
 
 @pytest.fixture(scope="module")
 def plane(tmp_path_factory):
-    """A folder with all.msh, of which all may touch, and lower.msh, upper.msh: only that side may."""
+    """A folder with all.msh, of which all sides may come into contact, and lower.msh and upper.msh,
+    of which only that side may."""
     folder = tmp_path_factory.mktemp("plane")
     write_plane(folder / "all.msh", block())
     for side in ("lower", "upper"):
@@ -137,8 +139,10 @@ def plane(tmp_path_factory):
 @pytest.mark.few(1)
 @pytest.mark.parametrize("key, value", [("mesh_size", 0.001), ("contact_mesh_size", 0.0005)])
 def test_element_sizes_of_a_mesh_from_a_file_are_its_own(plane, key, value):
-    """Another size is refused, of the body, at the top where no other body takes it, and set later;
-    beside a shape that takes it the top's is for that one."""
+    """Another size is refused for the body, at the top if no other body uses it, and if set later.
+
+    Beside a shape the size at the top applies to the shape.
+    """
     body = {"name": "block", "shape": "mesh", "file": "all.msh", "position": [0, 0]}
     accepted = ("mesh_size, contact_mesh_size where gmsh makes the mesh: of a shape, or of a geometry, "
                 r"\.geo, \.step, \.stp")
@@ -159,7 +163,7 @@ def test_element_sizes_of_a_mesh_from_a_file_are_its_own(plane, key, value):
 
 @pytest.mark.parametrize("key", ["mesh_size", "contact_mesh_size"])
 def test_element_sizes_of_a_mesh_file_on_the_plane(tmp_path, key):
-    """--mesh: sizes are those of the mesh, which may be given; another one is refused."""
+    """--mesh: the sizes are those of the mesh and may be given. Other sizes are refused."""
     side = 0.05
     corners = np.array([[0, 0], [side, 0], [side, side], [0, side]])
     edges = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
@@ -167,14 +171,14 @@ def test_element_sizes_of_a_mesh_file_on_the_plane(tmp_path, key):
     mesh.write(square, tmp_path / "m.msh")
     ask = {"mesh": str(tmp_path / "m.msh"), "radius": side / 2}
     found = describe(ask)["used"][key]
-    assert found == pytest.approx(side / 2)                              # no more than the radius
+    assert found == pytest.approx(side / 2)  # at most the radius
     assert describe(ask | {key: found})["used"][key] == found
     said = f"^{key}: 0.01 for a mesh from a file, .*accepted: 0, or 0.025 as in the file"
     with pytest.raises(BadInput, match=said):
         describe(ask | {key: 0.01})
 
 
-# ---- what may touch
+# ---- boundaries that may come into contact
 
 def prepared(given: dict, folder, where) -> str:
     """The text of scene.toml of a run that is ready to start in `where`."""
@@ -183,8 +187,11 @@ def prepared(given: dict, folder, where) -> str:
 
 
 def test_what_may_not_touch_is_refused_where_it_meets_a_plane(plane, tmp_path):
-    """A block of which only the upper side may touch is hit there, also beside a plane that it does not
-    come to. It may not fall on a plane, unless the run ends before, or it is turned over."""
+    """A block of which only the upper side may come into contact is hit there, also beside a plane
+    that it does not reach.
+
+    It must not fall on a plane, unless the run ends before or it is rotated.
+    """
     upper, lower = ({"name": "block", "shape": "mesh", "file": f"{side}.msh", "position": [0, 0]}
                     for side in ("upper", "lower"))
     prepared(tables(upper, BALL), plane, tmp_path / "1")
@@ -201,7 +208,8 @@ def test_what_may_not_touch_is_refused_where_it_meets_a_plane(plane, tmp_path):
 
 
 def test_what_may_not_touch_is_refused_in_space(tmp_path):
-    """A geometry of which only the upper face may touch: it is refused as it is, not turned over."""
+    """A geometry of which only the upper face may come into contact is refused in this position,
+    not if it is rotated."""
     (tmp_path / "named.geo").write_text(
         'SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 0.1, 0.06, 0.04};\n'
         'Physical Surface("contact") = Surface In BoundingBox {-1, 0.059, -1, 1, 0.061, 1};\n')
@@ -211,7 +219,7 @@ def test_what_may_not_touch_is_refused_in_space(tmp_path):
 
 
 def test_a_disc_from_a_file_is_not_turned(tmp_path):
-    """What of it may touch stays where the scene has it."""
+    """The part that may come into contact stays where the scene has it."""
     m = mesh.disc(0.05, 0.02, 0.01, False)
     labels = np.where(m.points[m.edges].mean(axis=1)[:, 1] < 0.05, mesh.FREE, 3)
     mesh.write(replace(m, labels=labels), tmp_path / "disc.msh")
@@ -227,9 +235,12 @@ def test_a_disc_from_a_file_is_not_turned(tmp_path):
 
 @pytest.mark.robustness
 def test_what_sinks_is_named_and_meshes_of_files_are_not_to_be_resized(plane, tmp_path):
-    """A block of which only the upper side may touch falls through a peg: the warning `sinks` with
-    body, obstacle and place. Where the lower side touches it there is none. No warning advises to change
-    the element sizes of a file."""
+    """A block of which only the upper side may come into contact falls through a peg: a warning
+    `sinks` with body, obstacle and place.
+
+    If the lower side is in contact, there is none. No warning advises to change the element sizes
+    of a file.
+    """
     peg = {"name": "peg", "kind": "circle", "centre": [0, -0.1], "radius": 0.1}
     body = {"name": "block", "shape": "mesh", "position": [0, 0.0255], "velocity": [0, -1]}
     top = {"obstacles": [peg], "end_time": 0.06}
@@ -244,13 +255,16 @@ def test_what_sinks_is_named_and_meshes_of_files_are_not_to_be_resized(plane, tm
     assert "contact_mesh_size" not in " ".join(warned["upper"] + warned["lower"])
 
 
-# ---- what a result keeps
+# ---- copies in a result
 
 @pytest.mark.few(1)
 @pytest.mark.parametrize("name", ["part.step", "all.msh", "merges.geo"])
 def test_a_result_has_the_files_of_its_bodies(plane, tmp_path, name):
-    """scene.toml names no place on this machine; with its folder elsewhere and the file gone it makes
-    the same mesh. A .geo that takes in another file is named by a path that is relative to the result."""
+    """scene.toml contains no path of this machine. In another folder, without the original file, it
+    gives the same mesh.
+
+    A .geo that includes another file has a path relative to the result.
+    """
     folder = tmp_path / "scenes"
     folder.mkdir()
     write_step(folder / "part.step")
@@ -280,7 +294,7 @@ def test_a_result_has_the_files_of_its_bodies(plane, tmp_path, name):
 
 
 def test_scene_and_sweep_with_a_byte_order_mark(tmp_path):
-    """As some editors write it."""
+    """Some editors write it."""
     text = assembly.to_toml(tables(BALL, obstacles=[FLOOR]))
     (tmp_path / "drop.toml").write_text("\ufeff" + text, "utf-8")
     assert scene.load(tmp_path / "drop.toml").bodies[0].name == "ball"
@@ -292,8 +306,8 @@ def test_scene_and_sweep_with_a_byte_order_mark(tmp_path):
 # ---- scale
 
 def test_a_file_in_millimetres_has_a_scale(tmp_path):
-    """In the plane, of revolution, in space, of meshes and geometries: the body in m, its circles,
-    centre and element sizes with it."""
+    """In the plane, of revolution and in space, for meshes and geometries: body, circles, centre
+    and element sizes are in m."""
     disc, half = (mesh.disc(50, 20, 10, one) for one in (False, True))
     mesh.write(disc, tmp_path / "disc.msh")
     mesh.write(half, tmp_path / "half.msh")
@@ -334,7 +348,8 @@ def test_a_scale_that_is_none_is_named(plane, value, said):
 
 
 def test_a_file_in_millimetres_without_a_scale_is_told_of_it(tmp_path):
-    """Where the body overlaps something, as so large a one does; not where it is small, nor a shape."""
+    """The message mentions the scale if such a large body overlaps something, not for small bodies
+    or shapes."""
     mesh.write(mesh.disc(60, 20, 10, False), tmp_path / "disc.msh")
     body = {"shape": "mesh", "file": "disc.msh", "position": [0, 0.06], "velocity": [0, -1]}
     for partner in ({"obstacles": [FLOOR]}, {"bodies": [BALL | {"position": [0, -0.05]}]}):

@@ -1,4 +1,5 @@
-"""Free flights of rigid bodies, whatever their length, to the first touch, and the end of a run: when they meet nothing any more."""
+"""Free flights of rigid bodies of any duration until contact, and the end of a run if no further
+contact follows."""
 
 import math
 import re
@@ -12,10 +13,11 @@ from tests.support.flights import DISC, FLOOR, RUBBER, go, read
 
 STEEL = RUBBER | {"young": 2e11, "density": 7800}
 ROOM = {"kind": "polyline", "vertices": [[-1, 0], [3, 0], [3, 1]]}
-# ---- first touch, by closed forms
+# ---- onset of contact in closed form
 
 FALL = math.sqrt(2 * (30 - 0.05) / 9.81)
-TURNS = 2 * math.pi * 100 + math.pi / 4 - math.radians(10)       # [rad] until the corner of a square is lowest
+# [rad] until a corner of the square is lowest.
+TURNS = 2 * math.pi * 100 + math.pi / 4 - math.radians(10)
 TOUCHES = {
     "two discs, 6 m apart": (read(DISC | {"position": [-3, 0], "velocity": [1, 0]}, DISC | {"position": [3, 0]}), 5.9),
     "30 m above the floor": (read(DISC | {"position": [0, 30]}, obstacles=(FLOOR,), gravity=9.81), FALL),
@@ -31,7 +33,8 @@ TOUCHES = {
 
 @pytest.mark.parametrize("case", TOUCHES)
 def test_the_first_touch_is_that_of_the_closed_form(case):
-    """Whatever the length of a flight, its end is known to 1e-9 of it; of corners that pass as near as round-off, to the root of that."""
+    """The end of a flight of any duration is exact to 1e-9 of it; for corners that pass within
+    round-off, to the root of that."""
     given, expected = TOUCHES[case]
     first = approach.meetings(given)[0]
     assert first.time == pytest.approx(expected, rel=1e-4 if "turns" in case else 1e-9) and not first.never
@@ -43,8 +46,11 @@ LONG = {"two discs": (read(DISC | {"position": [-3, 0], "velocity": [1, 0]}, DIS
 
 @pytest.mark.parametrize("case", LONG)
 def test_long_flights_end_at_the_touch(tmp_path, case):
-    """After a flight of more than a million transits, or of sixty diameters, a body bounces: the first contact point touches when the closed form says
-    (to the curvature between points, 1e-6)."""
+    """After a flight of more than a million transit times, or of sixty diameters, a body bounces.
+
+    The first contact point comes into contact at the time of the closed form (to the curvature
+    between points, 1e-6).
+    """
     given, values, expected = LONG[case]
     rows, found = go(tmp_path, given, values)
     assert rows.start[0] == pytest.approx(expected, rel=2e-6) and found.history["t"][1] <= rows.start[0]
@@ -55,18 +61,20 @@ def test_long_flights_end_at_the_touch(tmp_path, case):
 @pytest.mark.parametrize("distance, told", [
     ("y + x^2", []), ("exp(y/0.02) - 1", ["touches again: it is not known whether "])])
 def test_what_leaves_an_expression_that_is_no_distance(tmp_path, distance, told):
-    """Above a surface that falls away, or one whose expression says little of how far it is: no touch is made up, and none is denied that is not known."""
+    """Above a surface that falls away, or one whose expression says little about distances, no
+    contact is invented and no possible contact is excluded."""
     _, found = go(tmp_path, read(DISC | {"position": [0, 0.0501], "velocity": [0, -5]}, obstacles=({"kind": "implicit", "distance": distance},)))
     assert [one[:len(told[0]) if told else 0] for one in found.summary["notes"] if one.startswith("touches again")] == told
 
 
 def test_a_steel_bead_bounces(tmp_path):
-    """A bead of 1 mm dropped 1 m is in contact for Hertz' time, with an end_time and without."""
+    """A bead of 1 mm dropped from 1 m is in contact for Hertz' time, with and without end_time."""
     bead = STEEL | {"radius": 5e-4, "height": 1, "speed": 0, "gravity": 9.81, "penalty": "auto", "accuracy": 0.02}
     stiff, speed, mass = 2e11 / (1 - 0.3**2), math.sqrt(2 * 9.81), 7800 * 4 / 3 * math.pi * 5e-4**3
     for more in ({"end_time": 0.45153}, {}):
         _, found = go(tmp_path / str(len(more)), scene.load("ball-axisymmetric"), bead | more)
-        assert found.summary["contact_time"] == pytest.approx(2.868 * (mass**2 / (5e-4 * stiff**2 * speed))**0.2, rel=0.025)      # a finite ball's is 2 % less
+        # That of a finite ball is 2 % less.
+        assert found.summary["contact_time"] == pytest.approx(2.868 * (mass**2 / (5e-4 * stiff**2 * speed))**0.2, rel=0.025)
         assert found.summary["rebound_vy"] == pytest.approx(speed, rel=0.01)
     assert any(one.startswith("touches again") and "t = 1.35" in one for one in found.summary["notes"])
 
@@ -74,7 +82,8 @@ def test_a_steel_bead_bounces(tmp_path):
 # ---- the end
 
 def test_a_run_ends_when_all_that_follows_is_over(tmp_path):
-    """A disc that comes from the floor to a wall of the same obstacle leaves after both; where nothing follows the run ends at once."""
+    """A disc that moves from the floor to a wall of the same obstacle leaves after both. If nothing
+    follows, the run ends at once."""
     rows, found = go(tmp_path, read(DISC | {"position": [2.92, 0.06], "velocity": [2, -2]}, obstacles=(ROOM,)))
     assert rows.normal_y[0] == pytest.approx(1) and rows.normal_x.iloc[-1] == pytest.approx(-1)
     s = found.summary
@@ -83,7 +92,8 @@ def test_a_run_ends_when_all_that_follows_is_over(tmp_path):
 
 
 def test_what_falls_back_is_told(tmp_path):
-    """Under gravity a run without end_time ends after the first impact, and says when the body is back: by the parabola."""
+    """Under gravity a run without end_time ends after the first impact and reports when the body
+    returns, by the parabola."""
     _, found = go(tmp_path, scene.load("disc-normal"), {"law": "neohookean", "accuracy": 0.1, "speed": 2, "gravity": 9.81})
     s = found.summary
     told, = [one for one in s["notes"] if one.startswith("touches again")]
@@ -91,7 +101,8 @@ def test_what_falls_back_is_told(tmp_path):
 
 
 def test_what_would_touch_for_ever_is_told(tmp_path):
-    """Between two walls, without friction, a run without end_time is the first impact, the very same as one that ends there, and says when the body is at the other wall."""
+    """Between two walls without friction, a run without end_time contains exactly the first impact
+    and reports when the body reaches the other wall."""
     walls = (FLOOR | {"name": "floor"}, {"name": "ceiling", "kind": "plane", "point": [0, 0.14], "normal": [0, -1]})
     given = DISC | {"position": [0, 0.06], "velocity": [0, -2]}
     rows, found = go(tmp_path / "open", read(given, obstacles=walls, accuracy=0.2))
@@ -106,7 +117,10 @@ def test_what_would_touch_for_ever_is_told(tmp_path):
 
 
 def test_under_gravity_an_impact_ends_with_the_first_flight_that_gravity_bends(tmp_path):
-    """In a bowl a disc would meet the wall again without gravity, too: no flight is marched through that is thrown away afterwards, and the run says when it is back."""
+    """In a hollow circle a disc would reach the wall again also without gravity.
+
+    No flight is integrated and discarded, and the run reports when the disc returns.
+    """
     bowl = {"kind": "bowl", "centre": [0, 0.3], "radius": 0.3}
     contacts, found = go(tmp_path, read(DISC | {"position": [0, 0.06], "velocity": [0.5, -4]}, obstacles=(bowl,), gravity=9.81))
     log = (found.folder / "log.txt").read_text()
@@ -130,22 +144,26 @@ FAR_AWAY = {
 
 @pytest.mark.parametrize("case", FAR_AWAY)
 def test_a_contact_long_after_the_first_is_named_and_not_computed(tmp_path, case):
-    """A contact that begins after many durations of the first one, and many periods of vibration, is
-    no part of the impact. The run marches no step beyond its end, and says who touches when."""
+    """A contact that begins after many durations of the first one, and many periods of vibration,
+    does not belong to the impact.
+
+    The run computes no step beyond the end of the impact and reports which bodies come into contact
+    and when.
+    """
     bodies, obstacles, who, (earliest, latest) = FAR_AWAY[case]
     rows, found = go(tmp_path, read(*bodies, obstacles=obstacles, **SOFT))
     s, told = found.summary, [one for one in found.summary["notes"] if one.startswith("touches again")]
     marched = [float(t) for t in re.findall(r"progress \S+ t=(\S+)", (found.folder / "log.txt").read_text())]
     assert s["ended"] == "impact" and s["contact_time"] < 6e-3 and rows.end.max() < 0.02
-    assert max(marched) <= found.history["t"][-1] * (1 + 1e-5) < 0.1      # 6 digits are printed
+    assert max(marched) <= found.history["t"][-1] * (1 + 1e-5) < 0.1  # 6 digits are printed
     assert len(told) == 1 and told[0].startswith(f"touches again: {who} ") and "end_time > 0" in told[0]
     assert earliest < float(told[0].split("t = ")[1].split(" s")[0]) < latest
     assert s["phase_seconds"]["flight"] >= 0
 
 
 def test_a_corner_that_follows_at_once_belongs_to_the_impact(tmp_path):
-    """A square of 20 degrees strikes with a second corner within three durations of the first contact:
-    the run has both."""
+    """A square at 20 degrees strikes with a second corner within three durations of the first
+    contact: the run has both."""
     square = {"shape": "rectangle", "width": 0.1, "height": 0.1, "position": [0, 0.08], "angle": 20}
     rows, found = go(tmp_path, read(square | {"velocity": [0, -2]}, obstacles=(FLOOR,)))
     assert len(rows) == 2 and rows.start[1] - rows.start[0] < 3 * rows.time[0]
@@ -153,25 +171,27 @@ def test_a_corner_that_follows_at_once_belongs_to_the_impact(tmp_path):
 
 
 def test_steps_grow_in_a_flight_before_an_end_time(tmp_path):
-    """A card that falls flat flies up for thousands of transits of waves across its thickness. It
-    takes few steps for that; energy is kept, and its centre goes along the parabola."""
+    """A card that falls flat flies upwards for thousands of transit times across its thickness.
+
+    It takes few steps for this. Energy is conserved, and the centre follows the parabola.
+    """
     card = {"shape": "rectangle", "width": 0.06, "height": 0.002, "position": [0, 0.002],
             "mesh_size": 1e-3, "contact_mesh_size": 1e-3}
     given = read(card, obstacles=(FLOOR,), gravity=9.81, end_time=0.03, young=1e8, density=1000)
     rows, found = go(tmp_path, given)
     h, s, transit = found.history, found.summary, 0.002 / math.sqrt(1e8 / 1000)
-    k = int(np.argmax(h["t"] > rows.end.iloc[-1])) + 1                # in the flight
+    k = int(np.argmax(h["t"] > rows.end.iloc[-1])) + 1  # in the flight
     rise = h["vy"][k] * (h["t"] - h["t"][k]) - 9.81 * (h["t"] - h["t"][k])**2 / 2
     assert h["t"][-1] - h["t"][k] > 1000 * transit and len(h["t"]) - k < 300
     assert h["y"][k:] - h["y"][k] == pytest.approx(rise[k:], abs=1e-9) and s["energy_drift"] < 1e-8
-    log = (found.folder / "log.txt").read_text()                      # forecasts know the flight
+    log = (found.folder / "log.txt").read_text()  # forecasts include the flight
     told = [int(n) / float(share) for share, n in re.findall(r"progress (\S+) t=\S+ steps=(\d+)", log)]
     assert max(told) < 5 * len(h["t"])
 
 
 def test_steps_of_a_compact_body_stay_before_an_end_time(tmp_path):
-    """A disc that bounces until an end_time takes in its flight the steps of its contact: the next
-    contact depends on how it vibrates."""
+    """A disc that bounces until an end_time takes the steps of contact in flight, as the next
+    contact depends on its vibration."""
     given = {"law": "neohookean", "accuracy": 0.1, "speed": 2, "gravity": 9.81, "end_time": 0.06}
     rows, found = go(tmp_path, scene.load("disc-normal"), given)
     t, dt = found.history["t"], found.history["dt"]

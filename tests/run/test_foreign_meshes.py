@@ -1,4 +1,5 @@
-"""Meshes of the user's own: what is wrong with a file is named, on both ways in; bodies of any outline; gmsh's files."""
+"""Meshes of the user: reports of errors in a file, with and without Python; bodies of any outline;
+gmsh files."""
 
 import math
 import re
@@ -19,9 +20,9 @@ from ffimpact.running import run
 from tests.support.foreign_meshes import DENSITY, RADIUS, SETTINGS, SIZE, agree, go, moved, shaped
 from tests.support.triangles import areas
 
-# ---- files with something wrong
+# ---- wrong files
 
-# a square of 0.1 m, 2 x 2 cells of two triangles each; vertex 5 is its middle
+# A square of 0.1 m with 2 x 2 squares of two triangles each; vertex 5 is its middle.
 POINTS = [f"{x} {y} 0" for y in (0, 0.05, 0.1) for x in (0, 0.05, 0.1)]
 TRIANGLES = [f"{a} {b} {c} 0" for k in (1, 2, 4, 5) for a, b, c in ((k, k + 1, k + 4), (k, k + 4, k + 3))]
 EDGES = [f"{a} {b} 1" for a, b in ((1, 2), (2, 3), (3, 6), (6, 9), (9, 8), (8, 7), (7, 4), (4, 1))]
@@ -32,19 +33,21 @@ def square(points=POINTS, triangles=TRIANGLES, edges=EDGES, counts=None) -> str:
 
 
 def changed(lines: list[str], number: int, text: str) -> list[str]:
-    """The lines with the one of this number, counted from 1, replaced."""
+    """The lines with line `number`, counted from 1, replaced."""
     return [text if k == number else line for k, line in enumerate(lines, 1)]
 
 
 def another(shift: tuple[float, float], number) -> tuple[list[str], list[str], list[str]]:
-    """Points, triangles and edges of a second square, moved; number(k) is the number in the file of its vertex k."""
+    """Points, triangles and edges of a second square, moved. number(k) is the number of its vertex
+    k in the file."""
     def renumbered(lines: list[str]) -> list[str]:
         return [" ".join([*(str(number(int(word))) for word in line.split()[:-1]), line.split()[-1]]) for line in lines]
     return [f"{float(x) + shift[0]} {float(y) + shift[1]} 0" for x, y, _ in map(str.split, POINTS)], renumbered(TRIANGLES), renumbered(EDGES)
 
 
 APART = another((0.3, 0), lambda k: k + 9)
-BY_A_POINT = another((0.1, 0.1), lambda k: k + 8)   # its first vertex is vertex 9 of the first square
+# Its first vertex is vertex 9 of the first square.
+BY_A_POINT = another((0.1, 0.1), lambda k: k + 8)
 BAD = {
     "empty": ("", "does not begin with its numbers of vertices, triangles and boundary edges"),
     "words": ("hello world\n", "boundary edges (accepted: a 2D mesh as FreeFEM's savemesh writes it, .msh; through Python gmsh's .msh, too)"),
@@ -113,14 +116,15 @@ BAD = {
 
 @pytest.fixture(scope="module")
 def direct():
-    """direct(flag, value, ...): edp/disc-plane.edp without Python."""
-    program = freefem.find()   # the real one, also where a test puts another in its place
+    """direct(flag, value, ...): runs edp/disc-plane.edp without Python."""
+    program = freefem.find()  # the real one, also if a test replaces it
     return lambda *flags: program.call("edp/disc-plane.edp", *flags, timeout=120)
 
 
 @pytest.fixture(scope="module")
 def refused(direct):
-    """refused(mesh, out, flags): the one line with which the script alone refuses; it leaves nothing behind."""
+    """refused(mesh, out, flags): the line with which the script refuses. Asserts that it leaves no
+    files."""
     def go(path: Path, out: Path, *flags: str) -> str:
         process = direct("-mesh", str(path), "-out", str(out), *flags)
         assert process.returncode == 10, process.stdout
@@ -139,8 +143,11 @@ def spent() -> float:
 @pytest.mark.few(14)
 @pytest.mark.parametrize("name", BAD)
 def test_bad_mesh_is_named_alike_on_both_ways(refused, fake, tmp_path, name):
-    """What is wrong with a mesh, and where, is one line and exit code 10, from the script and from Python, which starts no run;
-    within a second of processor time."""
+    """The error of a mesh and its place are one line with exit code 10, from the script and from
+    Python, which starts no run.
+
+    The check takes less than a second of processor time.
+    """
     text, words = BAD[name]
     (tmp_path / "m.msh").write_text(text)
     started = spent()
@@ -153,7 +160,7 @@ def test_bad_mesh_is_named_alike_on_both_ways(refused, fake, tmp_path, name):
 
 
 def test_the_square_without_a_fault_is_accepted(tmp_path):
-    """The square that the faults are put into is a mesh: every refusal above is for its fault."""
+    """The square without errors is a valid mesh: every refusal above is due to its error."""
     for number, text in enumerate([square(), square().replace("\n", "\r\n"), square() + "\n \n"]):
         (tmp_path / f"{number}.msh").write_text(text, newline="")
         assert describe({"mesh": str(tmp_path / f"{number}.msh")})["outline"] == "8 straight edges"
@@ -168,7 +175,7 @@ def test_large_mesh_is_checked_within_a_second(tmp_path):
     points = np.stack(np.meshgrid(np.linspace(0, 0.1, n), np.linspace(0, 0.1, n)), axis=-1).reshape(-1, 2)
     edges = mesh.boundary(triangles)
     mesh.write(mesh.Mesh(points, triangles, edges, np.ones(len(edges), dtype=int)), tmp_path / "m.msh")
-    describe({"radius": 0.0501})   # a start without a mesh, for comparison
+    describe({"radius": 0.0501})  # a start without a mesh, for comparison
     started = spent()
     describe({"radius": 0.0502})
     alone = spent() - started
@@ -196,26 +203,32 @@ def ring(occ):
     (ellipse, r"\d+ straight edges", math.pi * 0.06 * 0.04), (tilted_square, r"\d+ straight edges", 0.08**2),
     (ring, r"circle of radius 0\.0[25] about \(0\.1, 0\.1\), circle of radius 0\.0[25] about \(0\.1, 0\.1\)", math.pi * (RADIUS**2 - 0.02**2))])
 def test_any_outline_falls_and_bounces(tmp_path, draw, outline, size):
-    """An ellipse, a tilted square, a ring, wherever they are in the file: the kinetic energy of their area at the start, the touch
-    at once and with the lowest point, energy kept, the impulse the change of momentum."""
+    """An ellipse, a rotated square and a ring at any place in the file have the kinetic energy of
+    their area.
+
+    Contact begins at once at the lowest point, energy is conserved, and the impulse is the change
+    of momentum.
+    """
     m = shaped(draw)
     assert areas(m).sum() == pytest.approx(size, rel=0.05)
     result = go(tmp_path / "out", m)
     h, s = result.history, result.summary
     found = re.search(r"^outline: (.*)$", (result.folder / "log.txt").read_text(), re.MULTILINE)[1]
     assert re.fullmatch(outline, found)
-    exact = size if draw is ring else areas(m).sum()        # circles are curved, all else is as the mesh has it
+    # Circles are curved, other outlines are as in the mesh.
+    exact = size if draw is ring else areas(m).sum()
     assert s["energy_initial"] == pytest.approx(DENSITY * exact * 4**2 / 2, rel=1e-4 if draw is ring else 1e-9)
     assert s["energy_drift"] < 1e-8 and s["rebound_vy"] > 0
     assert s["impulse"] == pytest.approx(h["momentum_y"][-1] - h["momentum_y"][0], rel=1e-9)
-    assert 0 <= s["contact_start"] * 4 < 0.113 * SIZE   # the first contact point of an edge is 0.113 of it away from its lower end
+    # The first contact point of an edge is at 0.113 of its length from its lower end.
+    assert 0 <= s["contact_start"] * 4 < 0.113 * SIZE
     assert "half" not in str(s["skipped"])
     half = max(np.ptp(m.points, axis=0)) / 2
     assert result.scene["radius"] == pytest.approx(half, rel=5e-3) and result.scene["symmetry"] == "full"
 
 
 def test_half_a_body_elsewhere(tmp_path):
-    """Half a disc whose axis is x = 0.3 is half a body too."""
+    """Half a disc with the axis x = 0.3 is half a body, too."""
     m = mesh.disc(RADIUS, 0.015, 0.006, True)
     here, there = go(tmp_path / "here", m), go(tmp_path / "there", moved(m, 0.3, 1))
     agree(here, there, 1e-6)
@@ -231,7 +244,8 @@ def test_half_a_body_elsewhere(tmp_path):
     (True, {"symmetry": "half", "angle": 60}, "symmetry: half needs a normal impact"),
     (False, {"symmetry": "half"}, "symmetry: half, but the mesh is a whole body")])
 def test_mesh_and_symmetry_have_to_agree(refused, fake, tmp_path, half, values, words):
-    """Half a mesh for a body that has no mirror image, and a mesh that is not what `symmetry` says, are refused on both ways in."""
+    """Half a mesh for a body without mirror symmetry, and a mesh that contradicts `symmetry`, are
+    refused with and without Python."""
     mesh.write(mesh.disc(RADIUS, 0.015, 0.006, half), tmp_path / "m.msh")
     said = refused(tmp_path / "m.msh", tmp_path / "out", *freefem.words_of(values))
     assert words in said
@@ -241,7 +255,8 @@ def test_mesh_and_symmetry_have_to_agree(refused, fake, tmp_path, half, values, 
 
 
 def test_a_disc_of_another_size_has_its_own_penalty(tmp_path):
-    """Without a radius the scene takes that of the mesh, and with it the penalty; the run is that with the radius given."""
+    """Without a radius the scene uses that of the mesh for the penalty. The run equals that with
+    the prescribed radius."""
     mesh.write(moved(mesh.disc(0.2, 0.06, 0.02, False), 1, 1), tmp_path / "m.msh")
     silent, told = (describe({"mesh": str(tmp_path / "m.msh"), "penalty": "auto"} | more)["used"] for more in ({}, {"radius": 0.2}))
     assert silent["radius"] == pytest.approx(0.2, rel=1e-12)
@@ -250,7 +265,7 @@ def test_a_disc_of_another_size_has_its_own_penalty(tmp_path):
 
 
 def test_coarse_circles_of_our_own_stay_round(tmp_path):
-    """The outline of our own disc is its circle also where its edges are as long as the radius."""
+    """The outline of our own disc is its circle even if edges are as long as the radius."""
     mesh.write(mesh.disc(RADIUS, RADIUS, RADIUS, True), tmp_path / "m.msh")
     assert describe({"mesh": str(tmp_path / "m.msh")})["outline"].startswith("circle of radius 0.05 about (0, 0.05), half a body")
 
@@ -267,7 +282,8 @@ def round_of(sides: int) -> np.ndarray:
     return 2 * math.pi * np.arange(sides) / sides
 
 
-SHAFT = np.array([angle for k, angle in enumerate(round_of(48)) if not 0 < k % 24 < 10])       # two flats of 75 degrees
+# Two flats of 75 degrees.
+SHAFT = np.array([angle for k, angle in enumerate(round_of(48)) if not 0 < k % 24 < 10])
 
 
 @pytest.mark.parametrize("angles, place, outline", [
@@ -277,7 +293,8 @@ SHAFT = np.array([angle for k, angle in enumerate(round_of(48)) if not 0 < k % 2
     (np.array([0, 0.2, 0.4, 0.6, 3, 4]), (2, 0), "6 straight edges")],
     ids=["octagon", "24", "12", "11", "hexagon on the scene's own circle", "shaft", "shaft on the scene's own circle", "three edges"])
 def test_edges_up_to_30_degrees_are_a_circle(tmp_path, angles, place, outline):
-    """Edges in a row that lie on a circle and span at most 30 degrees each are its arcs; longer ones, flats among them too, stay straight, wherever they are."""
+    """Consecutive edges that lie on a circle and span at most 30 degrees each are arcs. Longer
+    ones, also flats among them, stay straight."""
     mesh.write(fan(angles, *place), tmp_path / "m.msh")
     said = describe({"mesh": str(tmp_path / "m.msh")})
     assert said["outline"] == outline
@@ -286,7 +303,8 @@ def test_edges_up_to_30_degrees_are_a_circle(tmp_path, angles, place, outline):
 
 
 def test_another_mass_than_the_file_is_a_warning(tmp_path):
-    """A disc of 24 sides is 1.2 % heavier than its file, and a warning says so; one of 48 sides is as heavy to 0.3 %, without a warning."""
+    """A disc of 24 sides is 1.2 % heavier than its file, which is a warning; one of 48 sides agrees
+    to 0.3 % without a warning."""
     for sides, said in ((24, True), (48, False)):
         m = fan(round_of(sides), 2, 0)
         result = go(tmp_path / str(sides), m, end_time=1e-4)
@@ -298,7 +316,7 @@ def test_another_mass_than_the_file_is_a_warning(tmp_path):
 @pytest.mark.few(1)
 @pytest.mark.parametrize("spin", [60, -200])
 def test_body_that_is_not_round_turns_on_its_way_down(tmp_path, spin):
-    """An ellipse that falls turning lands when and as one does that is marched all the way down."""
+    """An ellipse that falls and rotates lands as one whose flight is integrated in time."""
     m = shaped(ellipse, 0.02)
     values = dict(height=0.02, spin=spin, end_time=0.012)
     flown, marched = go(tmp_path / "flown", m, **values), go(tmp_path / "marched", m, without="flight", **values)
@@ -311,7 +329,8 @@ def test_body_that_is_not_round_turns_on_its_way_down(tmp_path, spin):
 
 @pytest.mark.parametrize("values", [{"speed": 0}, {"speed": 1, "angle": 0}], ids=["at rest", "sliding"])
 def test_body_that_is_set_down_needs_an_end(direct, tmp_path, values):
-    """Without a velocity towards the plane and a height the run would have no end: refused."""
+    """Without a velocity towards the plane and a height the run would have no end: it is refused.
+    """
     process = direct(*freefem.words_of({"gravity": 9.81, "accuracy": 0.02} | values | {"out": tmp_path / "out"}))
     assert process.returncode == 10 and not (tmp_path / "out").exists()
     assert process.stderr == "ffimpact: end_time: a body that is set down on the plane does not leave it; give an end_time > 0\n"
@@ -319,7 +338,8 @@ def test_body_that_is_set_down_needs_an_end(direct, tmp_path, values):
 
 @pytest.mark.parametrize("accuracy", [0.4, 0.1, 0.02])
 def test_body_that_is_set_down_is_in_touch_at_once(direct, tmp_path, accuracy):
-    """With an end_time it rests on its lowest contact point, and does not fall through the gap between the plane and that point."""
+    """With an end_time it rests on its lowest contact point and does not fall through the gap
+    between plane and point."""
     process = direct("-speed", "0", "-gravity", "9.81", "-accuracy", str(accuracy), "-end_time", "0.01", "-out", str(tmp_path / "out"))
     assert process.returncode == 0, process.stderr
     summary, history = results.read_summary(tmp_path / "out"), results.read_history(tmp_path / "out")
@@ -330,7 +350,8 @@ def test_body_that_is_set_down_is_in_touch_at_once(direct, tmp_path, accuracy):
 # ---- gmsh's files
 
 def test_named_curves_without_contact_are_named(tmp_path):
-    """A file of gmsh whose physical curves have names, but none `contact`, is refused with these."""
+    """A gmsh file whose physical curves have names, but none `contact`, is refused with these
+    names."""
     m = fan(round_of(24), 0, 1)
     in_gmsh(tmp_path / "m.msh", replace(m, labels=np.where(np.arange(24) < 5, 2, 3)), 4.1, False, named=True)
     with pytest.raises(BadInput, match=r"none of its physical curves \(rest, Symmetry\) has the name 'contact', or without a name the number 1"):
@@ -338,7 +359,7 @@ def test_named_curves_without_contact_are_named(tmp_path):
 
 
 def in_gmsh(path: Path, m: mesh.Mesh, version: float, binary: bool, named: bool = False) -> None:
-    """Writes a mesh as gmsh does; its boundary in a physical curve a label."""
+    """Writes a mesh as gmsh does, with a physical curve for each label of the boundary."""
     with mesh.gmsh_session() as gmsh:
         surface = gmsh.model.addDiscreteEntity(2)
         gmsh.model.mesh.addNodes(2, surface, range(1, len(m.points) + 1), np.column_stack([m.points, np.zeros(len(m.points))]).ravel())
@@ -355,7 +376,8 @@ def in_gmsh(path: Path, m: mesh.Mesh, version: float, binary: bool, named: bool 
 
 
 def the_same(a: mesh.Mesh, b: mesh.Mesh) -> bool:
-    """Points to gmsh's 16 digits, triangles, and boundary edges with their labels, in whatever order."""
+    """Whether points agree to gmsh's 16 digits, and triangles and labelled boundary edges in any
+    order."""
     labelled = [{(*sorted(edge), label) for edge, label in zip(m.edges.tolist(), m.labels.tolist())} for m in (a, b)]
     corners = [sorted(sorted(triangle) for triangle in m.triangles.tolist()) for m in (a, b)]
     return a.points.shape == b.points.shape and abs(a.points - b.points).max() < 1e-15 and labelled[0] == labelled[1] and corners[0] == corners[1]
@@ -371,14 +393,16 @@ def load(path: Path) -> mesh.Mesh:
 @pytest.mark.parametrize("version, binary", [(2.2, False), (2.2, True), (4.1, False), (4.1, True)])
 @pytest.mark.parametrize("half, named", [(True, False), (False, True)])
 def test_gmsh_formats_are_our_own(tmp_path, version, binary, half, named):
-    """A disc in gmsh 2.2 or 4.1, ascii or binary, with numbered or named physical curves, is the disc in FreeFEM's format."""
+    """A disc in gmsh 2.2 or 4.1, ascii or binary, with numbers or names of physical curves, equals
+    the disc in FreeFEM's format."""
     m = mesh.disc(RADIUS, 0.015, 0.006, half)
     in_gmsh(tmp_path / "disc.msh", m, version, binary, named)
     assert the_same(load(tmp_path / "disc.msh"), m)
 
 
 def test_gmsh_file_gives_the_same_answer(tmp_path):
-    """The run on gmsh's binary file is the run on ours, and is found again; the solver's round-off is all that differs."""
+    """The run with gmsh's binary file equals that with ours to the round-off of the solver, and is
+    reused."""
     m = mesh.disc(RADIUS, 0.015, 0.006, True)
     in_gmsh(tmp_path / "gmsh.msh", m, 4.1, True)
     ours = go(tmp_path / "ours", m)
@@ -388,8 +412,11 @@ def test_gmsh_file_gives_the_same_answer(tmp_path):
 
 
 def test_gmsh_by_default_lets_all_of_the_boundary_touch(tmp_path):
-    """Without physical curves all outlines may touch (1), on a plane alone holes do not (3);
-    triangles of six nodes give their corners; unused nodes go."""
+    """Without physical curves all outlines may come into contact (1); on a plane alone, holes do
+    not (3).
+
+    Triangles with six nodes give their corners. Unused nodes are removed.
+    """
     for order in (1, 2):
         with mesh.gmsh_session() as gmsh:
             gmsh.option.setNumber("Mesh.MeshSizeMax", 0.01)
@@ -411,18 +438,20 @@ def test_gmsh_by_default_lets_all_of_the_boundary_touch(tmp_path):
 
 
 def test_gmsh_triangles_are_turned(tmp_path):
-    """Clockwise triangles of gmsh's are turned over."""
+    """Clockwise triangles of gmsh are reversed."""
     m = mesh.disc(RADIUS, 0.03, 0.02, False)
     in_gmsh(tmp_path / "m.msh", replace(m, triangles=m.triangles[:, ::-1]), 2.2, False)
     assert the_same(load(tmp_path / "m.msh"), m)
 
 
 def test_names_come_before_numbers(tmp_path):
-    """A physical curve that has a name goes by it: gmsh numbers named curves 1, 2 ... by itself."""
+    """Names of physical curves have priority: gmsh numbers curves with names 1, 2 ...
+    automatically."""
     with mesh.gmsh_session() as gmsh:
         gmsh.model.occ.addRectangle(0, 0, 0, 0.1, 0.1)
         gmsh.model.occ.synchronize()
-        for curve, name in ((2, "right"), (3, "top"), (1, "contact")):   # bottom 1, right 2, top 3, left 4: in no group
+        # Bottom 1, right 2, top 3, left 4: in no group.
+        for curve, name in ((2, "right"), (3, "top"), (1, "contact")):
             gmsh.model.addPhysicalGroup(1, [curve], name=name)
         gmsh.option.setNumber("Mesh.MeshSizeMax", 0.05)
         gmsh.option.setNumber("Mesh.SaveAll", 1)
@@ -436,7 +465,8 @@ def test_names_come_before_numbers(tmp_path):
 @pytest.mark.parametrize("version", [2.2, 4.1])
 @pytest.mark.parametrize("names", [("contact", "bottom"), ("bottom", "contact"), ("contact", "symmetry")])
 def test_lines_in_two_groups(tmp_path, version, names):
-    """A line that is in `contact` and in another group may touch, whatever their order; one in `symmetry`, too, is refused."""
+    """A line in `contact` and in another group may come into contact, in any order. A line also in
+    `symmetry` is refused."""
     with mesh.gmsh_session() as gmsh:
         gmsh.model.occ.addRectangle(0, 0, 0, 0.1, 0.1)
         gmsh.model.occ.synchronize()
@@ -469,9 +499,10 @@ NODES = "$Nodes\n4\n1 0 0 0\n2 0.1 0 0\n3 0.1 0.1 {z}\n4 0 0.1 0\n$EndNodes\n"
     (HEAD + NODES.format(z=0) + "$Elements\n1\n1 2 2 0 1 1 2 3\n$EndElements\n", None),
     (HEAD + "$Nodes\n-3\n", "it has no triangles"), (HEAD + "$Nodes\n3000000000\n1 0 0 0\n", "")])
 def test_bad_gmsh_file_is_one_line(fake, tmp_path, text, words):
-    """What gmsh or we cannot use is bad input that names the file and why; nothing is started."""
+    """A file that gmsh or we cannot use is bad input with the file and the reason. Nothing is
+    started."""
     (tmp_path / "m.msh").write_text(text)
-    if words is None:                                # the same file without a fault
+    if words is None:  # the same file without error
         assert describe({"mesh": _converted(tmp_path)})["outline"] == "3 straight edges"
         return
     with pytest.raises(BadInput) as error:
@@ -486,13 +517,13 @@ def _converted(folder: Path) -> str:
 
 
 def test_script_alone_names_a_gmsh_file(refused, tmp_path):
-    """The script reads FreeFEM's format only, and says who reads gmsh's."""
+    """The script reads only FreeFEM's format and reports how to read gmsh's."""
     in_gmsh(tmp_path / "m.msh", mesh.disc(RADIUS, 0.03, 0.02, True), 4.1, True)
     assert "a file of gmsh, which `python -m ffimpact run SCENE --mesh FILE` reads" in refused(tmp_path / "m.msh", tmp_path / "out")
 
 
 def test_other_files_are_not_executed(fake, tmp_path):
-    """A script of gmsh's (.geo) is no mesh: it is not handed to gmsh, which would run it."""
+    """A script of gmsh (.geo) is not a mesh and is not passed to gmsh, which would run it."""
     (tmp_path / "m.geo").write_text(f'SystemCall "touch {tmp_path}/pwned";\n')
     with pytest.raises(BadInput, match="does not begin with its numbers of vertices"):
         run.run(scene.load("disc-normal"), {}, tmp_path / "out", mesh_file=tmp_path / "m.geo")

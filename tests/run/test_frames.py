@@ -1,4 +1,4 @@
-"""Answers and their stated errors do not depend on the frame that a scene is written in."""
+"""Results and their error estimates do not depend on the reference frame of a scene."""
 
 import math
 from pathlib import Path
@@ -18,7 +18,8 @@ FRAMES = {"at 60 m/s": {"drift": (48.0, -36.0)}, "turned and 1 km away": {"turn"
 
 
 def seen(given: dict, turn: float = 0.0, drift=(0.0, 0.0), shift=(0.0, 0.0)) -> dict:
-    """The tables of a scene, turned [deg], moved [m] and moving [m/s]. Discs, which look alike from all sides, keep their angle."""
+    """The tables of a scene rotated [deg], moved [m] and moving [m/s]. Discs, which look alike in
+    all directions, keep their angle."""
     c, s = math.cos(math.radians(turn)), math.sin(math.radians(turn))
     R = np.array([[c, -s], [s, c]])
     def moved(one: dict) -> dict:
@@ -38,7 +39,8 @@ def told(given: dict, folder: Path) -> dict[str, float]:
 @pytest.mark.few(1)
 @pytest.mark.parametrize("given", [scene.load("two-discs").given | {"accuracy": 0.1}, ON_PLANE], ids=["two discs", "a body on a plane"])
 def test_no_answer_and_no_stated_error_depends_on_the_frame(given, tmp_path):
-    """At 60 m/s, and turned by 37 degrees 1 km away, a scene has the answers and the stated errors that it has at rest, to 1e-3 of themselves."""
+    """At 60 m/s, and rotated by 37 degrees at a distance of 1 km, a scene has the same results and
+    error estimates as at rest, to 1e-3."""
     at_rest = told(given, tmp_path / "at rest")
     assert at_rest["error of rebound"] > 0 and at_rest["friction_work"] > 0
     for name, frame in FRAMES.items():
@@ -46,7 +48,7 @@ def test_no_answer_and_no_stated_error_depends_on_the_frame(given, tmp_path):
 
 
 def test_a_disc_is_meshed_finely_where_it_touches_whatever_its_angle(tmp_path):
-    """It touches with what is its lowest point when it is not turned; what the scene says of its angle does not matter."""
+    """A disc comes into contact with its lowest point. The angle in the scene has no effect."""
     from ffimpact.scenes import approach
     for angle in (0.0, 50.0):
         found = approach.turned(read(seen(scene.load("two-discs").given | {"body": [one | {"angle": angle} for one in scene.load("two-discs").given["body"]]}), tmp_path, "x"))
@@ -58,11 +60,12 @@ def test_a_disc_is_meshed_finely_where_it_touches_whatever_its_angle(tmp_path):
 
 SHAPES = [{"shape": "disc", "radius": 0.05}, {"shape": "ring", "radius": 0.05, "inner_radius": 0.03}, {"shape": "polygon", "vertices": [[0, 0], [0.07, 0.01], [0.05, 0.06], [0.02, 0.04]]},
           {"shape": "box", "width": 0.05, "height": 0.07, "depth": 0.04, "turn": [10, 0, 20]}, {"shape": "cylinder", "radius": 0.03, "height": 0.07, "turn": [10, 0, 20]}]
-POWERS = {"position": 1, "velocity": 1, "radius": 1, "inner_radius": 1, "width": 1, "height": 1, "depth": 1, "vertices": 1, "gravity": 1, "young": -1, "density": -3}   # of a length
+# Powers of a length.
+POWERS = {"position": 1, "velocity": 1, "radius": 1, "inner_radius": 1, "width": 1, "height": 1, "depth": 1, "vertices": 1, "gravity": 1, "young": -1, "density": -3}
 
 
 def in_unit(given: dict, metre: int) -> dict:
-    """The same tables where a metre is so many lengths."""
+    """The same tables with a unit of length of which `metre` make a metre."""
     def times(value, factor: float):
         return [times(one, factor) for one in value] if isinstance(value, list) else float(f"{value * factor:.12g}")
     return {key: times(value, metre**POWERS[key]) if key in POWERS else value for key, value in given.items()}
@@ -71,7 +74,7 @@ def in_unit(given: dict, metre: int) -> dict:
 @pytest.mark.few(2)
 @pytest.mark.parametrize("shape", SHAPES, ids=[one["shape"] for one in SHAPES])
 def test_no_mesh_depends_on_the_unit_of_length(shape, tmp_path):
-    """In metres, centimetres and millimetres a body has the same mesh, but for round-off."""
+    """In metres, centimetres and millimetres a body has the same mesh except for round-off."""
     from ffimpact.scenes import approach, assembly
     solid, found = shape["shape"] in ("box", "cylinder"), []
     body = shape | {"position": [0.0, 0.07, 0.0][:3 if solid else 2], "velocity": [0.3, -2.0, 0.0][:3 if solid else 2]}

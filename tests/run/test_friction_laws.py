@@ -1,4 +1,5 @@
-"""The friction laws of edp/core/contact/friction.idp, tabulated by the real FreeFem++, and their picture."""
+"""The friction laws of edp/core/contact/friction.idp, tabulated by the real FreeFem++, and their
+figure."""
 
 import numpy as np
 import pytest
@@ -21,21 +22,23 @@ def laws(tmp_path_factory):
 
 @pytest.mark.parametrize("law", CLOSED_FORMS)
 def test_regularisations_are_their_closed_forms(laws, law):
-    """With equal coefficients of 1 the ratio is phi of (13); with v/eps where it is linear, v/(2 eps) as printed."""
+    """With equal coefficients of 1 the ratio is phi of (13), with v/eps for linear and v/(2 eps)
+    for the printed form."""
     points = laws[(laws.panel == "b") & (laws.law == law) & (abs(abs(laws.size_) - 1) > 1e-9)]
     assert len(points) > 700
     assert points.ratio.to_numpy() == pytest.approx(CLOSED_FORMS[law](points.size_.to_numpy()), abs=1e-12)
 
 
 def test_coulomb_is_the_limit(laws):
-    """For a small slip velocity the law is Coulomb's step: the sign of the velocity, any value between at rest."""
+    """For a small slip velocity the law is Coulomb's step: the sign of the velocity, and any value
+    at rest."""
     points = laws[laws.panel == "a"]
     moving = abs(points.size_) > 1e-5
     assert (points.ratio[moving] == np.sign(points.v[moving])).all() and points.ratio.abs().max() == 1
 
 
 def test_jump_from_static_to_dynamic(laws):
-    """The ratio comes up to mu_e inside the slip velocity and is mu_d from there on."""
+    """The ratio reaches mu_e within the slip velocity and is mu_d beyond it."""
     points = laws[(laws.panel == "c") & (laws.transition == "jump")]
     stick, slip = points[points.side == "stick"], points[points.side == "slip"]
     assert stick.ratio.max() == pytest.approx(STATIC, rel=1e-9) and stick.size_.abs().max() < 1
@@ -43,28 +46,30 @@ def test_jump_from_static_to_dynamic(laws):
 
 
 def test_smooth_transition_is_continuous(laws):
-    """The smooth transition goes from mu_e at the slip velocity to mu_d at twice that, without a jump."""
+    """The smooth transition passes from mu_e at the slip velocity to mu_d at twice that, without a
+    jump."""
     points = laws[(laws.panel == "c") & (laws.transition == "smooth")]
     assert np.abs(np.diff(points.ratio)).max() < 0.02 and points.ratio.max() == pytest.approx(STATIC)
     assert points.ratio[points.size_ >= 2 + 1e-9].to_numpy() == pytest.approx(DYNAMIC)
 
 
 def test_all_laws_are_odd(laws):
-    """Friction opposes the velocity whichever way it points."""
+    """Friction opposes the velocity in both directions."""
     for _, points in laws.groupby(["panel", "law", "transition"]):
         assert points.ratio.to_numpy() == pytest.approx(-points.ratio.to_numpy()[::-1], abs=1e-15)
         assert (points.ratio * points.v >= 0).all()
 
 
 def test_picture(tmp_path, capsys):
-    """The command leaves the table and the picture, and prints where the picture is."""
+    """The command writes the table and the figure, and prints the path of the figure."""
     assert main(["friction-laws", "--out", str(tmp_path / "laws")]) == 0
     assert capsys.readouterr().out.strip().endswith("friction-laws.png")
     assert (tmp_path / "laws/friction-laws.png").stat().st_size > 20_000 and (tmp_path / "laws/laws.csv").exists()
 
 
 def test_bad_coefficients_are_named(tmp_path):
-    """A static coefficient below the dynamic one is refused by the script with exit code 10, naming both."""
+    """The script refuses a static coefficient below the dynamic one with exit code 10 and both
+    names."""
     with pytest.raises(Failure, match="friction_static: 0.2 is below friction_dynamic") as caught:
         friction_laws.tabulate(tmp_path, dict(friction_static=0.2, friction_dynamic=0.5))
     assert caught.value.code == 10
@@ -76,7 +81,7 @@ def test_bad_coefficients_are_named(tmp_path):
     (["--friction_static", "0", "--friction_dynamic", "0"], "friction_static: 0 leaves nothing to draw"),
 ])
 def test_bad_input_is_one_line(tmp_path, capsys, arguments, line):
-    """Bad input ends with exit code 10 and one line."""
+    """Bad input gives exit code 10 and one line."""
     assert main(["friction-laws", "--out", str(tmp_path / "laws"), *arguments]) == 10
     error = capsys.readouterr().err
     assert error.startswith(f"ffimpact: {line}") and error.count("\n") == 1

@@ -1,4 +1,4 @@
-"""Scenes with friction: that they load, run, are reported and drawn as the paper's figures 4 to 6 are."""
+"""Scenes with friction: loading, runs, reports and the figures 4 to 6 of the paper."""
 
 import re
 
@@ -25,7 +25,8 @@ def oblique(tmp_path_factory):
 
 
 def test_oblique_impact_closes_its_balance(oblique):
-    """Friction takes energy and never gives any; with it the balance closes; the body leaves turning forwards."""
+    """Friction takes energy and never returns any. The balance closes with it. The body leaves with
+    forward rotation."""
     summary, work = oblique.summary, oblique.history["friction_work"]
     assert summary["energy_drift"] < 1e-9 and (np.diff(work) >= -1e-9 * summary["energy_initial"]).all()
     assert 0 < summary["friction_work"] == pytest.approx(work[-1]) and summary["rebound_spin"] < 0
@@ -33,13 +34,13 @@ def test_oblique_impact_closes_its_balance(oblique):
 
 
 def test_friction_is_drawn(oblique):
-    """A frictional run gets the flight and the rolling figure as well; none is empty."""
+    """A run with friction also has the figures flight and rolling. None is empty."""
     drawn = {path.stem: path.stat().st_size for path in (oblique.folder / "figures").iterdir()}
     assert set(drawn) == FRICTIONLESS | {"flight", "rolling"} and min(drawn.values()) > 10_000
 
 
 def test_a_missing_picture_of_the_contact_is_named(oblique):
-    """Where no state that was kept falls into the contact there is no picture of it, and the report says what gives one."""
+    """If no stored state is in the contact, there is no figure of it, and the report has advice."""
     picture = oblique.folder / "figures/contact.png"
     assert "no contact.png" not in report.report(oblique, verbose=True)
     kept = picture.rename(oblique.folder / "kept.png")
@@ -48,7 +49,7 @@ def test_a_missing_picture_of_the_contact_is_named(oblique):
 
 
 def test_whole_body_without_friction(tmp_path):
-    """Without friction there is no figure of friction or rolling; a whole body still gets its flight."""
+    """Without friction there is no figure of friction or rolling. A whole body has its flight."""
     values = COARSE | {"angle": 60, "speed": 4}
     result = run.run(scene.load("disc-normal"), values, tmp_path / "slide", estimate=False)
     report.draw(result)
@@ -61,14 +62,16 @@ def test_whole_body_without_friction(tmp_path):
                                     {"height": 0.01, "spin": 50, "gravity": 9.81}, {"end_time": 1e-3},
                                     {"regularization": "tanh", "friction_transition": "smooth"}, {"fields": 1}, {"fields": 0}])
 def test_figures_of_unusual_runs(tmp_path, values):
-    """Falls from rest, spins, runs that end inside the contact or keep one or no snapshot are drawn without an error."""
+    """Falls from rest, spins, runs that end during contact or keep at most one snapshot are drawn
+    without errors."""
     result = run.run(scene.load("disc-oblique"), COARSE | values, tmp_path / "run", estimate=False)
     names = {path.stem for path in drawing.draw(result.folder)}
     assert FRICTIONLESS - {"shapes", "contact"} <= names and ("flight" in names) == (result.scene["fields"] > 2)
 
 
 def test_report_tells_sliding_from_sticking(oblique):
-    """The report has the times the load slides, slides back and sticks, and the spin; the paper's number beside ours."""
+    """The report has the times of sliding, backward sliding and sticking, and the spin, with the
+    paper's number beside ours."""
     text = report.report(oblique, verbose=True)
     for label in ("load slides for", "of it backwards", "load sticks for", "spin", "lost to friction"):
         assert label in text
@@ -76,7 +79,8 @@ def test_report_tells_sliding_from_sticking(oblique):
 
 
 def test_report_tells_breakdown_and_unsolved_jumps(oblique):
-    """Where there are any, unsolved jumps are told in plain words, and the place and time of a breakdown in mm and ms."""
+    """Unsolved jumps are reported in plain words, and place and time of a breakdown in mm and ms.
+    """
     told = oblique.summary | {"unsolved_jumps": 7, "breakdown_time": 1.5e-3, "breakdown_x": 0.01, "breakdown_y": 0.002}
     text = report.report(results.Record(oblique.folder, told, reused=False), verbose=True)
     assert "7 steps of points in a jump of the friction law" in text
@@ -85,15 +89,18 @@ def test_report_tells_breakdown_and_unsolved_jumps(oblique):
 
 
 def test_pose_is_the_whole_outline(oblique):
-    """The outline of the first snapshot is the closed circle of the disc, its diameter is upright with the mark on top."""
+    """The outline of the first snapshot is the closed circle of the disc; its diameter is vertical
+    with the mark on top."""
     pose = figures.pose_at(*vtu.series(oblique.folder / "fields.pvd")[0], oblique.history)
     assert (pose.outline[0] == pose.outline[-1]).all()
-    assert np.hypot(pose.outline[:, 0], pose.outline[:, 1] - 0.05) == pytest.approx(0.05, rel=0.01)   # a polygon of 10 mm or less a side
+    # A polygon with sides of at most 10 mm.
+    assert np.hypot(pose.outline[:, 0], pose.outline[:, 1] - 0.05) == pytest.approx(0.05, rel=0.01)
     assert np.ptp(pose.diameter[:, 0]) < 1e-4 and pose.diameter[0, 1] > 0.09 and pose.diameter[-1, 1] < 0.01
 
 
 def test_flight_is_rigid_motion(oblique):
-    """Outside the run the body flies on the parabola of its centre, turns with its spin and keeps its shape."""
+    """Outside the run the body follows the parabola of its centre, rotates with its spin and keeps
+    its shape."""
     h = oblique.history
     pose = figures.pose_at(*vtu.series(oblique.folder / "fields.pvd")[-1], h)
     wait, pull = 0.01, 9.81
@@ -107,10 +114,11 @@ def test_flight_is_rigid_motion(oblique):
 
 
 def test_compare_goes_on_after_a_failure(fake, tmp_path, capsys):
-    """A scene that fails is named, the others are run, and the exit code is that of the failure."""
+    """A failed scene is reported, the others run, and the exit code is that of the failure."""
     fake("step")
     assert main(["compare", "disc-oblique-svk", "disc-oblique", "--out", str(tmp_path)]) == 11
-    assert 2 <= fake.starts() <= 4             # beside each, where there are two cores, the run that estimates its error, if it comes to it
+    # With two cores, the run for the error estimate may start beside each.
+    assert 2 <= fake.starts() <= 4
     captured = capsys.readouterr()
     assert captured.out.count("failed: step: no convergence") == 2 and captured.err.count("\n") == 1
 
@@ -122,7 +130,7 @@ def test_comparison_of_frictional_runs(oblique, tmp_path):
 
 
 def test_study_of_another_scene(fake, tmp_path):
-    """A study runs the scene that it is asked for, disc-normal otherwise."""
+    """A study runs its scene, by default disc-normal."""
     study.study([{"speed": 4.0}], tmp_path, {"fields": 0}, 30.0, "disc-oblique")
     study.study([{"speed": 5.0}], tmp_path, {"fields": 0}, 30.0)
     used = {folder.name: results.read_scene(folder) for folder in (tmp_path / "runs").iterdir()}

@@ -1,4 +1,4 @@
-"""Flat strikes: which they are, and what elements, steps and penalty they get (front.py)."""
+"""Flat strikes: their recognition, and their elements, steps and penalty (front.py)."""
 
 import tomllib
 
@@ -10,7 +10,8 @@ from tests.support.front import BLOCK, given
 
 
 def test_what_is_used_makes_the_same_scene_again(tmp_path):
-    """Read again, the scene as used has the same front, elements and penalty; a coarser one all of them coarser."""
+    """The scene as used reads back with equal front, elements and penalty. For a coarser scene all
+    are coarser."""
     wanted = given(BLOCK, tmp_path)
     built = assembly.assemble(wanted)
     used = tomllib.loads(assembly.to_toml(built.used))
@@ -23,7 +24,8 @@ def test_what_is_used_makes_the_same_scene_again(tmp_path):
 
 
 def test_what_the_user_gives_stays(tmp_path):
-    """A penalty and element sizes of the user's are not changed, in a coarser run neither the penalty."""
+    """A prescribed penalty and prescribed element sizes do not change, in a coarser run at least
+    the penalty."""
     wanted = given(BLOCK, tmp_path, contact__penalty=1e9, body__1__mesh_size=0.02)
     used = tomllib.loads(assembly.to_toml(assembly.assemble(wanted).used))
     assert used["contact"]["penalty"] == 1e9 and used["contact"].get("pair", []) == [] and used["body"][0]["mesh_size"] == 0.02

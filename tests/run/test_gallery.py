@@ -1,4 +1,5 @@
-"""The pages of the gallery run, and their numbers agree with published and exact ones, or say why not."""
+"""The pages of the gallery run. Their numbers agree with published and exact ones, or a note has
+the reason."""
 
 import importlib.util
 
@@ -17,7 +18,8 @@ MARKED = [
 
 @pytest.mark.parametrize("page", MARKED)
 def test_a_page_runs_and_its_numbers_are_consistent(page, tmp_path, monkeypatch):
-    """In an empty working folder; each number agrees within error and uncertainty, or has a note that says why it misses."""
+    """In an empty working folder each number agrees within error and uncertainty, or has a note
+    with the reason."""
     if ".view(" in page.read_text("utf-8") and not importlib.util.find_spec("k3d"):
         pytest.skip("k3d is not installed")
     monkeypatch.chdir(tmp_path)
@@ -25,7 +27,7 @@ def test_a_page_runs_and_its_numbers_are_consistent(page, tmp_path, monkeypatch)
 
 
 def table(**row) -> pd.DataFrame:
-    """A table of one number that agrees, with other entries as given."""
+    """A table of one number that agrees, with other entries as in `row`."""
     agrees = dict(
         quantity="impulse",
         unit="N s",
@@ -49,7 +51,7 @@ def table(**row) -> pd.DataFrame:
     ],
 )
 def test_what_agrees_or_says_why_not_is_accepted(row):
-    """Also a number without a reference."""
+    """A number without a reference is accepted, too."""
     assert not gallery.complaints(table(**row))
 
 
@@ -69,5 +71,5 @@ def test_what_agrees_or_says_why_not_is_accepted(row):
     ],
 )
 def test_what_disagrees_without_a_reason_is_found(row):
-    """A number beyond both bars, one without bars, and one that is no number."""
+    """A number beyond both error bars, one without error bars and an invalid number are reported."""
     assert len(gallery.complaints(table(**row))) == 1

@@ -1,4 +1,5 @@
-"""`integrator = auto`: explicit steps where their count says that they are the cheaper way, the default elsewhere; what was chosen is said."""
+"""`integrator = auto`: explicit steps if they are cheaper by their number, else the default. The
+choice is reported."""
 
 import pytest
 
@@ -8,7 +9,8 @@ from ffimpact.running import run
 from verification.measure import disc
 
 BALL = {"law": "neohookean", "nu": 0.4, "accuracy": 0.1, "integrator": "auto"}
-FINE = BALL | {"mesh_size": 0.02, "contact_mesh_size": 0.0008, "accuracy": 0.02}      # small elements at the contact: many parts
+# Small elements near contact: many substeps.
+FINE = BALL | {"mesh_size": 0.02, "contact_mesh_size": 0.0008, "accuracy": 0.02}
 
 
 @pytest.mark.parametrize("script, flags, chosen, why", [
@@ -16,7 +18,11 @@ FINE = BALL | {"mesh_size": 0.02, "contact_mesh_size": 0.0008, "accuracy": 0.02}
     ("disc-plane", FINE | {"end_time": 1e-3}, "energy-momentum", "explicit steps (a step takes "),
     ("disc-plane", BALL | {"loss": 0.1, "end_time": 1e-3}, "energy-momentum", "explicit steps (viscosity needs implicit steps)")], ids=["small elements", "fine contact", "viscous"])
 def test_the_cheaper_one_is_taken_and_said(tmp_path, script, flags, chosen, why):
-    """By the parts of a step and the unknowns; summary and the scene as used name it, `skipped` says why, and the run is that of the integrator named, to round-off."""
+    """The choice depends on the substeps of a step and the unknowns.
+
+    The summary and the scene as used have the integrator, `skipped` has the reason, and the run
+    equals that of this integrator to round-off.
+    """
     found = disc(tmp_path / "auto", script, **flags)
     assert found.summary["integrator"] == chosen == results.read_scene(tmp_path / "auto")["integrator"]
     assert any(words.startswith(why) for words in found.summary["skipped"])
@@ -26,14 +32,19 @@ def test_the_cheaper_one_is_taken_and_said(tmp_path, script, flags, chosen, why)
 
 
 def test_parts_are_dearer_between_bodies(tmp_path):
-    """Where rows of contact change each part solves it several times: two discs take implicit steps at a count that a disc on a plane takes explicit ones at."""
+    """If gap Jacobians change, each substep solves contact several times.
+
+    Two discs take implicit steps for a number of substeps for which a disc on a plane takes
+    explicit ones.
+    """
     found = run.run(scene.load("two-discs"), {"integrator": "auto", "accuracy": 0.02, "contact.friction_static": 0.0}, tmp_path, estimate=False).summary
     parts = int(next(words for words in found["skipped"] if "explicit parts" in words).split("takes ")[1].split()[0])
     assert found["integrator"] == "energy-momentum" and parts < found["dofs"]**0.4
 
 
 def test_the_count_of_parts_is_that_of_the_run(tmp_path):
-    """What the choice was made by: the parts of a step, of half and quarter bodies as of whole ones."""
+    """The choice uses the number of substeps of a step, for half and quarter bodies as for whole
+    ones."""
     for script, accuracy in (("ball-plane", 0.02), ("disc-plane", 0.005), ("ball-axisymmetric", 0.005)):
         found = disc(tmp_path / script, script, **BALL | {"accuracy": accuracy})
         said = next(words for words in found.summary["skipped"] if "explicit parts" in words)

@@ -1,4 +1,4 @@
-"""The compiled kernels: the same as the scripts; without them nothing changes."""
+"""The compiled kernels agree with the scripts. Without them nothing changes."""
 
 import json
 import os
@@ -20,7 +20,7 @@ def program():
 
 @pytest.fixture
 def cache(tmp_path, monkeypatch, program):
-    """A cache folder of its own, of a name that shells have to be told apart."""
+    """An empty cache folder whose name has special characters of shells."""
     folder = tmp_path / "it's; new"
     monkeypatch.setenv("XDG_CACHE_HOME", str(folder))
     return folder
@@ -33,7 +33,8 @@ def write(folder, name: str) -> None:
 
 @pytest.mark.robustness
 def test_they_are_built_once_and_again_for_other_sources(cache, program, monkeypatch, tmp_path):
-    """In the user's cache folder, which may have any name; the word names the plugin of these very sources, and FreeFEM loads it."""
+    """They are built in the user's cache folder, which may have any name. The argument contains the
+    plugin of these sources, and FreeFEM loads it."""
     monkeypatch.setattr(kernels, "SOURCES", tmp_path / "sources")
     words = []
     for name in ("one", "other"):
@@ -53,7 +54,8 @@ def test_they_are_built_once_and_again_for_other_sources(cache, program, monkeyp
 
 
 def test_where_they_cannot_be_built_nothing_loads_them(cache, program, monkeypatch, tmp_path):
-    """Sources that do not compile, a FreeFem++ without its ff-c++ and a cache folder that cannot be written in are no error."""
+    """Sources that do not compile, a FreeFem++ without ff-c++ and a read-only cache folder are not
+    errors."""
     assert not kernels.build("/no/such/FreeFem++", program.version, {})
     monkeypatch.setattr(kernels, "SOURCES", tmp_path / "broken")
     kernels.SOURCES.mkdir()
@@ -66,7 +68,7 @@ def test_where_they_cannot_be_built_nothing_loads_them(cache, program, monkeypat
 
 
 def test_a_plugin_of_another_version_is_left_alone(tmp_path):
-    """The word has the number of the calls that the scripts know."""
+    """The argument has the number of the calls that the scripts use."""
     program = replace(freefem.find(), plugin='-Dkernels1="/no/such/plugin"')
     program.call("edp/disc-plane.edp", "-accuracy", "0.2", "-end_time", "1e-4", "-out", str(tmp_path / "out"), check=True)
     assert json.loads((tmp_path / "out/summary.json").read_text())["kernels"] == 0
@@ -82,8 +84,11 @@ FLAGS = [*({"law": law} for law in ("svk", "neohookean")), MOONEY, OGDEN, {"law"
 @pytest.mark.parametrize("flags", FLAGS, ids=str)
 @pytest.mark.parametrize("body", COARSE)
 def test_forces_tangent_and_factor_are_those_of_the_scripts(body, flags):
-    """In any dimension, under every law, damped as undamped, volume in the mean of elements or at points, and wherever in the step the stress is taken: to round-off;
-    other cases are among the tangents of verification/test_residual_and_tangent.py."""
+    """In any dimension, for every law, with and without damping, volume as element mean or at
+    points, at any position in the step: to round-off.
+
+    verification/test_residual_and_tangent.py has further cases.
+    """
     given = {"nu": 0.3, "integrator": "energy-momentum"} | COARSE[body] | flags
     kernels_are_the_scripts(measure(f"tangent-{body}", **given), factor=given["nu"] == 0.3 or flags["law"] == "neohookean")
 
@@ -97,7 +102,8 @@ def test_two_bodies_of_different_laws(tmp_path, integrator):
 
 
 def test_numbers_are_those_of_a_stream(tmp_path):
-    """Numbers of any size, ties and runs of nines are written to the byte as a stream of nine digits writes them."""
+    """Numbers of any size, ties and sequences of nines equal the output of a stream with nine
+    digits, byte by byte."""
     found = measure("kernels-numbers", out=tmp_path)
     if not found["built"]:
         pytest.skip("no compiler here")
@@ -118,7 +124,11 @@ WATCHED = ["t", "normal_force", "friction_force", "kinetic", "elastic", "vx", "v
 @pytest.mark.few(2)
 @pytest.mark.parametrize("name", MARCHES)
 def test_marches_are_those_of_the_scripts(tmp_path, name):
-    """The same history with kernels and without, up to round-off, with friction among test_kernels_contact.py's; the summary says which served."""
+    """The histories with and without kernels are equal to round-off. The summary reports which were
+    used.
+
+    test_kernels_contact.py has cases with friction.
+    """
     script, flags = MARCHES[name]
     runs = {folder: disc(tmp_path / folder, script, **TIGHT | flags, without=without) for folder, without in (("with", "none"), ("without", "kernels"))}
     if not runs["with"].summary["kernels"]:

@@ -7,18 +7,21 @@ from ffimpact import scene
 from ffimpact.running import run
 from tests.support.kernels_contact import STEADY
 
-COARSE = dict(fields=0, accuracy=0.2, tolerance=1e-13)   # what steps leave unsolved is no part of the comparison; 1e-14 is at round-off
+# Unsolved residuals of steps must not affect the comparison; 1e-14 is at round-off.
+COARSE = dict(fields=0, accuracy=0.2, tolerance=1e-13)
 RUNS = {"disc-oblique": STEADY, "disc-rolling": STEADY | dict(end_time=0.02), "ball-oblique": STEADY, "two-discs": {}}
 
 
 @pytest.mark.few(1)
 @pytest.mark.parametrize("name", RUNS)
 def test_histories_are_those_of_the_scripts(tmp_path, name):
-    """Where the coefficient of friction does not change with speed, whole runs agree to 1e-9 of the largest value, and energy is kept."""
+    """If the coefficient of friction does not depend on speed, whole runs agree to 1e-9 of the
+    largest value, and energy is conserved."""
     one, other = (run.run(scene.load(name), COARSE | RUNS[name] | {"without": without}, tmp_path / without, estimate=False) for without in ("none", "kernels"))
     if not one.summary["kernels"]:
         pytest.skip("no compiler here")
     assert one.summary["steps"] == other.summary["steps"] and one.summary["energy_drift"] < 1e-11
     for column in set(one.history) - {"newton_iterations", "balance"}:
-        largest = max(np.abs(values).max() for also, values in other.history.items() if also.startswith(column))   # a sum over bodies may be 0
+        # A sum over bodies may be 0.
+        largest = max(np.abs(values).max() for also, values in other.history.items() if also.startswith(column))
         np.testing.assert_allclose(one.history[column], other.history[column], rtol=0, atol=1e-9 * largest, err_msg=column)

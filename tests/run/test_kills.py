@@ -1,4 +1,5 @@
-"""Runs that are killed: no process is left, nothing looks finished, earlier results stay, and the same command gives the same answer."""
+"""Killed runs: no process is left, no folder looks finished, earlier results stay, and a second
+call gives the same results."""
 
 import contextlib
 import functools
@@ -78,12 +79,12 @@ def freefems(out: Path) -> list[int]:
 def name_of(pid: int) -> str:
     try:
         return Path(f"/proc/{pid}/comm").read_text()
-    except OSError:                     # it has just ended
+    except OSError:  # it has just ended
         return ""
 
 
 def answers(route: str, out: Path) -> object:
-    """What a route gives, to the last digit."""
+    """The results of a route, to the last digit."""
     if route == "sweep":
         return pd.read_csv(out / "sweep.csv").drop(columns="seconds").to_csv()
     return (out / "history.csv").read_text(), sorted((path.name, path.read_bytes()) for path in [*out.glob("fields/*"), *out.glob("states.bin")])
@@ -91,20 +92,21 @@ def answers(route: str, out: Path) -> object:
 
 @functools.cache
 def straight(route: str, folder: Path) -> object:
-    """The answers of a run that is not killed."""
+    """The results of a run that is not killed."""
     finish(command(route, folder / "straight"))
     return answers(route, folder / "straight")
 
 
 def holds(folder: Path, point: str) -> bool:
-    """Whether `point` is somewhere in a folder in which others come and go while it is looked through."""
+    """Whether `point` is in a folder whose content changes during the search."""
     with contextlib.suppress(FileNotFoundError):
         return any(folder.rglob(point))
     return False
 
 
 def stop_at(point: str, process: subprocess.Popen, out: Path) -> list[int]:
-    """Stops the FreeFem++s of a run once `point` is there; they are at work, and so a kill is one."""
+    """Stops the FreeFem++ processes of a run when `point` exists. They are running, so that a
+    signal kills them."""
     end = time.monotonic() + 60
     while not holds(out.parent, point):
         assert process.poll() is None and time.monotonic() < end, f"no {point}"
@@ -114,7 +116,8 @@ def stop_at(point: str, process: subprocess.Popen, out: Path) -> list[int]:
             send(pid, signal.SIGSTOP)
         stopped |= found
     assert freefems(out), f"it ended behind {point}"
-    return sorted(stopped)          # also a command of FreeFem++ that has another name by now
+    # Also a command of FreeFem++ that now has another name.
+    return sorted(stopped)
 
 
 def send(pid: int, number: signal.Signals) -> None:
@@ -136,7 +139,7 @@ def another(route: str, folder: Path) -> Path:
 
 
 def content(folder: Path) -> dict[str, bytes]:
-    """All files but those of a run without Python that is at work there or was killed."""
+    """All files except those of a run without Python that is running or was killed."""
     return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*")
             if path.is_file() and path.name != "unfinished" and not path.name.startswith("checkpoint")}
 
@@ -144,8 +147,12 @@ def content(folder: Path) -> dict[str, bytes]:
 @pytest.mark.parametrize("route, number, receiver, point, before", [
     *KILLS, *(pytest.param(*kill, marks=pytest.mark.robustness) for kill in MORE if kill not in KILLS)])
 def test_kill(shelf, tmp_path, route, number, receiver, point, before):
-    """After the signal every process of the run is gone within seconds; a folder that looks finished is; the earlier result is whole,
-    where it was or beside it; and the same command ends well with the same answer, byte for byte."""
+    """After the signal every process of the run ends within seconds, and a folder that looks
+    finished is finished.
+
+    The earlier result is complete, in its place or beside it. The same command gives the same
+    result, byte for byte.
+    """
     expected = straight(route, place(route, shelf))
     out = tmp_path / "out"
     if before:
@@ -165,7 +172,8 @@ def test_kill(shelf, tmp_path, route, number, receiver, point, before):
     assert not at_work(out)
     for folder in (out, tmp_path / "out.1"):
         if route != "sweep" and (folder / "summary.json").exists():
-            assert content(folder) == earlier or answers(route, folder) == expected   # it was through, or waited for a shell: SIGINT passes
+            # The run had ended or waited for a shell: SIGINT passes.
+            assert content(folder) == earlier or answers(route, folder) == expected
     if before:
         assert earlier in (content(out), content(tmp_path / "out.1"))
     kept = {path: path.read_bytes() for path in out.glob("runs/*/summary.json") if path.parent.suffix != ".part"}
@@ -173,8 +181,9 @@ def test_kill(shelf, tmp_path, route, number, receiver, point, before):
     left = (tmp_path / "out.part/checkpoint").exists()
     finish(words)
     assert answers(route, out) == expected
-    assert all(path.read_bytes() == text for path, text in kept.items())          # what was finished was not run again
-    if left:                                             # is gone on with
+    # Finished runs were reused.
+    assert all(path.read_bytes() == text for path, text in kept.items())
+    if left:  # the run continues
         assert read_summary(out)["resumed_at"] > 0
     if before:
         assert content(tmp_path / "out.1") == earlier
@@ -184,8 +193,10 @@ def test_kill(shelf, tmp_path, route, number, receiver, point, before):
 @pytest.mark.few(3)
 @pytest.mark.parametrize("delay", [0.6 * k / 12 for k in range(12)])
 def test_sigterm_at_the_start(tmp_path, delay):
-    """SIGTERM while modules load and FreeFem++ starts ends the program with exit code 143 (of the shell), and leaves nothing."""
-    process = start(command("run", tmp_path / "out", accuracy="1e-3"))          # which takes much longer than any delay
+    """SIGTERM while modules load and FreeFem++ starts ends the program with exit code 143 (of the
+    shell) and leaves no files."""
+    # Which takes much longer than any delay.
+    process = start(command("run", tmp_path / "out", accuracy="1e-3"))
     time.sleep(delay)
     process.terminate()
     process.communicate(timeout=20)
@@ -197,7 +208,8 @@ def test_sigterm_at_the_start(tmp_path, delay):
 
 
 def test_a_library_changes_no_signal_handlers(fake, tmp_path):
-    """Only the command line installs handlers: run() and a study leave those of the program that imports ffimpact as they are."""
+    """Only the command line installs handlers. run() and studies do not change those of a program
+    that imports ffimpact."""
     numbers = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGALRM)
     before = [signal.getsignal(number) for number in numbers]
     run.run(scene.load("disc-normal"), {"fields": 0}, tmp_path / "out")

@@ -21,7 +21,7 @@ SOLID = SOFT | {"dimension": "3d", "end_time": 4e-3, "contact": {"friction_stati
 
 @pytest.mark.parametrize("scene", [PUSHED, ROUND, SOLID], ids=["plane", "revolution", "space"])
 def test_loads_do_exact_work(tmp_path, scene):
-    """Dead and follower loads and a gas, on bodies that are held and moved and rub."""
+    """Dead and follower loads and a gas, on bodies with supports, motion and friction."""
     run = bodies(tmp_path, scene)
     assert_exact(run)
     summary = run.summary
@@ -31,8 +31,10 @@ def test_loads_do_exact_work(tmp_path, scene):
 
 @pytest.mark.parametrize("dimension", ["plane-strain", "3d"])
 def test_a_push_on_a_free_body(tmp_path, dimension):
-    """A block that nothing holds, pushed at the end of one side for a while, and then free: the momentum
-    is the integral of the force, exactly that of the dead load; what it has afterwards stays."""
+    """A free block is pushed at the end of one side for a while, then free.
+
+    The momentum is exactly the integral of the dead load and is constant afterwards.
+    """
     axes = 3 if dimension == "3d" else 2
     size = {"shape": "box", "width": 0.1, "height": 0.04, "depth": 0.04} if axes == 3 else {"shape": "rectangle", "width": 0.1, "height": 0.04}
     high = {"kind": "box", "low": [-0.06, 0.0, -1][:axes], "high": [-0.04, 0.03, 1][:axes]}
@@ -49,7 +51,8 @@ def test_a_push_on_a_free_body(tmp_path, dimension):
 
 
 def test_a_constant_pressure_around_a_body_has_no_resultant(tmp_path):
-    """It works p times the change of the area, to round-off; momentum and angular momentum stay 0."""
+    """Its work is p times the change of the area to round-off. Momentum and angular momentum stay
+    0."""
     block = {"shape": "rectangle", "width": 0.1, "height": 0.06, "position": [0, 0], "mesh_size": 0.02, "load": [{"where": "all", "pressure": 1e5}]}
     run = bodies(tmp_path, SOFT | {"end_time": 0.01, "body": [block]})
     assert_exact(run)
@@ -60,7 +63,8 @@ def test_a_constant_pressure_around_a_body_has_no_resultant(tmp_path):
 # ---- gas
 
 def frequency(t: np.ndarray, values: np.ndarray, guess: float) -> float:
-    """The angular frequency [rad/s] of the oscillation and its double that fit values best."""
+    """The angular frequency [rad/s] of the oscillation with its second harmonic that fits the
+    values best."""
     def off(one: np.ndarray) -> np.ndarray:
         matrix = np.column_stack([np.ones_like(t), *(turn(k * one[0] * t) for k in (1, 2) for turn in (np.cos, np.sin))])
         return (matrix @ np.linalg.lstsq(matrix, values, rcond=None)[0] - values) / abs(values).max()
@@ -74,10 +78,12 @@ AMBIENT, EXPONENT = 1e6, 1.4
 @pytest.mark.parametrize("shape", ["ring", "shell"])
 @pytest.mark.parametrize("filled", [False, True], ids=["empty", "gas"])
 def test_thin_bodies_breathe_as_membranes(tmp_path, shape, filled):
-    """A small step of pressure outside, nu = 0: a ring breathes with omega^2 = E/(rho R^2), a spherical
-    shell with twice that; a gas at ambient pressure adds its own stiffness, n p_a dV/V for each radius.
-    To 1 % of omega."""
-    ways = 2 if shape == "ring" else 3                      # dV/V over dR/R
+    """Under a small step of outer pressure with nu = 0, a ring oscillates with omega^2 = E/(rho
+    R^2), a spherical shell with twice that.
+
+    A gas at ambient pressure adds its stiffness, n p_a dV/V for each radius. Omega agrees to 1 %.
+    """
+    ways = 2 if shape == "ring" else 3  # dV/V over dR/R
     load = [{"where": "outer", "pressure": -1e3}]
     squared = THIN["young"] / (THIN["density"] * RADIUS**2) * (ways - 1)
     if filled:
@@ -94,13 +100,13 @@ def test_thin_bodies_breathe_as_membranes(tmp_path, shape, filled):
         volume = run.history["gas_volume_2"]
         inside = RADIUS - WALL / 2
         assert volume[0] == pytest.approx(math.pi * inside**2 if shape == "ring" else 4 / 3 * math.pi * inside**3, rel=2e-3)
-        pressure = AMBIENT * ((volume[0] / volume)**EXPONENT - 1)        # of the state at the end of a step
+        pressure = AMBIENT * ((volume[0] / volume)**EXPONENT - 1)  # state at the end of a step
         assert np.abs(run.history["gas_pressure_2"] - pressure).max() < 1e-9 * AMBIENT
 
 
 @pytest.mark.parametrize("shape", [pytest.param("ring", marks=pytest.mark.robustness), "shell"])
 def test_more_pressure_makes_a_contact_shorter(tmp_path, shape):
-    """A hollow disc, or a hollow ball, falls on a plane: the stiffer its gas, the sooner it leaves."""
+    """A hollow disc, or a hollow ball, falls on a plane: with a stiffer gas it leaves earlier."""
     times, inner = [], {"ring": 0.044, "shell": 0.047}[shape]
     for gauge in (0, 2e4, 5e4):
         tyre = {"shape": shape, "radius": 0.052, "inner_radius": inner, "position": [0, 0.06], "velocity": [0, -1],
@@ -116,7 +122,8 @@ def test_more_pressure_makes_a_contact_shorter(tmp_path, shape):
 
 
 def test_a_gas_stiffer_than_its_shell_is_settled(tmp_path):
-    """Of a soft ring the pressure outside is as large as Young's modulus: the gas alone resists a change of volume."""
+    """The outer pressure on a soft ring is as large as Young's modulus. Only the gas resists a
+    change of volume."""
     tyre = {"shape": "ring", "radius": 0.05, "inner_radius": 0.03, "position": [0, 0.0525], "velocity": [0, -0.1],
             "load": [{"where": "inner", "gas": {"gauge_pressure": 200.0, "exponent": 1.0}}]}
     soft = {"law": "neohookean", "young": 1e5, "nu": 0.4, "density": 1000.0, "accuracy": 0.1, "end_time": 1e-3}

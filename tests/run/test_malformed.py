@@ -1,4 +1,8 @@
-"""Malformed input over all three routes: each is one line on stderr that names what is wrong, exit code 10 or 14, nothing left behind, no hang."""
+"""Malformed input by all three interfaces.
+
+Each gives one line on stderr with the error and exit code 10 or 14, leaves no files and does not
+hang.
+"""
 
 import os
 import re
@@ -34,7 +38,8 @@ from tests.support.malformed import (
 
 @pytest.fixture(autouse=True)
 def place(tmp_path, monkeypatch):
-    """An empty working folder; afterwards nothing is in it but what the test itself put there. Twenty seconds at most."""
+    """An empty working folder that must be clean after the test. The test ends after twenty seconds
+    at most."""
     def too_long(*_):
         raise AssertionError("no answer after 20 s")
     before = signal.signal(signal.SIGALRM, too_long)
@@ -46,7 +51,7 @@ def place(tmp_path, monkeypatch):
 
 
 def by_process(words: str, *arguments: str | bytes, code: int = 10) -> None:
-    """The command line, in a process of its own."""
+    """Runs the command line in a process of its own."""
     before = tree(Path.cwd())
     process = subprocess.run([sys.executable, "-m", "ffimpact", *arguments], stdin=subprocess.DEVNULL, capture_output=True, timeout=20,
                              env=os.environ | {"PYTHONPATH": str(parameters.ROOT)})
@@ -57,9 +62,11 @@ def by_process(words: str, *arguments: str | bytes, code: int = 10) -> None:
 @pytest.mark.parametrize("name, value", [value if k < len(NO_NUMBERS) or k % 3 == 0 else pytest.param(*value, marks=pytest.mark.robustness)
                                          for k, value in enumerate(VALUES)])
 def test_value_of_a_flag(name, value):
-    """A value that is not accepted, as a flag of FreeFem++: in the words of Python but for suggestions, with what is accepted."""
+    """A value that FreeFem++ does not accept as a flag gives Python's message without suggestions,
+    with what is accepted."""
     said = directly(f"{name}: ", f"-{name}", value, "-out", "a/out")
-    if (name, value) not in (("nu", "0.5"), ("checkpoint_every", "-1")):   # that hangs on the law; this has words of its own
+    # The bound of nu depends on the law; the other one has a message of its own.
+    if (name, value) not in (("nu", "0.5"), ("checkpoint_every", "-1")):
         with pytest.raises(BadInput) as error:
             parameters.check({name: value})
         assert said == re.sub(r"; did you mean [^?]*\?", "", str(error.value)) and said.endswith(f"(accepted: {parameters.PARAMETERS[name].accepted})")
@@ -68,7 +75,7 @@ def test_value_of_a_flag(name, value):
 @pytest.mark.few(3)
 @pytest.mark.parametrize("name", NAMES)
 def test_name(capsys, name):
-    """A parameter that there is not, over all three routes."""
+    """An unknown parameter, by all three interfaces."""
     if name.strip() == name:
         by_python(capsys, f"{name}: no such parameter", "run", "disc-normal", "--set", f"{name}=8", "--out", "a/out")
     directly(rf"-{name}: no such parameter \(accepted: .*speed", f"-{name}", "8", "-out", "a/out")
@@ -78,7 +85,8 @@ def test_name(capsys, name):
 @pytest.mark.few(4)
 @pytest.mark.parametrize("words", SENSELESS)
 def test_values_that_do_not_go_together(capsys, words):
-    """What contradicts itself, or asks for more than can be, over all three routes; the folders made for it are gone again."""
+    """Contradictory or impossible values, by all three interfaces. The folders made for the run are
+    removed."""
     given = SENSELESS[words]
     by_python(capsys, words, "run", "disc-normal", "--set", *(f"{name}={value}" for name, value in given.items()), "--out", "a/b/out")
     directly(words, *freefem.words_of(given), "-out", "a/b/out")
@@ -93,7 +101,8 @@ VALUES_TOO_LONG = ['"' + "8" * 5000 + '"', "[" + "88, " * 2000 + "]", "{a = '" +
 @pytest.mark.few(8)
 @pytest.mark.parametrize("entry", ENTRIES)
 def test_a_message_repeats_two_hundred_characters_of_a_value(capsys, entry):
-    """Whatever is in the place of an entry of a scene of bodies, the line that refuses it is short, by file and by --set."""
+    """For any value in place of an entry of a scene of bodies, the refusing line is short, from a
+    file and from --set."""
     scene = {"law": "neohookean", "young": 7e6, "nu": 0.4, "density": 1722, "body": [{"name": "a", "shape": "disc", "radius": 0.05, "position": [0, 0.1], "velocity": [0, -1]}],
              "obstacle": [{"name": "b", "kind": "plane", "point": [0, 0], "normal": [0, 1]}]}
     for text in VALUES_TOO_LONG:
@@ -107,7 +116,7 @@ def test_a_message_repeats_two_hundred_characters_of_a_value(capsys, entry):
 @pytest.mark.few(4)
 @pytest.mark.parametrize("kind", [*INPUTS, "file", "empty"])
 def test_path_of_a_mesh(capsys, kind):
-    """A mesh that cannot be a file, or is none."""
+    """The path of a mesh that cannot be a file, or is not a mesh."""
     path = special(kind)
     by_python(capsys, "mesh: ", "run", "disc-normal", "--mesh", path, "--out", "a/out")
     directly("mesh: the file 'nowhere' cannot be read" if kind == "nowhere" else "mesh: ", "-mesh", path, "-out", "a/out")
@@ -116,11 +125,12 @@ def test_path_of_a_mesh(capsys, kind):
 @pytest.mark.few(4)
 @pytest.mark.parametrize("kind", [*INPUTS[:-1], "file", "root", "proc"])
 def test_path_of_results(capsys, kind):
-    """A folder that cannot be made, or is not one: exit code 14. An empty folder can be used, a dangling link cannot."""
+    """A folder that cannot be made, or is not one: exit code 14. An empty folder can be used, a
+    dangling link cannot."""
     path = special(kind)
     if kind == "folder":
         Path(path, "thesis.tex").write_text("years of work")
-    if kind != "dangling":   # Python makes what it points to
+    if kind != "dangling":  # Python makes the target of the link
         by_python(capsys, ".*(--out|folder)", "run", "disc-normal", "--set", "accuracy=0.4", "--out", path, code=14)
     directly("out: ", "-accuracy", "0.4", "-out", path, code=14)
 
@@ -128,17 +138,17 @@ def test_path_of_results(capsys, kind):
 @pytest.mark.few(6)
 @pytest.mark.parametrize("flags", FLAGS)
 def test_flags(flags):
-    """Words that belong to no parameter, values that are missing, empty or given twice."""
+    """Arguments that belong to no parameter, and values that are missing, empty or repeated."""
     directly(re.escape(FLAGS[flags]), *flags)
 
 
 @pytest.mark.parametrize("arguments", COMMANDS)
 def test_commands(capsys, arguments):
-    """Words of the command line that are missing, unknown or too many."""
+    """Arguments of the command line that are missing, unknown or too many."""
     by_python(capsys, COMMANDS[arguments], *arguments)
 
 
-# ---- the same in processes of their own
+# ---- the same in separate processes
 
 @pytest.mark.few(3)
 @pytest.mark.parametrize("arguments, words, code", [
@@ -147,7 +157,7 @@ def test_commands(capsys, arguments):
     (("run", "disc-normal", "--out", "loop"), "loop cannot be made", 14), (("run", "disc-normal", "--mesh", "pipe"), "mesh: ", 10), (("figures", "/dev/null"), "cannot be read", 14),
     (("run", "deep.toml"), "nested too deep", 10), (("run", "disc-normal", "--set", "speed=8\n9"), "speed: '8 9'", 10), (("run", "disc-normal", "--out", b"\xff/x", "--set", "nu=1"), "nu: 1", 10)])
 def test_in_a_process_of_its_own(arguments, words, code):
-    """Nothing of the interpreter (an encoding, a traceback at its end) comes on top of the line."""
+    """The interpreter adds nothing to the line (encoding errors, a traceback at its end)."""
     special("pipe")
     special("loop")
     Path("deep.toml").write_text("speed = " + "[" * 100_000)

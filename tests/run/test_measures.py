@@ -1,4 +1,4 @@
-"""The measurements: run time against error, savings left out, other units, phases."""
+"""Measurements of runs: run time against error, runs without savings, other units, phases."""
 
 import numpy as np
 import pandas as pd
@@ -14,7 +14,8 @@ def rows(**columns) -> pd.DataFrame:
 
 
 def test_cheapest_setting_reaches_the_level_in_every_answer():
-    """The least time among those below the level in all columns; none where no setting is, or the run failed."""
+    """The least time among settings below the level in all columns. There is none if no setting is
+    below it or the run failed."""
     table = rows(family=["a", "b", "c"], seconds=[1.0, 2.0, 3.0], impulse_error=[0.5, 0.1, 0.01], rebound_vy_error=[9.0, 0.1, 0.01])
     assert bench.cheapest(table, ["impulse_error"], 1.0) == "1.00 s: a"
     assert bench.cheapest(table, ["impulse_error", "rebound_vy_error"], 1.0) == "2.00 s: b"
@@ -23,7 +24,8 @@ def test_cheapest_setting_reaches_the_level_in_every_answer():
 
 @pytest.mark.parametrize("name", [name for name, case in bench.CASES.items() if not case.families])
 def test_settings_cover_what_is_compared(name):
-    """Mesh size, both degrees, fixed and adaptive steps and every integrator, from coarse to fine; the reference is finer than all."""
+    """Mesh size, both degrees, fixed and adaptive steps and every integrator, from coarse to fine.
+    The reference is finer than all."""
     case = bench.CASES[name]
     families = bench.settings(case, quick=False)
     assert {"midpoint", "newmark", "backward-euler", "bdf2", "central-difference"} <= set(families)
@@ -46,7 +48,7 @@ def answers(folder, name="disc-normal", **settings) -> np.ndarray:
 @pytest.mark.parametrize("instead", [{"symmetry": "full"}, *({"without": word} for word in ("flight", "friction", "body-force", "frozen-factorisation",
                                                                                            "contact-culling"))], ids=str)
 def test_what_is_saved_changes_no_answer(tmp_path_factory, instead):
-    """Without a saving impulse and rebound stay within the accuracy of the run."""
+    """Without one of the savings, impulse and rebound stay within the accuracy of the run."""
     base = {"accuracy": 0.03, "height": 0.01}
     full = answers(tmp_path_factory.getbasetemp() / "all-savings", **base)
     assert answers(tmp_path_factory.mktemp("without"), **base, **instead) == pytest.approx(full, rel=base["accuracy"])
@@ -55,7 +57,8 @@ def test_what_is_saved_changes_no_answer(tmp_path_factory, instead):
 @pytest.mark.parametrize("world", [{"young": 7.0, "density": 1.722e-9, "radius": 50.0}, {"young": 2.1e11, "density": 7850.0, "radius": 0.05}],
                          ids=["millimetres", "steel"])
 def test_one_impact_in_other_units_and_materials(tmp_path, world):
-    """V19: with penalty and sizes left to the program the dimensionless answers depend on v/c, nu and law alone, to 1e-6."""
+    """V19: with automatic penalty and sizes the dimensionless results depend on v/c, nu and law
+    only, to 1e-6."""
     paper, found = {"young": 7e6, "density": 1722.0, "radius": 0.05}, []
     for name, each in (("paper", paper), ("other", world)):
         c = (each["young"] / each["density"]) ** 0.5
@@ -66,7 +69,7 @@ def test_one_impact_in_other_units_and_materials(tmp_path, world):
 
 @pytest.mark.parametrize("without, said", [("flight", "flight before touch"), ("friction", "friction"), ("body-force", "body force")])
 def test_what_is_left_out_is_not_called_skipped(tmp_path, without, said):
-    """`skipped` in the summary tells what a run really skipped."""
+    """`skipped` in the summary lists only effects that a run really skipped."""
     settings = {"accuracy": 0.2, "height": 1e-3, "end_time": 5e-4}
     full, left_out = (run.run(scene.load("disc-normal"), settings | {"without": word, "fields": 0}, tmp_path / word, estimate=False)
                       for word in ("none", without))
@@ -74,21 +77,24 @@ def test_what_is_left_out_is_not_called_skipped(tmp_path, without, said):
     assert left_out.summary["energy_drift"] < 1e-9
 
 
-EFFORTS = {"disc-normal": 9, "disc-oblique": 10, "two-discs": 8}   # iterations a step; 13, 14 and 9 with matrices renewed later
+# Iterations per step; 13, 14 and 9 with rarer updates.
+EFFORTS = {"disc-normal": 9, "disc-oblique": 10, "two-discs": 8}
 
 
 @pytest.mark.few(3)
 @pytest.mark.parametrize("name", EFFORTS)
 @pytest.mark.parametrize("without", ["none", "kernels"])
 def test_a_step_takes_few_iterations(tmp_path, name, without):
-    """Iterations and factorisations a step, scripted and compiled: a matrix is renewed as soon as that pays."""
+    """Iterations and factorisations per step, with scripts and kernels: a matrix is updated as soon
+    as this pays."""
     end = run.run(scene.load(name), {"accuracy": 0.05, "fields": 0, "without": without}, tmp_path / "a", estimate=False).summary
     assert end["newton_iterations"] < EFFORTS[name] * end["steps"] and end["factorizations"] < end["steps"]
     assert end["energy_drift"] < 1e-9 and end["momentum_drift"] < 1e-9 and end["rejected_steps"] == 0
 
 
 def test_phases_add_up_to_the_wall_time(tmp_path):
-    """phase_seconds is the whole wall time, and `other` is not negative beyond the clock's 10 ms."""
+    """phase_seconds adds up to the wall time, and `other` is not negative beyond the 10 ms of the
+    clock."""
     end = run.run(scene.load("disc-normal"), {"accuracy": 0.1, "fields": 0}, tmp_path / "a", estimate=False).summary
     assert sum(end["phase_seconds"].values()) == pytest.approx(end["wall_seconds"], abs=1e-9) and end["phase_seconds"]["other"] > -0.02
     assert set(end["phase_seconds"]) == {"assembly", "factor", "solve", "contact", "search", "output", "audit", "flight", "setup", "other"}

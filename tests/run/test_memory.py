@@ -1,4 +1,5 @@
-"""Answers do not depend on memory that nobody has written: FreeFEM checks no bounds of slices, and what resize() adds is not zero."""
+"""Results do not depend on uninitialised memory. FreeFEM does not check the bounds of slices, and
+resize() adds values that are not zero."""
 
 import os
 import shutil
@@ -8,7 +9,8 @@ import pytest
 
 from ffimpact.freefem import freefem
 
-# new memory, and a zone behind it, hold FILL in every byte: of 127 a real is 1.4e306, of 0 it is zero
+# New memory, and a zone behind it, hold FILL in every byte: for 127 a real is 1.4e306, for 0 it is
+# zero.
 MALLOC = r"""
 #include <malloc.h>
 #include <stdlib.h>
@@ -39,7 +41,7 @@ RUNS = {
 
 @pytest.fixture(scope="module")
 def preloaded(tmp_path_factory):
-    """That malloc as a library to be loaded before others."""
+    """This malloc as a library for preloading."""
     if not shutil.which("cc") or os.confstr("CS_GNU_LIBC_VERSION") is None:
         pytest.skip("needs a C compiler and glibc")
     library = tmp_path_factory.mktemp("malloc") / "fill.so"
@@ -50,7 +52,8 @@ def preloaded(tmp_path_factory):
 @pytest.mark.few(1)
 @pytest.mark.parametrize("name", RUNS)
 def test_unwritten_memory_changes_nothing(tmp_path, preloaded, name):
-    """Of a coarse run, on the block of the first half of the contact, every digit of the record is the same, whatever unwritten memory holds."""
+    """All digits of the history of a coarse run, with the block for the first half of the contact,
+    are independent of uninitialised memory."""
     script, values = RUNS[name]
     found, histories = freefem.find(), []
     for fill in ("000", "127"):

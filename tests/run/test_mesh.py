@@ -1,4 +1,4 @@
-"""The meshes that the scenes run on."""
+"""The meshes of the scenes."""
 
 import numpy as np
 import pytest
@@ -32,7 +32,8 @@ def test_triangles_are_sound(case):
 
 
 def test_triangles_fill_the_polygon(case):
-    """The triangles add up to the polygon that the labelled boundary edges enclose, and nothing is used twice."""
+    """The triangles add up to the polygon of the labelled boundary edges, and nothing is used
+    twice."""
     *_, m = case
     a, b = m.points[m.edges[:, 0]], m.points[m.edges[:, 1]]
     enclosed = abs((a[:, 0] * b[:, 1] - b[:, 0] * a[:, 1]).sum())
@@ -41,7 +42,8 @@ def test_triangles_fill_the_polygon(case):
 
 
 def test_every_boundary_edge_has_its_label(case):
-    """The edges that belong to one triangle are exactly the labelled ones: 1 on the circle, 2 on the axis x = 0."""
+    """The edges of only one triangle are exactly the labelled ones: 1 on the circle, 2 on the axis
+    x = 0."""
     radius, _, _, half, m = case
     sides = np.sort(np.vstack([m.triangles[:, [0, 1]], m.triangles[:, [1, 2]], m.triangles[:, [2, 0]]]), axis=1)
     unique, count = np.unique(sides, axis=0, return_counts=True)
@@ -56,17 +58,18 @@ def test_every_boundary_edge_has_its_label(case):
 
 
 def test_sizes_are_as_asked(case):
-    """Edges near the lowest point have the contact size, edges at the top the bulk size, to 40 per cent."""
+    """Edges near the lowest point have the contact size, edges at the top the bulk size, to 40 per
+    cent."""
     radius, bulk, contact, _, m = case
     ends = m.points[m.edges[m.labels == mesh.FREE]]
     length, height = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1), ends[:, :, 1].mean(1)
     assert length[height < 0.2 * radius].mean() == pytest.approx(contact, rel=0.4)
     assert length[height > 1.8 * radius].mean() == pytest.approx(bulk, rel=0.4)
-    assert np.hypot(*m.points.T).min() == 0   # the lowest point is a vertex, on the plane
+    assert np.hypot(*m.points.T).min() == 0  # the lowest point is a vertex, on the plane
 
 
 def test_freefem_reads_it(tmp_path):
-    """FreeFEM finds the same area, and the length of each labelled boundary."""
+    """FreeFEM finds the same area, and the same length of each labelled boundary."""
     m = mesh.disc(0.05, 0.01, 0.004, True)
     mesh.write(m, tmp_path / "m.msh")
     (tmp_path / "read.edp").write_text(
@@ -79,7 +82,8 @@ def test_freefem_reads_it(tmp_path):
     assert length[m.labels == 2].sum() == pytest.approx(0.1, rel=1e-12)
 
 
-OWN = [      # radius [m]; mesh_size, contact_mesh_size over it; touchArc; symmetry
+# Radius [m]; mesh_size and contact_mesh_size over the radius; touchArc; symmetry.
+OWN = [
     pytest.param((0.05, 0.32, 2e-3, 0.015, "half"), id="half, slow impact"),
     pytest.param((0.05, 0.32, 2e-3, 0.015, "full"), id="full, slow impact"),
     pytest.param((5e-6, 0.5, 6e-5, 1e-3, "half"), id="half, tiny, finest contact"),
@@ -93,7 +97,7 @@ OWN = [      # radius [m]; mesh_size, contact_mesh_size over it; touchArc; symme
 
 @pytest.fixture(scope="module", params=OWN)
 def own(request, tmp_path_factory):
-    """The mesh that the scripts make without Python, over its radius, and what was asked of it."""
+    """The mesh that the scripts make without Python, over its radius, and its requested sizes."""
     radius, bulk, contact, arc, symmetry = request.param
     folder, core = tmp_path_factory.mktemp("own"), parameters.ROOT / "edp/core"
     rooms = "".join(f'include "{core}/{room}.idp"\n' for room in ("law/laws", "input/parameters", "input/mesh-file", "input/outline", "input/sizes"))
@@ -110,8 +114,12 @@ def own(request, tmp_path_factory):
 
 
 def test_own_mesh_is_sound(own):
-    """The scripts' own mesh: triangles counter-clockwise, no angle below 15 degrees, that fill the polygon of the labelled edges; the
-    circle's vertices on it to rounding, the axis' on x = 0, none below the plane, the lowest point a vertex at (0, 0)."""
+    """The triangles of the scripts' own mesh are counter-clockwise, have no angle below 15 degrees
+    and fill the polygon of the labelled edges.
+
+    The vertices of the circle lie on it to rounding, those of the axis on x = 0, none below the
+    plane. The lowest point is a vertex at (0, 0).
+    """
     m, *_, half = own
     assert areas(m).min() > 0 and smallest_angle(m) > 15
     a, b = m.points[m.edges[:, 0]], m.points[m.edges[:, 1]]
@@ -125,9 +133,12 @@ def test_own_mesh_is_sound(own):
 
 @pytest.mark.few(3)
 def test_own_mesh_grows_from_the_contact_everywhere(own):
-    """No edge of the scripts' own mesh, on circle, axis or inside, is longer than twice the size that belongs to its middle:
-    contact_mesh_size on the arc that can touch, 0.3 per length of distance more beyond, mesh_size at most. Nor are there more than
-    1.3 times as many triangles as gmsh makes for the half."""
+    """No edge of the scripts' own mesh is longer than twice the size field at its middle.
+
+    The size field is contact_mesh_size on the arc that may come into contact, grows by 0.3 per
+    length of distance beyond, and is at most mesh_size. There are at most 1.3 times as many
+    triangles as in gmsh's mesh of the half.
+    """
     m, bulk, contact, arc, half = own
     sides = np.unique(np.sort(np.vstack([m.triangles[:, [0, 1]], m.triangles[:, [1, 2]], m.triangles[:, [2, 0]]]), axis=1), axis=0)
     middle, length = m.points[sides].mean(1), np.linalg.norm(m.points[sides[:, 1]] - m.points[sides[:, 0]], axis=1)
@@ -143,7 +154,8 @@ def sizes(**values) -> tuple[float, float]:
 
 
 def test_sizes_follow_the_accuracy():
-    """A size of 0 comes from the accuracy, and a given size is kept with the other one fitted to it."""
+    """A size of 0 follows from the accuracy. A prescribed size is kept, and the other one follows
+    from it."""
     bulk, contact = sizes(accuracy=1e-2)
     finer_bulk, finer_contact = sizes(accuracy=1e-3)
     assert finer_bulk < bulk and finer_contact < contact < bulk

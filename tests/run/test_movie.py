@@ -1,4 +1,5 @@
-"""The film of a scene: its frames, its file, and what happens without ffmpeg or when the drawing is stopped."""
+"""The film of a scene: its frames, its file, and the cases without ffmpeg and with interrupted
+drawing."""
 
 import os
 import re
@@ -25,7 +26,7 @@ def no_ffmpeg(tmp_path, monkeypatch):
 
 @pytest.fixture
 def ffmpeg(tmp_path, monkeypatch):
-    """ffmpeg(script): puts the script in the place of ffmpeg."""
+    """ffmpeg(script): replaces ffmpeg by the script."""
     def put(script: str) -> None:
         (tmp_path / "ffmpeg").write_text(script)
         (tmp_path / "ffmpeg").chmod(0o755)
@@ -34,7 +35,8 @@ def ffmpeg(tmp_path, monkeypatch):
 
 
 def test_film_has_the_frames_and_seconds_asked_for(fake, no_ffmpeg, tmp_path, capsys):
-    """Without ffmpeg: a GIF of as many frames as asked for, that lasts 8 s; its path is printed."""
+    """Without ffmpeg there is a GIF with the requested frames, which lasts 8 s. Its path is
+    printed."""
     assert movie.main(["disc-normal", "--frames", "8", "--out", str(tmp_path / "out")]) == 0
     film = tmp_path / "out/disc-normal.gif"
     assert capsys.readouterr().out.strip() == str(film)
@@ -52,13 +54,15 @@ def test_results_of_the_scene_are_left_alone(fake, no_ffmpeg, tmp_path, monkeypa
 
 
 def test_film_is_drawn_again_only_for_another_run(fake, no_ffmpeg, tmp_path, monkeypatch):
-    """The same scene and number of frames: neither run nor drawn again. A film older than its run is drawn again."""
+    """For the same scene and number of frames nothing is run or drawn again. A film older than its
+    run is drawn again."""
     drawn = []
     monkeypatch.setattr(movie, "write", lambda film, *_: drawn.append(film) or film.write_bytes(b"GIF"))
     call = lambda *more: movie.main(["disc-normal", "--frames", "3", "--out", str(tmp_path / "out"), *more])   # noqa: E731
     call()
     call()
-    assert len(drawn) == 1 and fake.starts() == 2     # the run, and the coarser one that estimates its error
+    # The run, and the coarser run for its error estimate.
+    assert len(drawn) == 1 and fake.starts() == 2
     os.utime(tmp_path / "out/disc-normal.gif", (0, 0))
     call()
     assert len(drawn) == 2 and fake.starts() == 2
@@ -78,7 +82,8 @@ def stop_at_third_frame(writer, monkeypatch) -> None:
 
 @pytest.mark.parametrize("form", ["gif", "mp4"])
 def test_stopped_drawing_leaves_no_film(fake, ffmpeg, tmp_path, monkeypatch, capsys, form):
-    """Interrupted between two frames: exit code 130, the run is kept, neither half a film nor its .part."""
+    """Interruption between two frames gives exit code 130. The run stays, without an incomplete
+    film or its .part."""
     ffmpeg(FFMPEG)
     stop_at_third_frame(movie.PillowWriter if form == "gif" else movie.FFMpegWriter, monkeypatch)
     assert main(["movie", "disc-normal", "--frames", "4", "--format", form, "--out", str(tmp_path / "out")]) == 130
@@ -87,7 +92,8 @@ def test_stopped_drawing_leaves_no_film(fake, ffmpeg, tmp_path, monkeypatch, cap
 
 @pytest.mark.robustness
 def test_mp4_wherever_there_is_ffmpeg(fake, ffmpeg, tmp_path):
-    """ffmpeg gets every frame, all of one size, even as H.264 wants it; --format gif does without it."""
+    """ffmpeg gets every frame with one even size, as H.264 requires. --format gif does not use it.
+    """
     ffmpeg(FFMPEG)
     movie.main(["disc-normal", "--frames", "4", "--out", str(tmp_path / "out")])
     movie.main(["disc-normal", "--frames", "4", "--format", "gif", "--out", str(tmp_path / "out")])
@@ -101,7 +107,7 @@ def test_mp4_wherever_there_is_ffmpeg(fake, ffmpeg, tmp_path):
     (["disc-normal", "--set", "sped=8"], 10, "sped: no such parameter"), (["disc-normal", "--format", "avi"], 10, "--format: 'avi' is not known .accepted: mp4, gif."),
     (["disc-normal", "--format", "mp4"], 13, "ffmpeg not found.*apt-get install ffmpeg.*--format gif")])
 def test_bad_calls_are_one_line(fake, no_ffmpeg, tmp_path, capsys, arguments, code, words):
-    """One line and its exit code, before anything runs."""
+    """One line and the exit code, before anything runs."""
     assert main(["movie", *arguments, "--out", str(tmp_path / "out")]) == code
     error = capsys.readouterr().err
     assert error.count("\n") == 1 and re.search(words, error)
@@ -109,7 +115,8 @@ def test_bad_calls_are_one_line(fake, no_ffmpeg, tmp_path, capsys, arguments, co
 
 
 def test_ffmpeg_that_fails_is_one_line(fake, ffmpeg, tmp_path, capsys):
-    """An ffmpeg that cannot write (say, without H.264) is exit code 13 and one line, and leaves no film."""
+    """An ffmpeg that cannot write (for instance without H.264) gives exit code 13, one line and no
+    film."""
     ffmpeg("#!/bin/sh\necho Unknown encoder >&2\nexit 1\n")
     assert main(["movie", "disc-normal", "--frames", "3", "--out", str(tmp_path / "out")]) == 13
     error = capsys.readouterr().err
@@ -118,23 +125,25 @@ def test_ffmpeg_that_fails_is_one_line(fake, ffmpeg, tmp_path, capsys):
 
 
 def test_body_between_two_snapshots(finished_folder):
-    """At a snapshot's time its body, midway between two the mean of both, beyond the ends the first and the last."""
+    """At the time of a snapshot the film shows its body, midway between two the mean, beyond the
+    ends the first and the last."""
     motion = movie.Motion(finished_folder / "fields.pvd", half=True)
     body, line = motion.at(motion.times[3:5].mean())
     assert body.points == pytest.approx((motion.bodies[3].points + motion.bodies[4].points) / 2)
     assert body.stress == pytest.approx((motion.bodies[3].stress + motion.bodies[4].stress) / 2)
-    assert line is None                                       # half a disc does not turn
+    assert line is None  # half a disc does not rotate
     for t, k in ((motion.times[3], 3), (-1.0, 0), (1.0, -1)):
         assert (motion.at(t)[0].points == motion.bodies[k].points).all()
 
 
 def test_frames_differ_in_time_and_nothing_else(finished_folder):
-    """From frame to frame the time, the marks on both force curves and the diameter move; axes and colour scale stay."""
+    """Between frames the time, the marks on both force curves and the diameter move. Axes and
+    colour scale do not change."""
     result = results.Record(finished_folder, {}, reused=True)
     history = result.history
     history["friction_force"] = -0.3 * history["normal_force"]
     motion = movie.Motion(finished_folder / "fields.pvd", half=True)
-    motion.diameters = np.array([body.points[:5] for body in motion.bodies])   # as of a whole body
+    motion.diameters = np.array([body.points[:5] for body in motion.bodies])  # as for a whole body
     stage = movie.PlaneStage(result, motion)
     seen = []
     for t in (1e-3, 2e-3):

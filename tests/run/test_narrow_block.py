@@ -1,4 +1,5 @@
-"""Points inside a body next to one of its vertices: a narrow block between two discs, whose corners press into them."""
+"""Points inside a body near one of its vertices: the corners of a narrow block press into two
+discs."""
 
 import numpy as np
 import pytest
@@ -19,8 +20,11 @@ def narrow(width: float, height: float, x: float, off: float, speed: float, fric
 @pytest.mark.parametrize("case", [dict(width=0.06, height=0.1, x=0.081, off=0, speed=0, friction=0.3), dict(width=0.1, height=0.06, x=0.102, off=0.04, speed=-5, friction=0)],
                          ids=["struck, with friction", "pressed at its corners"])
 def test_vertices_cost_no_steps(case, tmp_path):
-    """Nearly every step converges in few iterations, with about a factorisation a step (an edge's normal and its vertex's took turns); energy
-    and momenta are kept."""
+    """Nearly every step converges in few iterations, with about one factorisation per step; energy
+    and momenta are conserved.
+
+    The normals of an edge and of its vertex could alternate.
+    """
     found = run.run(read_scene(narrow(**case), tmp_path, "narrow"), {"fields": 0}, tmp_path / "run", estimate=False)
     s, h = found.summary, found.history
     assert s["rejected_steps"] <= 5 and s["factorizations"] < 1.5 * s["steps"] and s["newton_iterations"] < 20 * s["steps"]

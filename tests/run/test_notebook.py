@@ -1,4 +1,4 @@
-"""The Python interface in a notebook: every cell runs, tables and pictures are shown."""
+"""The Python interface in a notebook: every cell runs, and tables and figures are shown."""
 
 import os
 import subprocess
@@ -13,7 +13,8 @@ nbformat = pytest.importorskip("nbformat")
 if missing := [name for name in ("nbclient", "ipykernel") if find_spec(name) is None]:
     pytest.skip(f"not installed: {', '.join(missing)}", allow_module_level=True)
 
-# In a process of its own: nbclient imports ipykernel, and the program takes a process that has it for a notebook
+# This runs in a process of its own: nbclient imports ipykernel, and the program takes a process
+# with ipykernel for a notebook.
 EXECUTE = """
 import nbclient, nbformat
 notebook = nbformat.read("block.ipynb", 4)
@@ -29,17 +30,18 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def outputs(folder):
-    """cell -> its outputs, after the whole notebook was executed in an empty folder."""
+    """The outputs of each cell, after the whole notebook ran in an empty folder."""
     cells = [nbformat.v4.new_code_cell(cell.strip()) for cell in CELLS]
     nbformat.write(nbformat.v4.new_notebook(cells=cells), folder / "block.ipynb")
-    environment = {name: value for name, value in os.environ.items() if name != "MPLBACKEND"}   # the kernel draws into the notebook
+    # The kernel draws into the notebook.
+    environment = {name: value for name, value in os.environ.items() if name != "MPLBACKEND"}
     done = subprocess.run([sys.executable, "-c", EXECUTE], cwd=folder, env=environment, capture_output=True, text=True, timeout=400)
     assert done.returncode == 0, done.stderr
     return {cell: made.outputs for cell, made in zip(CELLS, nbformat.read(folder / "executed.ipynb", 4).cells)}
 
 
 def count(outputs: list, kind: str) -> int:
-    """How many of the outputs can be shown as `kind`."""
+    """The number of outputs that can be shown as `kind`."""
     return sum(kind in one.get("data", {}) for one in outputs)
 
 
@@ -61,7 +63,8 @@ def test_figures_are_shown(outputs, cell, pictures):
 
 @pytest.mark.parametrize("cell, package", [(STATE, "pyvista"), (PLAYER, "k3d")], ids=["pyvista", "k3d"])
 def test_what_is_not_installed_is_a_line(folder, outputs, cell, package):
-    """States need pyvista and the player needs k3d: where one is missing a line says how to install it."""
+    """States need pyvista and the player needs k3d. If one is missing, a line has the installation
+    command."""
     (said,) = ["".join(one.text for one in outputs[cell] if one.output_type == "stream" and one.name == "stdout")]
     assert said.count("\n") == 1 and (find_spec(package) is not None or f"pip install {package}" in said), said
     assert find_spec("k3d") is None or (folder / "impact.html").stat().st_size > 1e4

@@ -1,4 +1,5 @@
-"""make oblique-angles: what theory says in its limits, verdicts that can fail, bad input, and real impacts of a disc."""
+"""make oblique-angles: limits of the theories, verdicts that can fail, wrong input, and impacts of
+a disc."""
 
 import numpy as np
 import pytest
@@ -9,8 +10,12 @@ from verification.oblique_ball import NU, slides_throughout, springs
 
 
 def test_elastic_theory():
-    """A ball that slides throughout loses 7 (1 + e)(1 - nu)/(2 - nu) of psi, e = 1, also where that turns the slip round, which a rigid one never does; one that sticks
-    recoils, near the normal by little. For a disc it is 6 for 7, and there is no theory where it sticks."""
+    """A ball that slides throughout loses 7 (1 + e)(1 - nu)/(2 - nu) of psi with e = 1, also if
+    this reverses the slip, unlike a rigid ball.
+
+    A ball that sticks recoils, near the normal by little. For a disc the factor is 6, and there is
+    no theory if it sticks.
+    """
     psi = np.array([0.2, 1.4, 2.8, 3.8, 4.1, 6.5])
     after, slides = angles.elastic(psi, 1, 2.5), slides_throughout(psi, NU, 2.5)
     assert slides.tolist() == [False] * 4 + [True] * 2
@@ -23,7 +28,8 @@ def test_elastic_theory():
 
 
 def test_what_theory_says_agrees():
-    """Asked of all stiff ones, of slow balls, and of slow discs that slide throughout: all those agree, and a requirement that holds says so."""
+    """Agreement is required of all stiff bodies, of slow balls, and of slow discs that slide
+    throughout. All agree, and the report has the verdict."""
     table = angles.judge(rows())
     assert angles.holds(table) and table[table.verdict == ""][["body", "kind", "angle"]].values.tolist() == [
         ["disc", "paper", SLIDES], ["disc", "paper", STICKS], ["disc", "slow", STICKS], ["ball", "paper", SLIDES], ["ball", "paper", STICKS]]
@@ -40,7 +46,8 @@ def test_what_theory_says_agrees():
     ("ball", "stiff", STICKS, 1.06, "DEVIATES"), ("ball", "slow", SLIDES, 1.06, "DEVIATES"), ("ball", "slow", STICKS, 1.04, "agrees"), ("ball", "slow", STICKS, 1.1, "partly"),
     ("ball", "slow", STICKS, 1.4, "DEVIATES"), ("disc", "slow", SLIDES, 0.9, "DEVIATES"), ("disc", "slow", STICKS, 2.0, ""), ("ball", "paper", STICKS, 2.0, "")])
 def test_a_changed_slip_is_judged(body, kind, angle, share, verdict):
-    """Where `share` of the slip that theory says is lost the run deviates beyond what is asked of it, and only where something is; beyond 5 % it agrees partly at best."""
+    """If only `share` of the theoretical slip is lost, the run deviates where agreement is
+    required; beyond 5 % it agrees partly at best."""
     table = rows()
     here = (table.body == body) & (table.kind == kind) & (table.angle == angle)
     table.loc[here, "psi_2"] = table.psi_1 - share * (table.psi_1 - table.psi_2)

@@ -1,4 +1,4 @@
-"""The pages that are written from what the scripts say of themselves: whole, true and up to date."""
+"""The generated pages are complete, correct and up to date."""
 
 import re
 
@@ -32,13 +32,13 @@ def name_of(path):
 
 @pytest.mark.parametrize("path", pages.pages(), ids=name_of)
 def test_pages_are_as_the_scripts_have_it(path):
-    """What python docs/pages.py would write is what is there."""
+    """The pages equal the output of python docs/pages.py."""
     assert path.read_text() == pages.pages()[path], "python docs/pages.py"
 
 
 @pytest.mark.parametrize("script", pages.SCRIPTS)
 def test_every_column_and_number_has_a_meaning(script):
-    """Each has a unit and words; nothing has that is not written."""
+    """Each has a unit and a meaning. No others have one."""
     told = describe_results(
         {} if "ball-axi" in script else {"angle": 60, "friction_static": 0.3}, script
     )
@@ -57,7 +57,7 @@ def test_every_column_and_number_has_a_meaning(script):
 
 
 def test_every_equation_of_the_paper_has_its_line():
-    """(1) to (15) each stand at a line of code that the table names."""
+    """(1) to (15) each have a line of code in the table."""
     table = pages.equations()
     assert {
         int(number)
@@ -72,7 +72,7 @@ def test_every_equation_of_the_paper_has_its_line():
 
 
 def test_every_warning_is_listed():
-    """The page has the first words of every sentence that warnings.idp can say."""
+    """The page has the first words of every sentence of warnings.idp."""
     said = set(
         re.findall(
             r'warn\((?:string\()?"([a-z -]+):',
@@ -88,7 +88,8 @@ def test_every_warning_is_listed():
 
 
 def test_readme_is_one_page_and_its_scene_is_sound(tmp_path):
-    """At most 130 lines and, beside the table of equations, 950 words; the scene that it shows is accepted as it stands."""
+    """README has at most 130 lines and, without the table of equations, 950 words. The scene in it
+    is accepted."""
     text = (ROOT / "README.md").read_text()
     assert text.count("\n") <= 130 and len(text.replace(pages.equations(), "").split()) <= 950
     path = tmp_path / "drop.toml"
@@ -97,7 +98,8 @@ def test_readme_is_one_page_and_its_scene_is_sound(tmp_path):
 
 
 def test_every_export_and_every_command_is_in_the_reference():
-    """Each name of the package stands on one page of the Python interface, each command on that of the command line."""
+    """Each name of the package is on one page of the Python interface, each command on the page of
+    the command line."""
     text = "".join(path.read_text() for path in (ROOT / "docs/reference/api").glob("*.md"))
     named = re.findall(
         r"^\.\. auto(?:class|function|exception):: ffimpact\.(\w+)$", text, re.MULTILINE
@@ -112,7 +114,7 @@ def test_every_export_and_every_command_is_in_the_reference():
 
 
 def test_exit_codes_are_those_of_the_failures():
-    """Each exception of the interface with its code."""
+    """Each exception of the interface has its code."""
     text = pages.exit_codes()
     assert all(
         f"| {getattr(ffimpact, name).code} | `{name}` |" in text
@@ -122,7 +124,8 @@ def test_exit_codes_are_those_of_the_failures():
 
 @pytest.mark.parametrize("path", MEASUREMENTS, ids=name_of)
 def test_a_measurement_has_its_tables_its_figure_and_few_words(path):
-    """Its command draws a figure; tables and figure are there; what is written by hand has at most 250 words."""
+    """Its command draws a figure, tables and figure exist, and the handwritten part has at most 250
+    words."""
     text = path.read_text()
     before, _, rest = text.partition(page.BEGIN)
     block, _, after = rest.partition(page.END)
@@ -136,7 +139,8 @@ def test_a_measurement_has_its_tables_its_figure_and_few_words(path):
 
 
 def test_a_measurement_writes_its_page(tmp_path):
-    """A new page has title, command, verdict, tables and figure; written again, only the block between the marks changes."""
+    """A new page has title, command, verdict, tables and figure. Writing it again changes only the
+    block between the marks."""
     path = tmp_path / "one.md"
     rows = pd.DataFrame(
         {"case": ["disc"] * 2, "unknowns": [100, 1000], "step": [0.1, 1.0], "memory": [10.0, 100.0]}
@@ -168,7 +172,7 @@ def test_a_measurement_writes_its_page(tmp_path):
 
 @pytest.mark.parametrize("path", PAGES, ids=name_of)
 def test_links_lead_somewhere(path):
-    """Every file that a page links to is there; the gallery is made with the site."""
+    """Every file to which a page links exists. The gallery is made with the site."""
     links = {
         link.partition("#")[0]
         for link in re.findall(r"\]\(([^)\s]+)\)", path.read_text())
@@ -183,7 +187,7 @@ def test_links_lead_somewhere(path):
 
 @pytest.mark.parametrize("path", PAGES, ids=name_of)
 def test_tables_and_lists_begin_after_a_heading_or_an_empty_line(path):
-    """Without one Markdown takes them for text."""
+    """Without an empty line Markdown takes them for text."""
     prose = re.sub(r"(?ms)^```.*?^```$", "```", path.read_text()).splitlines()
     starts = [
         (before, line)
@@ -196,7 +200,8 @@ def test_tables_and_lists_begin_after_a_heading_or_an_empty_line(path):
 
 @pytest.mark.parametrize("path", PAGES, ids=name_of)
 def test_files_that_a_page_names_are_there(path):
-    """Every script and module in code type; those that a worked example makes are announced as new."""
+    """Every script and module in code type exists. Those that an example makes are announced as
+    new."""
     text = path.read_text()
     named = set(re.findall(r"`([\w./-]+\.(?:idp|edp|hpp|py))`", text)) - set(
         re.findall(r"`(\S+)`, new\b", text)

@@ -1,4 +1,5 @@
-"""The report of the paper: each verdict flips when its numbers do, the page is self-contained, a missing case stops it."""
+"""The report of the paper: verdicts change with their numbers, the page is self-contained, a
+missing case stops it."""
 
 import json
 import re
@@ -38,21 +39,24 @@ from tests.support.paper_results import (
 
 @pytest.mark.parametrize("name, change, verdict, words", [(name, *case) for name, cases in CASES.items() for case in cases])
 def test_verdicts_follow_from_the_numbers(tmp_path, name, change, verdict, words):
-    """Each statement is judged by its rule, whatever the numbers are."""
+    """Each statement is judged by its criterion, whatever the numbers are."""
     given = base()
     change(given)
     found = FIND[name](Memory(tmp_path, given))
     assert found.verdict == verdict and words in found.ours, found.ours
 
 
-OTHERS = {"friction_laws", "adopted", "monotone", "disc_time", "stepped", "reflections", "incompressible", "slip_limit", "in_space"}   # of no SVK run, or of those alone that keep ellipticity
-EXACT = {"energy", "total_energy", "conserves", "accelerations"}                            # kept by every step, on any mesh
+# No SVK run, or only runs that keep ellipticity.
+OTHERS = {"friction_laws", "adopted", "monotone", "disc_time", "stepped", "reflections", "incompressible", "slip_limit", "in_space"}
+# Conserved by every step on any mesh.
+EXACT = {"energy", "total_energy", "conserves", "accelerations"}
 
 
 @pytest.mark.few(8)
 @pytest.mark.parametrize("name", sorted(set(FIND) - OTHERS))
 def test_lost_ellipticity_is_judged_by_one_rule(tmp_path, name):
-    """Where every SVK run has lost ellipticity, no change of the results makes a statement on it agree, unless it is of exact conservation."""
+    """If every SVK run has lost ellipticity, no change of the results makes a statement about it
+    agree, unless it is about exact conservation."""
     for change, _, _ in CASES[name]:
         given = base()
         change(given)
@@ -69,14 +73,19 @@ def test_lost_ellipticity_is_judged_by_one_rule(tmp_path, name):
 
 @pytest.mark.parametrize("name", FIND)
 def test_a_verdict_names_its_data(tmp_path, name):
-    """Every run that a statement reads is among those whose parameters and provenance the page gives for it; something is read or named in words."""
+    """The page has parameters and provenance of every run that a statement reads. Every statement
+    reads runs or refers to them."""
     results = Memory(tmp_path, base())
     found = FIND[name](results)
     assert results.read <= set(found.runs) and (found.runs or "laws.csv" in found.ours) and (found.figures or name == "incompressible")
 
 
 def test_figures_6b_and_8_are_over_the_same_speeds():
-    """One grid, with the time above 1 % of the peak force and the loss of ellipticity: at least 40 speeds from 0.5 to 11 m/s and beyond, for ν = 0.3 and 0.45 with error bars."""
+    """Both have one grid with error bars, the time above 1 % of the peak force and the loss of
+    ellipticity.
+
+    It has at least 40 speeds from 0.5 to 11 m/s and beyond, for ν = 0.3 and 0.45.
+    """
     svk, neo = (sweep.load(name) for name in (SVK, NEO))
     assert svk.points == neo.points and svk.refine == neo.refine != {} and {point["nu"] for point in svk.points} == {0.3, 0.45}
     found = {point["speed"] for point in svk.points if point["speed"] <= 11}
@@ -86,7 +95,7 @@ def test_figures_6b_and_8_are_over_the_same_speeds():
 
 
 def test_the_control_differs_in_the_jump_alone():
-    """friction-jump: the same runs with equal coefficients, of both laws, each on two meshes."""
+    """friction-jump has the same runs with equal coefficients, for both laws, on two meshes."""
     wanted = sweep.load("friction-jump")
     used = [{**scene.load(wanted.scene).values, **wanted.base, **point} for point in wanted.points]
     assert {(each["law"], each["friction_static"], each["friction_dynamic"]) for each in used} == {(law, static, 0.5) for law in ("svk", "neohookean") for static in (0.7, 0.5)}
@@ -94,7 +103,8 @@ def test_the_control_differs_in_the_jump_alone():
 
 
 def test_page_holds_everything_itself(tmp_path):
-    """Pictures inside, no link to other places, every statement with its verdict, parameters and provenance of its runs."""
+    """The figures are inside, there are no external links, and every statement has its verdict,
+    parameters and provenance of its runs."""
     fake_freefem.write_scene(tmp_path, dict(law="svk", nu="0.45", speed="7"))
     (tmp_path / "summary.json").write_text(json.dumps({"provenance": dict(git="abc", code="def", freefem="4.9", gmsh="4", mesh="0123")}))
     (tmp_path / "a.png").write_bytes(b"\x89PNG picture")
@@ -107,7 +117,8 @@ def test_page_holds_everything_itself(tmp_path):
 
 
 def test_page_leads_to_every_statement_and_back(tmp_path):
-    """Contents and a link for each statement, a link back behind each, captions under the pictures, each picture once, the program's version."""
+    """There are contents with a link to each statement, links back, captions, every figure once,
+    and the version of the program."""
     picture = tmp_path / "sweeps/oblique/sweep.png"
     picture.parent.mkdir(parents=True)
     picture.write_bytes(b"picture")
@@ -124,7 +135,8 @@ def test_page_leads_to_every_statement_and_back(tmp_path):
 
 
 def test_pictures_say_what_they_show():
-    """Of a run its scene's title, of a sweep its title; no picture of the page is left with its file's name."""
+    """A run has the title of its scene, a sweep its title. No figure of the page has its file name
+    as caption."""
     results = paper_judging.Results(ROOT / "results")
     pictures = [*(results.drawn(f"{name}/{kind}")[0] for name, kinds in paper.RUNS.items() for kind in kinds), *(results.drawn(name)[0] for name in sweep.built_in()),
                 results.folder / "stick-slip/stick-slip.png", results.folder / "friction-laws/friction-laws.png", results.folder / paper_bodies.ACCELERATIONS]
@@ -132,7 +144,8 @@ def test_pictures_say_what_they_show():
 
 
 def test_the_page_of_all_statements(tmp_path, monkeypatch, capsys):
-    """The command writes the page with every statement, its verdict and its pictures, and says the same; counts add up."""
+    """The command writes the page with every statement, verdict and figure, and prints the same.
+    The counts add up."""
     given = Memory(tmp_path, base())
     for *_, find in STATEMENTS:
         for path in find(given).figures:
@@ -148,14 +161,14 @@ def test_the_page_of_all_statements(tmp_path, monkeypatch, capsys):
 
 
 def test_the_pictures_of_the_page_are_asked_for(tmp_path):
-    """What the page shows of runs and what the cases must have left are the same."""
+    """The figures of runs on the page are those that the cases must have left."""
     given = Memory(tmp_path, base())
     shown = {(path.parent.parent.name, path.stem) for *_, find in STATEMENTS for path in find(given).figures if path.parent.name == "figures"}
     assert shown == {(name, kind) for name, kinds in paper.RUNS.items() for kind in kinds}
 
 
 def test_a_missing_case_stops_it(tmp_path, capsys):
-    """One line names every make target that is missing, exit code 14, and no page is written."""
+    """One line has every missing make target, with exit code 14, and no page is written."""
     assert guarded(paper.main, ["--results", str(tmp_path)]) == 14
     err = capsys.readouterr().err
     assert err.count("\n") == 1 and not (tmp_path / "paper").exists()
@@ -165,7 +178,8 @@ def test_a_missing_case_stops_it(tmp_path, capsys):
 @pytest.mark.few(2)
 @pytest.mark.parametrize("change", ["nothing", "code", "scene", "picture", "failed", "broken"])
 def test_only_results_of_the_present_scenes_and_code_count(fake, tmp_path, monkeypatch, change):
-    """A case of other code, of another scene, without its picture, that ended by its time limit, or unreadable, is as good as missing."""
+    """A case of other code or another scene, without its figure, ended by its time limit, or
+    unreadable counts as missing."""
     place = tmp_path / "disc-normal"
     report.draw(run.run(scene.load("disc-normal"), {"speed": 4} if change == "scene" else {}, out=place))
     path = place / "summary.json"
@@ -184,7 +198,7 @@ def test_only_results_of_the_present_scenes_and_code_count(fake, tmp_path, monke
 
 
 def test_values_are_listed_as_numbers(tmp_path):
-    """The range of what was varied goes from the smallest to the largest number."""
+    """The range of a varied parameter goes from its smallest to its largest number."""
     for k, speed in enumerate((0.5, 9.9, 12.1, 1, 2, 3, 4, 5, 6)):
         (tmp_path / str(k)).mkdir()
         fake_freefem.write_scene(tmp_path / str(k), dict(speed=str(speed)))
@@ -192,7 +206,8 @@ def test_values_are_listed_as_numbers(tmp_path):
 
 
 def test_the_map_of_the_oblique_disc_has_both_angles(tmp_path):
-    """A row of maps for each angle to the plane, a column for each mesh; what is said of the level names both."""
+    """There is a row of maps for each angle to the plane and a column for each mesh. The text about
+    the level mentions both."""
     wanted = sweep.load(OBLIQUE)
     table = pd.DataFrame(wanted.points).assign(exit=0, contact_time=4.4e-3)
     table.loc[table.penalty < 5e8, "contact_time"] = 5e-3
@@ -203,7 +218,8 @@ def test_the_map_of_the_oblique_disc_has_both_angles(tmp_path):
 
 
 def test_the_search_is_drawn_for_both_angles(tmp_path):
-    """Sliding and sticking at 60 and 30 degrees from the plane, for both laws: a point a run, counted by angle and law."""
+    """Sliding and sticking at 60 and 30 degrees from the plane, for both laws: a point for each
+    run, counted by angle and law."""
     axes = {name: values[-2:] for name, values in stick_slip.AXES.items()}
     table = pd.DataFrame(stick_slip.grid(axes)).assign(exit=0, contact_time=4.5e-3, first=1.0, second=0.9, last=0.3, work_last=0.01, quiet=True, time=True)
     table["order"] = stick_slip.as_told(table)

@@ -1,4 +1,4 @@
-"""The parameter table and the scenes that are made of it."""
+"""The table of parameters, and scenes made of it."""
 
 import pytest
 
@@ -9,7 +9,7 @@ from ffimpact.input.table import LAWS, SCRIPTS
 
 
 def test_the_scripts_take_what_the_table_says():
-    """Every script starts with its parameters at their defaults, and names the same laws."""
+    """Every script starts with its parameters at their defaults and has the same laws."""
     told = describe()
     assert told["laws"].split("|") == list(LAWS) and told["scripts"].split("|") == list(SCRIPTS)
     for script in SCRIPTS:
@@ -17,7 +17,8 @@ def test_the_scripts_take_what_the_table_says():
 
 
 def test_each_script_takes_its_own_parameters():
-    """A parameter that a script does not take is bad input that says which one does, on either way in."""
+    """A parameter that a script does not take is bad input with the scripts that do, with and
+    without Python."""
     assert "block_width" in parameters.names("disc-block") and "block_width" not in parameters.names("disc-plane")
     assert parameters.check({"block_width": 3}, "disc-block") == {"block_width": 3.0}
     for script, name, value in (("disc-plane", "block_width", 3), ("bodies", "radius", 1)):

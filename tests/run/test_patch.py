@@ -1,5 +1,5 @@
-"""The contact as a whole: its half-width and largest pressure in the history, where and when in the summary, against fields/contact.csv; its points as
-files for ParaView; its figure."""
+"""The contact area: half-width and largest pressure in the history and the summary against
+fields/contact.csv, ParaView files, the figure."""
 
 import matplotlib.pyplot as plt
 import meshio
@@ -20,7 +20,7 @@ SCENES = {"disc": ("disc-normal", {}), "whole disc": ("disc-oblique", {}), "revo
 
 @pytest.fixture(scope="module")
 def ran(tmp_path_factory):
-    """ran(which): a coarse run with snapshots at all steps, once."""
+    """ran(which): a coarse run with snapshots at all steps, made once."""
     results = {}
 
     def at(which: str) -> Record:
@@ -32,7 +32,7 @@ def ran(tmp_path_factory):
 
 
 def at_the_same_times(result: Record) -> list[tuple[pd.DataFrame, pd.Series]]:
-    """The points under load at an instant and the row of the history there."""
+    """The loaded points at each instant and the row of the history at this instant."""
     history = pd.DataFrame(result.history)
     return [(points, history.iloc[(history.t - t).abs().argmin()]) for t, points in pd.DataFrame(contact.read(result.folder)).groupby("t")]
 
@@ -40,8 +40,11 @@ def at_the_same_times(result: Record) -> list[tuple[pd.DataFrame, pd.Series]]:
 @pytest.mark.few(3)
 @pytest.mark.parametrize("which", SCENES)
 def test_largest_pressure(ran, which):
-    """max_pressure is the largest projected one of contact.csv at its instant, of every body; the summary's is the largest of the history, at that time; it
-    is at that point of the outline where contact.csv has it."""
+    """max_pressure is the largest projected pressure in contact.csv at its instant, for every body.
+
+    The value of the summary is the largest of the history, at its time, and its point of the
+    outline is that of contact.csv.
+    """
     result = ran(which)
     h, s = result.history, result.summary
     for points, row in at_the_same_times(result):
@@ -57,18 +60,20 @@ def test_largest_pressure(ran, which):
 
 @pytest.mark.parametrize("which", [which for which in SCENES if which != "oblique ball"])
 def test_half_width_is_that_of_the_size(ran, which):
-    """Of one patch without a hole: half the touching length, the radius of the touching area, to the distance of two points; 0 without contact."""
+    """For one contact area without a hole it is half the contact length, or the radius of the area,
+    to the distance of two points; 0 without contact."""
     h = ran(which).history
     size, touches = h["contact_size"], h["contact_size"] > 0
     radius = np.sqrt(size / np.pi) if which in ("revolution", "ball") else size / 2
     used, large = run.read_scene(ran(which).folder), size > 0.5 * size.max()
     element = used.get("contact_mesh_size") or max(body["contact_mesh_size"] for body in used["body"])
-    assert large.sum() > 5 and np.abs(h["contact_half_width"] - radius)[large].max() < 0.39 * element     # Gauss' points of an edge
+    # Gauss points of an edge.
+    assert large.sum() > 5 and np.abs(h["contact_half_width"] - radius)[large].max() < 0.39 * element
     assert (h["contact_half_width"][~touches] == 0).all() and (h["contact_half_width"][touches] > 0).all()
 
 
 def test_no_contact_has_no_pressure(tmp_path):
-    """A disc that flies: zeros, and no time or place."""
+    """A disc in flight has zeros, and no time or place."""
     result = run.run(scene.load("disc-normal"), {"accuracy": 0.4, "height": 0.1, "end_time": 1e-3, "fields": 0}, tmp_path / "out", estimate=False)
     assert not result.history["max_pressure"].any() and not result.history["contact_half_width"].any()
     assert result.summary["max_pressure"] == 0 and result.summary["max_pressure_time"] is None and result.summary["max_pressure_x"] is None
@@ -76,7 +81,8 @@ def test_no_contact_has_no_pressure(tmp_path):
 
 @pytest.mark.parametrize("which, bodies", [("disc", 1), ("block", 2)])
 def test_cells_have_the_number_of_their_body(ran, which, bodies):
-    """The cells of a snapshot have the body's number from 1 as integers: those of body 2, the block, are below the disc's."""
+    """The elements of a snapshot have the number of their body, from 1, as integers. Those of body
+    2, the block, are below the disc's."""
     _, path = vtu.series(ran(which).folder / "fields.pvd")[0]
     found = meshio.read(path)
     numbers, cells = found.cell_data["body"][0], found.cells[0].data
@@ -87,14 +93,15 @@ def test_cells_have_the_number_of_their_body(ran, which, bodies):
 
 @pytest.mark.parametrize("which", SCENES)
 def test_every_row_bears_load(ran, which):
-    """contact.csv has a row for every point under load, and no other."""
+    """contact.csv has a row for every loaded point and no other."""
     table = pd.read_csv(ran(which).folder / "fields/contact.csv")
     assert len(table) > 10 and (table.pressure > 0).all()
 
 
 @pytest.mark.parametrize("which", ["disc", "whole disc", "revolution", "ball", "oblique ball", "block"])
 def test_panels_show_the_same_pressure(ran, which):
-    """The largest pressure of an instant is the same in the profiles, in the picture over time, and in the last panel."""
+    """The largest pressure of an instant is the same in the profiles, in the figure over time, and
+    in the last panel."""
     result = ran(which)
     half = figures.is_half(result.scene)
     ball = result.scene if half and result.scene["script"] in figures.BODY else None
@@ -116,8 +123,10 @@ def test_panels_show_the_same_pressure(ran, which):
 
 @pytest.mark.parametrize("which", ["disc", "whole disc", "ball", "block"])
 def test_points_for_paraview(ran, which):
-    """fields/contact.pvd lists a file for every snapshot of fields.pvd at the same time; it has the points and numbers of contact.csv there, displaced to
-    their places; none without contact."""
+    """fields/contact.pvd lists a file for every snapshot of fields.pvd at the same time.
+
+    It has the points and numbers of contact.csv at their displaced places, or none without contact.
+    """
     folder = ran(which).folder
     table = pd.DataFrame(contact.read(folder))
     files = vtu.series(folder / "fields/contact.pvd")
@@ -141,8 +150,12 @@ def test_points_for_paraview(ran, which):
 
 @pytest.mark.parametrize("which, panels, maps", [("disc", 3, 0), ("whole disc", 4, 0), ("revolution", 3, 0), ("ball", 3, 0), ("oblique ball", 4, 10), ("block", 3, 0)])
 def test_panels_of_the_figure(ran, which, panels, maps):
-    """A row a body, one of two that touch nothing else: profiles, pressure over time, with friction stick and slip, half-width and largest pressure; of a ball
-    that comes obliquely maps of the patch at five instants, of pressure and of stick and slip."""
+    """There is a row for each body, one for two bodies in contact with each other only.
+
+    Panels: profiles, pressure over time, stick and slip if there is friction, half-width and
+    largest pressure; for oblique impacts of a ball also maps of pressure and of stick and slip at
+    five instants.
+    """
     result = ran(which)
     several = bodies.are_several(result.scene)
     half = figures.is_half(result.scene)
@@ -156,8 +169,11 @@ def test_panels_of_the_figure(ran, which, panels, maps):
 
 
 def test_a_uniform_pressure_on_a_face_stays_uniform(tmp_path):
-    """Two blocks of nu = 0 that rest flat press the floor by rho g h everywhere. Their projected pressure is that, up to the
-    corners, where the outline turns: it does not swing there, nor reach round them."""
+    """Two blocks with nu = 0 at rest press the floor by rho g h everywhere.
+
+    Their projected pressure equals this up to the corners of the outline, without oscillations
+    there and without values around the corners.
+    """
     block = {"shape": "rectangle", "width": 0.1, "height": 0.05, "mesh_size": 0.025, "contact_mesh_size": 0.0125}
     tables = {"law": "neohookean", "young": 1e5, "nu": 0.0, "density": 1000.0, "loss": 2.0, "gravity": 9.81, "until": "rest",
               "accuracy": 0.1, "fields": 1,

@@ -1,4 +1,5 @@
-"""Other programs on our scenes: which script stands beside which scene, and, where NGSolve is installed, its answers beside ours."""
+"""Other programs for our scenes: the script of each scene and, if NGSolve is installed, its results
+beside ours."""
 
 import pytest
 
@@ -10,7 +11,7 @@ from verification import measure
 
 
 def test_every_scene_has_its_script():
-    """NGSolve has all bodies, GetFEM the disc; whoever is asked in the bench is there."""
+    """NGSolve has all bodies, GetFEM the disc. The scripts of the bench exist."""
     there = {path.stem for path in (ROOT / "benchmarks/programs").glob("*.py")}
     assert {f"ngsolve_{body}" for body in peers.BODIES.values()} | {"getfem_disc"} <= there
     assert {"ngsolve_two_bodies", "ffimpact_run"} <= there
@@ -23,8 +24,12 @@ def test_every_scene_has_its_script():
 @pytest.mark.parametrize("name, sizes, step, form", [("ball", (0.025, 0.01), 1e-4, "tuned"), ("ball-axisymmetric", (0.016, 0.005), 1e-4, "tuned"),
                                                      ("disc-normal", (0.016, 0.005), 1e-4, "tuned"), ("disc-normal", (0.016, 0.005), 2.5e-5, "newmark")])
 def test_ngsolve_says_the_same(name, sizes, step, form, tmp_path):
-    """Its own coarse mesh of the same sizes, the same step: impulse and rebound within 0.5 %, contact time within 2 %; by Newmark's average acceleration, which
-    shares nothing with our step and keeps no energy, too, with a smaller one."""
+    """On its own coarse mesh of equal sizes with equal steps: impulse and rebound within 0.5 %,
+    contact time within 2 %.
+
+    This also holds for Newmark's average acceleration, which is independent of our step and does
+    not conserve energy, with a smaller step.
+    """
     if not peers.find("ngsolve"):
         pytest.skip("ngsolve is not installed")
     flags = {"law": "neohookean", "penalty": 1.5e10}
@@ -37,13 +42,15 @@ def test_ngsolve_says_the_same(name, sizes, step, form, tmp_path):
 
 
 def test_ngsolve_says_the_same_with_friction(tmp_path):
-    """The oblique disc, static and dynamic coefficient: rebound, spin and impulse within 0.5 % of ours, in both forms, and the energy with the work of friction kept."""
+    """The oblique disc with static and dynamic coefficient: rebound, spin and impulse agree within
+    0.5 % in both forms; energy with friction work is conserved."""
     if not peers.find("ngsolve"):
         pytest.skip("ngsolve is not installed")
     sizes, given = (0.016, 0.005), {"law": "neohookean", "speed": 12.0}
     case = equal_errors.CASES["oblique"]
     ours = equal_errors.answers(case, equal_errors.OURS, peers.ours(60, "disc-oblique", mesh_size=sizes[0], contact_mesh_size=sizes[1], dt=1e-4, fields=0, **given)[0])
-    for form, limit in (("tuned", 0.5), ("plain", 0.7)):     # plain takes mu of the step before
+    # The plain form takes mu of the previous step.
+    for form, limit in (("tuned", 0.5), ("plain", 0.7)):
         theirs, reason = peers.run("ngsolve", form, *sizes, 1e-4, 120, scene="disc-oblique", tolerance=1e-8, **given)
         assert theirs, reason
         assert equal_errors.errors(case, equal_errors.answers(case, form, theirs), ours)["error"] < limit
@@ -51,8 +58,11 @@ def test_ngsolve_says_the_same_with_friction(tmp_path):
 
 
 def test_ngsolve_says_the_same_of_a_clamped_beam(tmp_path):
-    """The first touch of a disc on a beam that is clamped at both ends: impulse, velocity of the disc and
-    the time above 1 % of the peak within 0.5 %, on coarse meshes of either program's own."""
+    """The first contact of a disc on a beam with clamped ends.
+
+    Impulse, velocity of the disc and the time above 1 % of the peak agree within 0.5 %, on coarse
+    meshes of either program.
+    """
     if not peers.find("ngsolve"):
         pytest.skip("ngsolve is not installed")
     material = {"nu": 0.45, "young": 7e6, "density": 1722.0}
@@ -69,7 +79,8 @@ def test_ngsolve_says_the_same_of_a_clamped_beam(tmp_path):
 
 
 def test_ours_beside_the_peers():
-    """This program runs by the peers' interface: its summary, and imports, set-up and march that are most of its process."""
+    """This program runs by the interface of the other programs: its summary, and imports, set-up
+    and time integration that add up to most of its process."""
     found, reason = peers.ours(60, "disc-normal", accuracy=0.1, fields=0)
     assert found, reason
     parts = [found[f"{part}_seconds"] for part in ("imports", "setup", "cpu")]

@@ -1,4 +1,4 @@
-"""What is shown while the program works: one line, nested parts in it, a sentence about a run that will take long."""
+"""The display of progress: one line with nested parts, and a sentence about long runs."""
 
 import re
 import subprocess
@@ -15,7 +15,7 @@ from ffimpact.sweeps import study
 
 
 class Bar:
-    """Stands in for tqdm's: keeps what it was told."""
+    """A substitute for tqdm's bar that records its calls."""
 
     def __init__(self, desc: str, **_):
         self.n, self.seen = 0.0, [(0.0, desc)]
@@ -33,7 +33,7 @@ bars: list[Bar] = []
 
 @pytest.fixture
 def shown(monkeypatch) -> list[Bar]:
-    """The bars that a notebook shows, one an output of a cell."""
+    """The bars that a notebook shows, one for each output of a cell."""
     monkeypatch.setitem(sys.modules, "ipykernel", types.ModuleType("ipykernel"))
     monkeypatch.setitem(sys.modules, "tqdm.auto", types.SimpleNamespace(tqdm=Bar))
     bars.clear()
@@ -41,7 +41,8 @@ def shown(monkeypatch) -> list[Bar]:
 
 
 def test_parts_in_parts_have_one_line(shown):
-    """Work in parts has one line: which of how many, what the part says of itself, and shares by what the parts cost."""
+    """Work in parts has one line: number of the part, its own text, and shares by the cost of the
+    parts."""
     with progress.Line("paper", {"a": 1.0, "b": 3.0}) as line:
         with line.part("a", "1 of 2"):
             for k in progress.in_turn("compare", ["x", "y"]):
@@ -55,7 +56,8 @@ def test_parts_in_parts_have_one_line(shown):
 
 
 def test_nobody_looks(shown, capsys):
-    """Where it is asked not to, nothing is shown or said; elsewhere than on a terminal or in a notebook there is no line."""
+    """If display is switched off, nothing is shown or printed. Outside of a terminal or a notebook
+    there is no line."""
     with progress.Line("run", {1: 1.0}, watched=False) as line:
         line.at(1, 0.5)
         line.say("long")
@@ -67,7 +69,8 @@ def test_nobody_looks(shown, capsys):
 
 @pytest.mark.robustness
 def test_a_study_says_which_of_how_many(fake, shown, tmp_path):
-    """Runs beside each other tell how far they are before the first of them is done; what was there already counts, but takes no time."""
+    """Parallel runs report their progress before the first of them is finished. Existing runs
+    count, but take no time."""
     fake("brief")
     study.study([{"speed": 4.0}], tmp_path / "sweeps/mine", {"fields": 0}, 60.0)
     study.study([{"speed": 4.0}, {"speed": 5.0}, {"speed": 6.0}], tmp_path / "sweeps/mine", {"fields": 0}, 60.0)
@@ -77,15 +80,18 @@ def test_a_study_says_which_of_how_many(fake, shown, tmp_path):
 
 
 def test_paper_counts_its_parts(shown, monkeypatch, capsys):
-    """make paper runs what make's targets run, in their order, in one line with the time left; the first that fails ends it."""
+    """make paper runs the commands of the targets of make, in their order, in one line with the
+    remaining time. The first failure ends it."""
     ran = []
     monkeypatch.setattr(paper_making, "called", lambda module, words: ran.append([module, *words]) or (1 if "oblique" in words else 0))
-    recipe = subprocess.run(["make", "-n", "paper"], cwd=ROOT, capture_output=True, text=True).stdout   # a make within a make adds lines of its own
+    # A make within a make adds lines of its own.
+    recipe = subprocess.run(["make", "-n", "paper"], cwd=ROOT, capture_output=True, text=True).stdout
     targets = re.search(r"--make (.*)$", recipe, re.MULTILINE)[1].split()
     assert targets[:2] == ["disc-normal", "disc-oblique"] and {"stick-slip", "verify", "contact-time-svk"} < set(targets)
     assert paper_making.make(targets) == 1 and ran[:3] == [
         ["ffimpact", "run", "disc-normal"], ["ffimpact", "compare", "disc-oblique-svk", "disc-oblique"], ["ffimpact", "run", "disc-rolling"]]
     assert ran[-1] == ["ffimpact", "sweep", "oblique"] and any(words == f"paper: 2 of {len(targets)}" for _, words in shown[0].seen)
-    assert [words[0] for _, words in paper_making.commands("ball-comparison")] == ["run", "compare", "compare"]     # every line of a recipe
+    # Every line of a recipe.
+    assert [words[0] for _, words in paper_making.commands("ball-comparison")] == ["run", "compare", "compare"]
     with pytest.raises(BadInput, match="--make: 'clean' is no target"):
         paper_making.make(["clean"])

@@ -1,4 +1,4 @@
-"""What is promised and how it is checked: scenes drawn at random, the promise; verdicts that can fail."""
+"""Tests of the accuracy and of the error estimates: random scenes, and verdicts that can fail."""
 
 import pandas as pd
 import pytest
@@ -8,7 +8,8 @@ from ffimpact import scene
 
 
 def test_drawn_scenes_cover_what_is_promised():
-    """All materials and both laws, below the speeds at which they break down, oblique and spinning, with friction and without; all are accepted."""
+    """The scenes cover all materials and both laws, below breakdown speeds, oblique and spinning,
+    with and without friction. All are accepted."""
     points = draws.draw(promise.SEED, 200)
     assert {point["young"] for point in points} == {young for young, *_ in draws.MATERIALS.values()}
     shares = [point["speed"] / draws.bar_speed(point["young"], point["density"]) / draws.FASTEST[point["law"]] for point in points]
@@ -19,7 +20,7 @@ def test_drawn_scenes_cover_what_is_promised():
 
 
 def test_hard_scenes_are_hard_and_accepted():
-    """Every further parameter in a part of them only."""
+    """Every further parameter appears in some of the scenes only."""
     points = draws.draw(promise.SEED, 200, hard=True)
     for name in ("integrator", "degree", "penalty", "gravity", "regularization", "symmetry", "loss"):
         assert 5 < sum(name in point for point in points) < 100, name
@@ -34,7 +35,8 @@ def test_hard_scenes_are_hard_and_accepted():
 
 @pytest.mark.parametrize("count", [10, 60])
 def test_a_mixture_has_all_dimensions_friction_and_two_bodies(count):
-    """Every kind in its share, the same for the same seed; all are accepted, with the penalty left open."""
+    """Every kind has its share, and equal seeds give equal scenes. All are accepted with automatic
+    penalty."""
     drawn = draws.mixture(promise.SEED, count)
     assert drawn == draws.mixture(promise.SEED, count) and not any(one in drawn for one in draws.mixture(7, count))
     assert {name for name, _ in drawn} == set(draws.MIXTURE) and abs(len(drawn) - count) < 3
@@ -50,7 +52,8 @@ RUBBER = {"young": 7e6, "density": 1722.0, "nu": 0.45, "accuracy": 0.1}
 
 
 def test_promise_compares_what_is_stated_with_a_finer_run(tmp_path):
-    """Real runs at accuracy 0.1: an error and a stated one of each promised answer, the run and its coarser one paid for; kept, so that nothing runs again."""
+    """Runs at accuracy 0.1 give an error and an estimate of each promised result, with the cost of
+    the run and its coarser one. They are kept and reused."""
     drawn = [("disc-normal", RUBBER | {"speed": 4.0, "law": "neohookean"})]
     table = promise.compare(drawn, tmp_path)
     row = table.iloc[0]
@@ -72,6 +75,7 @@ def test_a_scene_that_fails_is_a_row_with_its_reason(tmp_path):
                      "friction_dynamic": 0.07}),
     ("ball-axisymmetric", {"law": "svk", "young": 1e10, "density": 700.0, "nu": 0.3, "radius": 0.005, "speed": 91.5})])
 def test_stated_errors_hold_where_the_steps_of_a_pair_are_the_same(tmp_path, scene, point):
-    """Real runs at accuracy 0.1, where the coarser run has larger elements on the same steps: what these are off by is stated all the same."""
+    """At accuracy 0.1 the coarser run has larger elements and equal steps: the estimates contain
+    the error of the steps nevertheless."""
     row = promise.compare([(scene, point | {"accuracy": 0.1})], tmp_path).iloc[0]
     assert row.message == "" and all(row[name] <= row[f"{name} stated"] for name in ("impulse", "rebound", "energy", "peak_force"))

@@ -1,4 +1,5 @@
-"""What figures must say: where time begins, when the contact ends, the paper's number, a scale; and the cut of a body in three dimensions."""
+"""Content of figures: start of time, end of contact, the paper's number, a scale; and the section
+of a body in three dimensions."""
 
 import itertools
 from types import SimpleNamespace
@@ -20,7 +21,7 @@ def closed():
 
 
 def test_the_key_of_a_comparison_stands_above_its_panels(tmp_path, monkeypatch):
-    """The names of the runs cover no panel and are in the picture, without their warnings."""
+    """The names of the runs cover no panel and are in the figure, without their warnings."""
     summary = dict(dofs=294, warnings=["ellipticity: lost", "peak force: scatters"], reach=0.05, energy_initial=432.8)
     run = SimpleNamespace(history=history(max_penetration=np.full(100, 1e-4)), scene=SCENE | {"exponent": 1}, summary=summary)
     monkeypatch.setattr(compare.plt, "close", lambda figure: None)
@@ -33,7 +34,8 @@ def test_the_key_of_a_comparison_stands_above_its_panels(tmp_path, monkeypatch):
 
 
 def test_limits_of_friction_are_not_clipped():
-    """Figure 5: all of the limits' curves are in the panel; each panel has words on its y axis; nothing to enlarge where all slides."""
+    """Figure 5: all curves of the friction limits are in the panel, each panel has a label on its y
+    axis, and there is no enlargement if all slides."""
     h = history()
     h["friction_force"] = -0.5 * h["normal_force"]
     scene = SCENE | dict(friction_static=0.7, friction_dynamic=0.5)
@@ -49,7 +51,8 @@ def test_limits_of_friction_are_not_clipped():
 # ---- sweeps
 
 def test_failed_points_have_rows_of_their_own():
-    """Points without a value are marked below the axis, a row a curve; a law that breaks down is named; the paper's number is a star at its speed."""
+    """Points without a value are marked below the axis, with a row for each curve; a breakdown is
+    labelled; the paper's number is a star at its speed."""
     wanted = sweep.load("contact-time-svk")
     rows = pd.DataFrame([point | dict(exit=12 * (point["speed"] > 10), contact_time=5e-3, thresholded_contact_time=4.9e-3) for point in wanted.points])
     figure = sweep_figures.draw_lines(wanted, rows, None)

@@ -1,4 +1,5 @@
-"""`until = rest`: bodies bounce under gravity, each time lower, until all rests (edp/core/run/rest.idp)."""
+"""`until = rest`: bodies bounce under gravity with decreasing height until all are at rest
+(edp/core/run/rest.idp)."""
 
 import math
 from pathlib import Path
@@ -29,7 +30,8 @@ def fallen(tmp_path_factory):
 
 
 def test_a_disc_bounces_until_it_rests(fallen):
-    """Each bounce is a row with its restitution and as high as that says, its flight the closed form's; viscosity takes all but what is stored at rest."""
+    """Each bounce is a row with its restitution, the corresponding height and the flight of the
+    closed form. Viscosity takes all energy that is not stored at rest."""
     found, contacts = fallen
     rests(found, weight(math.pi * RADIUS**2))
     impacts = contacts[np.isfinite(contacts["restitution"])]
@@ -41,15 +43,19 @@ def test_a_disc_bounces_until_it_rests(fallen):
 
 
 def test_flights_are_gone_at_once(fallen):
-    """Once vibration has died away a flight is one row; of the longest the march takes a few steps."""
+    """Once vibration has decayed, a flight is one row. The time integration takes few steps for the
+    longest flight."""
     found, _ = fallen
     longest = np.sort(found.history["dt"])[::-1]
     assert (longest[:4] > 0.05).all() and found.summary["steps"] < 60 * found.summary["bounces"]
 
 
 def test_figures_know_the_flights(fallen):
-    """Between the two rows of a flight they have its parabolas: as high as (vy_0 - vy_1)^2/(8 g), hardly any kinetic energy at the top, the balance of energy
-    closed all the way; the rows of the run are there as they are."""
+    """Between the two rows of a flight the figures have its parabolas.
+
+    Their height is (vy_0 - vy_1)^2/(8 g), the kinetic energy at the top is small, and the energy
+    balance closes. The rows of the run are unchanged.
+    """
     h = Contents(fallen[0].history, Path("history.csv"))
     drawn = impacts.with_flights(h)
     flight = int(np.argmax(h["dt"][2:])) + 2
@@ -62,7 +68,8 @@ def test_figures_know_the_flights(fallen):
 
 
 def test_at_rest_the_contact_is_hertz(fallen):
-    """Half-width a = sqrt(4 P R (1 - nu^2)/(pi E)) to an element, largest pressure 2 P/(pi a) to an element's share of it."""
+    """Half-width a = sqrt(4 P R (1 - nu^2)/(pi E)) to an element, largest pressure 2 P/(pi a) to
+    the share of an element."""
     found, _ = fallen
     load = weight(math.pi * RADIUS**2)
     a = math.sqrt(4 * load * RADIUS * (1 - NU**2) / (math.pi * YOUNG))
@@ -72,7 +79,7 @@ def test_at_rest_the_contact_is_hertz(fallen):
 
 
 def test_end_time_is_the_latest(tmp_path):
-    """With an end_time the run ends there where nothing rests before, also in the middle of a flight."""
+    """With an end_time the run ends there if nothing rests before, also during a flight."""
     found = disc(tmp_path, **FALL | {"end_time": 0.5, "contact_mesh_size": 0.002})
     assert found.summary["ended"] == "end_time" and found.history["t"][-1] == pytest.approx(0.5)
     assert found.summary["energy_drift"] < 1e-9 and found.summary["bounces"] == 1
@@ -80,19 +87,21 @@ def test_end_time_is_the_latest(tmp_path):
 
 
 def pulled(shape: dict, normal: list[float], **more) -> dict:
-    """A soft, lossy body that a pull of 9.81 m/s2 brings to a plane through the origin."""
+    """A soft body with damping that an acceleration of 9.81 m/s2 moves to a plane through the
+    origin."""
     body = {"law": "neohookean", "young": 2e5, "nu": 0.3, "density": 1000.0, "loss": 2.0, "mesh_size": 0.02, "contact_mesh_size": 0.01}
     return {"until": "rest", "accuracy": 0.2, "body": [body | shape], "obstacle": [{"kind": "plane", "point": [0.0, 0.0], "normal": normal}]} | more
 
 
 def test_a_pull_to_the_side_is_one(tmp_path):
-    """On a wall, by a body force alone, a disc rests as on the floor, and no warning says that its contact is not over."""
+    """Under a body force a disc rests on a wall as on the floor, without a warning that its contact
+    is not over."""
     found = bodies(tmp_path, pulled({"shape": "disc", "radius": 0.05, "position": [0.06, 0.0]}, [1.0, 0.0], body_force_x=-9.81))
     assert found.summary["ended"] == "rest" and not any(said.startswith("not over") for said in found.summary["warnings"])
 
 
 def test_what_is_set_down_comes_to_rest(tmp_path):
-    """On the plane from the start, it needs no end_time."""
+    """On the plane from the start it needs no end_time."""
     found = bodies(tmp_path, pulled({"shape": "disc", "radius": 0.05, "position": [0.0, 0.05]}, [0.0, 1.0], gravity=9.81))
     assert found.summary["ended"] == "rest"
 
@@ -101,7 +110,11 @@ def test_what_is_set_down_comes_to_rest(tmp_path):
     ({"shape": "rectangle", "width": 0.06, "height": 0.04, "angle": -30.0}, 0.3, "30 degrees to the pull: friction_static 0.3 holds up to 17"),
     ({"shape": "disc", "radius": 0.02}, 0.7, "30 degrees to the pull: what is round rolls down any")], ids=["slides", "rolls"])
 def test_what_a_slope_does_not_hold_is_refused(tmp_path, shape, friction, said):
-    """Before the first step: a block beyond its angle of friction, a disc on any slope; not within it, where the block comes to rest, nor with an end_time."""
+    """Refused before the first step are a block beyond its angle of friction and a disc on any
+    slope.
+
+    A block within this angle comes to rest and is accepted, as is any scene with an end_time.
+    """
     up = [math.sin(math.radians(30)), math.cos(math.radians(30))]
     tables = pulled(shape | {"position": [0.0201 * each for each in up]}, up, gravity=9.81, contact={"friction_static": friction})
     with pytest.raises(Failure, match=f"exit code 10.*until: no rest in sight on a plane at {said}; give an end_time > 0"):
@@ -112,7 +125,8 @@ def test_what_a_slope_does_not_hold_is_refused(tmp_path, shape, friction, said):
 
 
 def on_slope(degrees: float, friction: float, eps: float, **more) -> dict:
-    """A soft block, let down a hair above a slope through the origin that falls to the right, with its slip velocity [m/s]."""
+    """A soft block, released slightly above a slope through the origin that falls to the right,
+    with its slip velocity [m/s]."""
     up = [math.sin(math.radians(degrees)), math.cos(math.radians(degrees))]
     block = {"shape": "rectangle", "width": 0.06, "height": 0.04, "angle": -degrees, "young": 2e4,
              "position": [0.0205 * each for each in up]}
@@ -121,8 +135,11 @@ def on_slope(degrees: float, friction: float, eps: float, **more) -> dict:
 
 @pytest.mark.parametrize("eps", [0.02, 0.01])
 def test_what_creeps_below_its_limit_of_friction_rests(tmp_path, eps):
-    """Regularised friction bears the pull along a slope of 10 degrees at v = eps tan(10 degrees)/mu, below eps: the
-    block sticks. The run ends at rest, in balance, with that speed down the slope."""
+    """Regularised friction carries the force along a slope of 10 degrees at v = eps tan(10
+    degrees)/mu, below eps: the block sticks.
+
+    The run ends at rest, in equilibrium, with this speed down the slope.
+    """
     friction, down, accuracy = 0.3, math.radians(10), 0.05
     found = bodies(tmp_path, on_slope(10, friction, eps, accuracy=accuracy))
     end = {name: column[-1] for name, column in found.history.items()}
@@ -134,8 +151,11 @@ def test_what_creeps_below_its_limit_of_friction_rests(tmp_path, eps):
 
 @pytest.mark.parametrize("friction", [0.0, 0.15])
 def test_what_friction_does_not_hold_is_no_rest(tmp_path, friction):
-    """On a slope of 10 degrees, tan = 0.176, mu holds less: the block is not at rest while it is still slower than its
-    large slip velocity, nor without friction."""
+    """On a slope of 10 degrees, tan = 0.176, with a smaller mu the block is not at rest although it
+    is slower than its large slip velocity.
+
+    The same holds without friction.
+    """
     found = bodies(tmp_path, on_slope(10, friction, 0.1, end_time=0.2))
     assert found.summary["ended"] == "end_time" and found.history["vx"][-1] > 0.02
 
@@ -143,7 +163,7 @@ def test_what_friction_does_not_hold_is_no_rest(tmp_path, friction):
 @pytest.mark.parametrize("change, said", [({"gravity": 0}, "until: rest needs what pulls"), ({"loss": 0}, "until: rest needs what takes energy"),
                                           ({"until": "sleep"}, "until: 'sleep' is not known .accepted: impact.rest")], ids=str)
 def test_what_never_rests_is_refused(tmp_path, change, said):
-    """Without a pull, or without a loss, nothing can bring a body to rest."""
+    """Without a force, or without damping, a body cannot come to rest."""
     with pytest.raises(Failure, match=f"exit code 10: ffimpact: {said}"):
         disc(tmp_path / "out", **FALL | {"speed": 1} | change)
     assert not (tmp_path / "out").exists()

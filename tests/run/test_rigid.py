@@ -1,4 +1,4 @@
-"""Rigid bodies: the motions of rigid bodies exactly, and the limit of stiff ones."""
+"""Rigid bodies: exact rigid motions, and the limit of stiff bodies."""
 
 import json
 import math
@@ -24,17 +24,18 @@ nu = 0.3
 
 
 def test_a_disc_slides_until_it_rolls(tmp_path):
-    """Coulomb's friction takes v0/3 of a homogeneous disc; energy and momenta are kept."""
+    """Coulomb friction takes v0/3 of a homogeneous disc. Energy and momenta are conserved."""
     text = DISC + "position = [0, 0.05]\nvelocity = [1, 0]\n" + FLOOR + "friction_static = 0.3\n"
     summary, history = run(tmp_path, "gravity = 9.81\nend_time = 0.16\n" + text)
     assert summary["dofs"] == 6
-    assert history.vx.iloc[-1] == pytest.approx(2 / 3, rel=0.01)      # the penalty lets it in by 2 % of R
+    # The penetration is 2 % of R.
+    assert history.vx.iloc[-1] == pytest.approx(2 / 3, rel=0.01)
     assert history.spin.iloc[-1] == pytest.approx(-2 / 3 / 0.05, rel=0.02)
     assert summary["energy_drift"] < 1e-9 and summary["momentum_drift"] < 1e-11
 
 
 def test_mass_and_inertia_are_those_given(tmp_path):
-    """A disc with I = m R^2, as a hoop, keeps half of its speed."""
+    """A disc with I = m R^2, as a thin ring, keeps half of its speed."""
     given = "mass = 3\ninertia = 0.0075\n"
     text = DISC.replace("density = 1000\n", "") + given + "position = [0, 0.05]\nvelocity = [1, 0]\n" + FLOOR + "friction_static = 0.3\n"
     summary, history = run(tmp_path, "gravity = 9.81\nend_time = 0.2\n" + text)
@@ -44,7 +45,7 @@ def test_mass_and_inertia_are_those_given(tmp_path):
 
 
 def test_it_is_the_limit_of_a_stiff_disc(tmp_path):
-    """The same disc a thousand times stiffer than the block."""
+    """The same disc, a thousand times stiffer than the block."""
     text = DISC + "position = [0, 0.0501]\nvelocity = [0.3, -1]\n" + BLOCK + "[contact]\nfriction_static = 0.3\n"
     rigid, _ = run(tmp_path, text, "rigid")
     stiff, _ = run(tmp_path, text.replace("rigid = true", 'law = "svk"\nyoung = 1e9\nnu = 0.3'), "stiff", body__1__density=1000)
@@ -70,7 +71,7 @@ traction = [1000, 500]
 
 
 def test_a_load_moves_a_rigid_body_from_rest(tmp_path):
-    """v = F t/m, though there is no energy at the start to hold a residual against."""
+    """v = F t/m, although there is no initial energy as a scale of the residual."""
     summary, _ = run(tmp_path, "young = 1e6\nnu = 0.3\ndensity = 1000\naccuracy = 0.2\n" + PUSHED)
     assert summary["rebound_vx"] == pytest.approx(0.2, rel=1e-9)
     assert summary["rebound_vy"] == pytest.approx(0.1, rel=1e-9)
@@ -78,7 +79,7 @@ def test_a_load_moves_a_rigid_body_from_rest(tmp_path):
 
 
 def test_a_rigid_ring_bears_a_gas(tmp_path):
-    """It falls as without the gas, whatever its pressure."""
+    """It falls as without the gas, for any pressure."""
     ring = PUSHED.replace('"rectangle"\nwidth = 0.1\nheight = 0.1', '"ring"\nradius = 0.05\ninner_radius = 0.04\nvelocity = [0, -1]')
     gas = ring.replace('where = "top"\ntraction = [1000, 500]', 'where = "inner"\ngas = {gauge_pressure = 1e5}')
     summary, _ = run(tmp_path, "accuracy = 0.2\n" + gas)
@@ -86,18 +87,19 @@ def test_a_rigid_ring_bears_a_gas(tmp_path):
 
 
 def test_a_rigid_body_is_asked_for_no_material(tmp_path):
-    """The stiffness that stands for rigidity is no material of the user's."""
+    """The stiffness that represents rigidity is not a material of the user."""
     steel = BLOCK.replace("young = 1e6", "young = 2e11")
     summary, _ = run(tmp_path, DISC + "position = [0, 0.0501]\nvelocity = [0, -50]\n" + steel, accuracy=0.3)
     assert not [one for one in summary["warnings"] if one.startswith("density")]
 
 
 def test_fields_show_where_a_rigid_body_is(tmp_path):
-    """Without stress, of volume 1, as far from its reference as its centre: a translation of all nodes."""
+    """A rigid body has no stress, J = 1, and the displacement of its centre at all nodes: a
+    translation."""
     text = DISC + "position = [0, 0.0501]\nvelocity = [0, -1]\n" + BLOCK
     run(tmp_path, "fields = 3\n" + text)
     found = vtu.read(sorted((tmp_path / "scene" / "fields").glob("0*.vtu"))[-1])
-    disc = np.linalg.norm(found.points, axis=1) < 0.05 + 1e-6      # in the mesh it is about the origin
+    disc = np.linalg.norm(found.points, axis=1) < 0.05 + 1e-6  # in the mesh it is about the origin
     moved = found.fields["displacement"][disc]
     assert disc.sum() > 20 and all(np.isfinite(field).all() for field in found.fields.values())
     assert np.ptp(moved[:, 1]) < 1e-6 and found.fields["von_mises"][disc].max() == 0 < found.fields["von_mises"].max()
@@ -105,7 +107,7 @@ def test_fields_show_where_a_rigid_body_is(tmp_path):
 
 
 def test_two_rigid_discs_on_a_soft_one(tmp_path):
-    """Momentum of all bodies stays."""
+    """The total momentum is constant."""
     soft = '[[body]]\nshape = "disc"\nradius = 0.05\nposition = [0, 0]\nlaw = "neohookean"\nyoung = 1e6\nnu = 0.3\n'
     one = '[[body]]\nshape = "disc"\nradius = 0.03\nrigid = true\nposition = [{}, 0]\nvelocity = [{}, 0]\n'
     summary, history = run(tmp_path, "density = 1000\naccuracy = 0.1\n" + soft + one.format(0.0801, -1) + one.format(-0.0801, 1))
@@ -115,7 +117,7 @@ def test_two_rigid_discs_on_a_soft_one(tmp_path):
 
 
 def test_a_rigid_ball_of_revolution_falls(tmp_path):
-    """On a plane of stiffness k it only moves along the axis and comes back with its speed."""
+    """On a plane of stiffness k it moves along the axis only and rebounds with its speed."""
     text = ('dimension = "axisymmetric"\ndensity = 1000\naccuracy = 0.05\n[[body]]\nshape = "ball"\nradius = 0.05\nrigid = true\n'
             "position = [0, 0.0501]\nvelocity = [0, -1]\n" + FLOOR)
     summary, _ = run(tmp_path, text)
@@ -124,7 +126,8 @@ def test_a_rigid_ball_of_revolution_falls(tmp_path):
 
 
 def test_a_box_spins_freely_in_space(tmp_path):
-    """With moments of inertia of its own: angular momentum and energy stay, the spin precesses."""
+    """With prescribed moments of inertia angular momentum and energy are constant, and the spin
+    precesses."""
     text = ('dimension = "3d"\naccuracy = 0.1\nend_time = 0.12\nmesh_size = 0.02\n[[body]]\nshape = "box"\nwidth = 0.1\nheight = 0.06\n'
             "depth = 0.08\nrigid = true\nmass = 2\ninertia = [0.003, 0.004, 0.0035]\nposition = [0, 1, 0]\nspin = [5, 20, -4]\n"
             '[[obstacle]]\nkind = "plane"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\n[contact]\npenalty = 1e8\n')
@@ -137,7 +140,8 @@ def test_a_box_spins_freely_in_space(tmp_path):
 
 
 def test_an_obstacle_works_exactly_what_the_body_gains(tmp_path):
-    """A cornered roller that comes down and turns: its work is the energy, its impulse the momentum."""
+    """A polygonal roller moves down and rotates: its work is the energy, its impulse the momentum.
+    """
     corners = "kind = 'polyline'\nvertices = [[0.03, 0.06], [-0.03, 0.06], [-0.03, 0.12], [0.03, 0.12]]\nclosed = true\nrounding = 0.004"
     moved = 'motion = [0, "-0.01*sin(pi*t/0.01)"]\nrotation = "-1500*t"\npivot = [0, 0.09]'
     text = ROLLER.replace('kind = "circle"\ncentre = [0, 0.0905]\nradius = 0.04', corners).format(moved)
@@ -148,7 +152,7 @@ def test_an_obstacle_works_exactly_what_the_body_gains(tmp_path):
 
 @pytest.mark.parametrize("law, nu", [("svk", 0.47), ("neohookean", 0.49)])
 def test_a_rigid_body_has_no_part_in_the_projected_volume_of_others(tmp_path, law, nu):
-    """It has next to no strain, and the volume ratio of its elements is 1."""
+    """A rigid body has hardly any strain, and the volume ratio of its elements is 1."""
     short = [f"law={law}", f"nu={nu}", "accuracy=0.1", "end_time=0.002"]
     assert main(["run", "drop-weight", "--out", str(tmp_path / "run"), *(word for one in short for word in ("--set", one))]) == 0
     history = pd.read_csv(tmp_path / "run/history.csv")

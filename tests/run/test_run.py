@@ -1,4 +1,4 @@
-"""The run contract: one scene, one run, one folder; what is kept, reused and refused."""
+"""The contract of runs: one scene, one run, one folder; what is kept, reused and refused."""
 
 import json
 from pathlib import Path
@@ -17,7 +17,8 @@ from tests.support.run import go
 
 
 def test_finished_run_is_complete(fake, tmp_path):
-    """A finished run has the whole folder, a summary with provenance, and leaves no staging folder."""
+    """A finished run has the whole folder and a summary with provenance, and leaves no temporary
+    folder."""
     result = go(tmp_path / "out", {"fields": 2})
     assert {"scene.toml", "history.csv", "summary.json", "log.txt", "mesh.msh", "fields.pvd", "fields"} == {
         p.name for p in result.folder.iterdir()}
@@ -28,13 +29,13 @@ def test_finished_run_is_complete(fake, tmp_path):
 
 
 def test_python_takes_numbers_of_numpy_and_paths_as_text(fake, tmp_path):
-    """Scripts loop over np.linspace, and name folders and scenes as they like."""
+    """Scripts use np.linspace in loops, and any form of folder and scene names."""
     found = run.run(scene.load(Path("disc-normal")), {"speed": np.linspace(1, 4, 2)[1], "fields": np.int64(2)}, str(tmp_path / "out"), estimate=False)
     assert found.scene["speed"] == 4 and found.scene["fields"] == 2 and found.folder == tmp_path / "out"
 
 
 def test_mesh_has_the_described_sizes(fake, tmp_path):
-    """The mesh that Python makes has the sizes that the scripts describe."""
+    """The mesh that Python makes has the sizes of the scripts' description."""
     used = go(tmp_path / "out").scene
     m = mesh.read(tmp_path / "out/mesh.msh")
     length = np.linalg.norm(m.points[m.edges[:, 1]] - m.points[m.edges[:, 0]], axis=1)
@@ -45,13 +46,13 @@ def test_mesh_has_the_described_sizes(fake, tmp_path):
 @pytest.mark.parametrize("given, half", [
     ({}, True), ({"angle": 60}, False), ({"spin": 1}, False), ({"symmetry": "full"}, False), ({"symmetry": "half"}, True)])
 def test_half_is_meshed_where_it_is_enough(fake, tmp_path, given, half):
-    """Half a disc is meshed unless direction, spin or the user ask for the whole."""
+    """Half a disc is meshed unless direction, spin or the user require the whole."""
     m = mesh.read(go(tmp_path / "out", given).folder / "mesh.msh")
     assert (m.points[:, 0].min() >= 0) == half
 
 
 def test_same_scene_and_code_is_reused(fake, tmp_path, monkeypatch):
-    """The same run is not run again; another parameter, other code, another mesh or --force run again."""
+    """The same run is reused. Another parameter, code or mesh, or --force, runs again."""
     out = tmp_path / "out"
     go(out)
     assert go(out).reused and fake.starts() == 1
@@ -71,7 +72,8 @@ def test_same_scene_and_code_is_reused(fake, tmp_path, monkeypatch):
 
 
 def test_run_without_python_is_not_reused(fake, tmp_path):
-    """A folder that FreeFem++ wrote without us has no provenance: it is run again and replaced."""
+    """A folder that FreeFem++ wrote without Python has no provenance: it is run again and replaced.
+    """
     result = go(tmp_path / "out")
     summary = result.summary.copy()
     del summary["provenance"]
@@ -90,7 +92,8 @@ def test_run_without_python_is_not_reused(fake, tmp_path):
     ("silent", 1, "without a result: summary.json cannot be read"),
 ])
 def test_failed_run_keeps_its_files_and_no_summary(fake, tmp_path, mode, code, words):
-    """A failed run ends with the script's line and code, keeps log, scene and failure.json, and never looks finished."""
+    """A failed run ends with the line and code of the script, keeps log, scene and failure.json,
+    and never looks finished."""
     fake(mode)
     with pytest.raises(Failure, match=words) as error:
         go(tmp_path / "out")
@@ -106,7 +109,8 @@ def test_failed_run_keeps_its_files_and_no_summary(fake, tmp_path, mode, code, w
 
 
 def test_failure_does_not_cost_an_earlier_result(fake, tmp_path):
-    """A failing run in the folder of a finished one leaves that one alone and keeps its own files beside it."""
+    """A failed run in the folder of a finished one does not change it and keeps its own files
+    beside it."""
     go(tmp_path / "out")
     before = (tmp_path / "out/summary.json").read_bytes()
     fake("step")
@@ -118,7 +122,7 @@ def test_failure_does_not_cost_an_earlier_result(fake, tmp_path):
 
 
 def test_left_over_of_a_killed_run_is_replaced(fake, tmp_path):
-    """What a killed run left in the staging folder does not get into a result."""
+    """Files of a killed run in the temporary folder do not get into a result."""
     (tmp_path / "out.part/fields").mkdir(parents=True)
     (tmp_path / "out.part/summary.json").write_text('{"status": "ok"}')
     (tmp_path / "out.part/fields/old.vtu").write_text("")
@@ -130,7 +134,8 @@ def test_left_over_of_a_killed_run_is_replaced(fake, tmp_path):
 
 
 def test_a_finished_run_called_like_the_staging_folder_is_left_alone(fake, tmp_path):
-    """A finished run of the user's in DIR.part is neither moved nor deleted by a run into DIR: exit code 14."""
+    """A run into DIR neither moves nor deletes a finished run of the user in DIR.part: exit code
+    14."""
     go(tmp_path / "out.part")
     (tmp_path / "out.part/notes.txt").write_text("mine")
     before = {path: path.read_bytes() for path in (tmp_path / "out.part").iterdir() if path.is_file()}
@@ -140,7 +145,7 @@ def test_a_finished_run_called_like_the_staging_folder_is_left_alone(fake, tmp_p
 
 
 def test_foreign_folder_is_refused(fake, tmp_path):
-    """A folder with files of others is not touched: exit code 14."""
+    """A folder with foreign files is not changed: exit code 14."""
     (tmp_path / "out").mkdir()
     (tmp_path / "out/thesis.tex").write_text("years of work")
     with pytest.raises(Unreadable, match="no scene.toml") as error:
@@ -150,7 +155,7 @@ def test_foreign_folder_is_refused(fake, tmp_path):
 
 @pytest.mark.parametrize("text", ["", "{", "[]", "null", '{"status": "running"}'])
 def test_corrupt_summary_is_named(fake, tmp_path, text):
-    """A summary that cannot be read is exit code 14 with what to do; --force runs again."""
+    """An unreadable summary gives exit code 14 and advice. --force runs again."""
     go(tmp_path / "out")
     (tmp_path / "out/summary.json").write_text(text)
     with pytest.raises(Unreadable, match="summary.json cannot be read.*--force"):
@@ -159,7 +164,8 @@ def test_corrupt_summary_is_named(fake, tmp_path, text):
 
 
 def test_progress_arrives(fake, tmp_path):
-    """The progress lines of the script arrive with their fraction, time and number of steps; the log keeps them too."""
+    """The progress lines of the script arrive with share, time and number of steps. The log keeps
+    them, too."""
     seen = []
     flags = {"fields": 0, "mesh": __file__, "out": tmp_path}
     assert freefem.run(freefem.find(), "edp/disc-plane.edp", flags, tmp_path / "log.txt", seen.append) == (0, "")
@@ -168,7 +174,8 @@ def test_progress_arrives(fake, tmp_path):
 
 
 def test_another_scene_puts_the_folder_aside(fake, tmp_path):
-    """A run of another scene moves the folder that is there, with all that is in it, to DIR.1, the next one to DIR.2."""
+    """A run of another scene moves the existing folder with its content to DIR.1, the next one to
+    DIR.2."""
     out = tmp_path / "out"
     for speed in (8, 7, 6):
         go(out, {"speed": speed})
@@ -178,7 +185,8 @@ def test_another_scene_puts_the_folder_aside(fake, tmp_path):
 
 
 def test_the_same_scene_again_keeps_the_files_of_others(fake, tmp_path):
-    """--force replaces what the program wrote; what the user put there stays, in subfolders too, and no copy is left."""
+    """--force replaces files of the program and keeps files of the user, also in subfolders. No
+    copy is left."""
     out = tmp_path / "out"
     go(out, {"fields": 4})
     for name in ("notes.txt", "figures/mine.png", "fields/mine.txt", "fields/0-mine.vtu", "fields/2024/mine.vtu", "mine/deep/x"):
@@ -191,7 +199,7 @@ def test_the_same_scene_again_keeps_the_files_of_others(fake, tmp_path):
 
 
 def test_stage_with_files_of_others_is_refused(fake, tmp_path):
-    """DIR.part may be a folder of the user's: then it is left alone, exit code 14."""
+    """DIR.part may be a folder of the user: it is not changed, and the exit code is 14."""
     (tmp_path / "out.part").mkdir()
     (tmp_path / "out.part/thesis.tex").write_text("years of work")
     with pytest.raises(Unreadable, match="files of others"):

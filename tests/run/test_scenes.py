@@ -1,4 +1,5 @@
-"""Scenes of several bodies through every way in: disc-block, a TOML file of one's own, direct runs, sweeps, figures."""
+"""Scenes of several bodies by every interface: disc-block, a TOML file, direct runs, sweeps,
+figures."""
 
 import hashlib
 import json
@@ -32,7 +33,7 @@ MINE = {"title": "A disc meets a soft one and a moving post", "law": "neohookean
 
 @pytest.fixture(scope="module")
 def block(tmp_path_factory):
-    """disc-block, coarse, half of it."""
+    """Half of disc-block, coarse."""
     found = run.run(scene.load("disc-block"), {"accuracy": 0.4, "fields": 3}, tmp_path_factory.mktemp("block") / "run")
     report.draw(found)
     return found
@@ -40,7 +41,7 @@ def block(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def mine(tmp_path_factory):
-    """The file above, run, with the file's path."""
+    """A run of the file above, and the path of the file."""
     folder = tmp_path_factory.mktemp("mine")
     (folder / "mine.toml").write_text(to_toml(MINE))
     found = run.run(scene.load(str(folder / "mine.toml")), {}, folder / "run")
@@ -51,7 +52,8 @@ def mine(tmp_path_factory):
 # ---- disc-block
 
 def test_each_body_has_its_columns_and_numbers(block):
-    """history.csv and summary.json hold what the scripts say they write of two bodies; the totals are the sums over the bodies."""
+    """history.csv and summary.json have the described columns and numbers of two bodies. The totals
+    are sums over the bodies."""
     wanted, h, s = scene.load("disc-block"), block.history, block.summary
     assert list(h) == wanted.columns and {"vy_1", "vy_2", "kinetic_1"} <= set(h) and "block_width" in block.scene
     assert set(wanted.numbers) <= set(s) and s["provenance"]["script"] == "disc-block" and s["estimated_error"] is not None
@@ -61,27 +63,33 @@ def test_each_body_has_its_columns_and_numbers(block):
 
 
 def test_what_one_body_loses_the_other_gains(block):
-    """No force from outside: the momentum of all stays what the disc brought, each body's changes by its impulse, energy is kept."""
+    """Without external forces the total momentum is constant, each body's changes by its impulse,
+    and energy is conserved."""
     h, s = block.history, block.summary
     assert np.ptp(h["momentum_y"]) < 1e-9 * abs(h["momentum_y"]).max()
-    assert s["impulse_y_1"] == pytest.approx(-s["impulse_y_2"], rel=1e-9) and s["impulse_y_1"] == pytest.approx(s["impulse"], rel=1e-6)   # the resultant
+    # The resultant.
+    assert s["impulse_y_1"] == pytest.approx(-s["impulse_y_2"], rel=1e-9) and s["impulse_y_1"] == pytest.approx(s["impulse"], rel=1e-6)
     assert s["mass_1"] * (s["rebound_vy_1"] + 10) == pytest.approx(s["impulse_y_1"], rel=1e-6)
     assert s["rebound_vy_1"] > 0 > s["rebound_vy_2"] and s["energy_drift"] < 1e-8
     assert h["force_y_1"] == pytest.approx(-h["force_y_2"], abs=1e-6 * h["normal_force"].max())
 
 
 def test_lost_ellipticity_is_a_warning(block):
-    """St. Venant-Kirchhoff beyond its range says so for two bodies as it does for one; the law that keeps it does not."""
+    """St. Venant-Kirchhoff beyond its range gives a warning for two bodies as for one. A law that
+    keeps ellipticity does not."""
     hard = run.run(scene.load("disc-block"), {"accuracy": 0.4, "speed": 25, "fields": 0, "breakdown": "continue"}, block.folder.parent / "hard", estimate=False)
     assert hard.summary["ellipticity_lost_time"] > 0 and any(each.startswith("ellipticity: lost from") for each in hard.summary["warnings"])
     assert block.summary["ellipticity_lost_time"] is None and not any(each.startswith("ellipticity") for each in block.summary["warnings"])
 
 
-# ---- a file of one's own
+# ---- a scene file
 
 def test_the_folder_of_a_scene_of_ones_own(mine, tmp_path):
-    """Mesh, data file, scene as used, with the mesh's checksum: read again they are the same scene, which is not run again; FreeFEM found each body where and of what
-    it is."""
+    """Mesh, data file and scene as used, with the checksum of the mesh, read back as the same
+    scene, which is reused.
+
+    FreeFEM recognised each body with its place and material.
+    """
     found, path = mine
     s, h = found.summary, found.history
     assert (s["mass_1"], s["mass_2"]) == pytest.approx((1722 * math.pi * 0.05**2, 1722 * math.pi * 0.04**2), rel=1e-4)
@@ -97,7 +105,8 @@ def test_the_folder_of_a_scene_of_ones_own(mine, tmp_path):
 
 @pytest.mark.robustness
 def test_entries_are_set_on_the_command_line(mine, capsys):
-    """--set body.2.young=... arrives in the scene as used, and a direct run on the folder's files gives the same answer."""
+    """--set body.2.young=... is in the scene as used, and a direct run with the files of the folder
+    gives the same results."""
     found, path = mine
     out = path.parent / "set"
     assert main(["run", str(path), "--set", "body.2.young=8e6", "fields=0", "--out", str(out), "--quiet"]) == 0, capsys.readouterr().err
@@ -110,7 +119,7 @@ def test_entries_are_set_on_the_command_line(mine, capsys):
 
 @pytest.mark.robustness
 def test_a_killed_run_goes_on(mine, monkeypatch):
-    """A run of bodies that ends at a checkpoint goes on from there when asked again, to the same answer."""
+    """A run of bodies that ends at a checkpoint continues from it with the same results."""
     found, path = mine
     wanted, real = scene.load(str(path)).override({"checkpoint_every": 5}), freefem.Process.end
 
@@ -131,7 +140,7 @@ def test_a_killed_run_goes_on(mine, monkeypatch):
 
 @pytest.mark.robustness
 def test_a_sweep_reaches_every_entry(mine):
-    """Axes named by dotted names, in quotes or not; the table has the numbers of each body."""
+    """Axes have dotted names, in quotes or not. The table has the numbers of each body."""
     path = mine[1].with_name("sweep.toml")
     path.write_text('scene = "mine.toml"\ncollect = ["rebound_vx_1", "rebound_vx_2"]\n[set]\nfields = 0\n[product]\nbody.2.young = [2e6, 8e6]\n'
                     '"contact.penalty" = [5e9]\n[figure]\nx = "body.2.young"\ny = "rebound_vx_2"\n')
@@ -147,7 +156,8 @@ def test_a_sweep_reaches_every_entry(mine):
 
 
 def test_coarser_and_finer_elements(mine):
-    """The scene for another mesh has that much larger elements on every body that is meshed, and the same contact."""
+    """The scene for another mesh has larger elements on every meshed body by this factor, and the
+    same contact."""
     wanted = scene.load(str(mine[1]))
     used = run.read_scene(mine[0].folder)
     built = assembly.assemble(wanted.override(finer.scaled(wanted, wanted.values, used, 0.5)))
@@ -158,7 +168,8 @@ def test_coarser_and_finer_elements(mine):
 
 @pytest.mark.parametrize("factor, kept", [(estimate.COARSER, False), (1 / estimate.COARSER, True)])
 def test_a_finer_run_keeps_what_a_scene_asks_for(mine, factor, kept):
-    """Of a scene of bodies as of the paper's: only the coarser run, which is compared, writes no output."""
+    """In scenes of bodies, as in those of the paper, only the coarser run writes no output, as it
+    is only compared."""
     asked = {"fields": 5, "modes": 4, "checkpoint_every": 7}
     wanted = scene.load(str(mine[1])).override(asked)
     other = wanted.override(finer.scaled(wanted, wanted.values, run.read_scene(mine[0].folder), factor))
@@ -169,7 +180,8 @@ def test_a_finer_run_keeps_what_a_scene_asks_for(mine, factor, kept):
 
 @pytest.mark.parametrize("which", ["block", "mine"])
 def test_figures_of_several_bodies(which, request):
-    """Energies, velocities, forces, shapes and pressure are drawn, restitution where there are several impacts; the title names the bodies' materials."""
+    """Energies, velocities, forces, shapes and pressure are drawn, and restitution if there are
+    several impacts. The title has the materials."""
     found = request.getfixturevalue(which)
     found = found[0] if which == "mine" else found
     drawn = {path.name for path in (found.folder / "figures").iterdir()}
@@ -181,7 +193,8 @@ def test_figures_of_several_bodies(which, request):
 
 
 def test_bodies_are_drawn_where_they_are(mine):
-    """The displacement moves the bodies from their reference places, side by side, to those of the scene; the post moves on."""
+    """The displacement moves the bodies from their reference places, side by side, to those of the
+    scene. The post moves, too."""
     found = mine[0]
     t, path = vtu.series(found.folder / "fields.pvd")[-1]
     points = figures.deformed(vtu.read(path), False).points
@@ -213,7 +226,7 @@ def values(folder) -> dict:
     (("two-discs", "--set", "contact.friction_dynamic=0.5"), "contact.friction_dynamic: 0.5 is larger than friction_static 0.3"),
 ])
 def test_what_python_refuses(words, said, tmp_path, capsys):
-    """Exit code 10, one line, nothing left behind."""
+    """Exit code 10, one line, no files left."""
     (tmp_path / "m.msh").write_text("4 2 4\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n1 2 3 0\n1 3 4 0\n1 2 1\n2 3 1\n3 4 1\n4 1 1\n")
     code = main(["run", *(str(tmp_path / "m.msh") if word == "MESH" else word for word in words), "--out", str(tmp_path / "out"), "--quiet"])
     error = capsys.readouterr().err
@@ -222,7 +235,8 @@ def test_what_python_refuses(words, said, tmp_path, capsys):
 
 
 def test_one_body_and_nothing_else(inputs, tmp_path):
-    """A body with nothing to touch is refused: by Python before a run, by the script where a data file has no more."""
+    """A body without anything to come into contact with is refused: by Python before a run, by the
+    script for such a data file."""
     alone = dict(law="svk", young=7e6, nu=0.4, density=1000, body=[dict(shape="disc", radius=0.1, position=[0, 0], velocity=[0, -1])])
     with pytest.raises(BadInput, match="^obstacle: is missing, and a second body too"):
         assembly.prepare(read_scene(alone, tmp_path, "alone"), tmp_path)
@@ -237,8 +251,12 @@ FALLING = {"law": "neohookean", "young": 7e6, "nu": 0.3, "density": 1722, "accur
 
 
 def test_a_shaft_of_a_file_has_its_flats(tmp_path):
-    """A coarse mesh of a shaft with two flats, all corners on one circle, has the mass of arcs and flats, which the log counts; falling on an end of a flat
-    it turns as it rebounds, which a disc would not. What the mesh leaves out no estimate says."""
+    """A coarse mesh of a shaft with two flats, with all corners on one circle, has the mass of arcs
+    and flats, which the log counts.
+
+    When it falls on an end of a flat it rotates as it rebounds, unlike a disc. No estimate contains
+    what the mesh leaves out.
+    """
     radius, flat = 0.01, math.acos(0.6)
     angles = np.concatenate([np.linspace(side + flat, side + math.pi - flat, 8) for side in (0, math.pi)])
     spokes = np.column_stack([np.full(16, 16), np.arange(16), np.roll(np.arange(16), -1)])
@@ -250,12 +268,16 @@ def test_a_shaft_of_a_file_has_its_flats(tmp_path):
     area = radius**2 * (math.pi - 2 * flat + math.sin(2 * flat))
     assert found.summary["energy_initial"] == pytest.approx(area * 1722 * 2, rel=1e-4) and abs(found.summary["rebound_spin"]) > 50
     assert "outline: shaft: 14 edges on circles, 2 straight edges; 16 may touch\n" in (found.folder / "log.txt").read_text()
-    assert not any(one.startswith("mass") for one in found.summary["warnings"])         # 0.3 % more than the file
+    # 0.3 % more than the file.
+    assert not any(one.startswith("mass") for one in found.summary["warnings"])
 
 
 def test_bodies_turn_about_their_stated_centre(tmp_path):
-    """A coarse ellipse turned by 90 degrees and one with its semi-axes exchanged are the same body, though the mesh's centre of mass is 0.06 mm off: they
-    touch at one time and are nowhere farther apart than round-off."""
+    """A coarse ellipse rotated by 90 degrees and one with exchanged semi-axes are the same body,
+    although the centre of mass of the mesh is 0.06 mm off.
+
+    They come into contact at the same time, and their positions agree to round-off.
+    """
     found = []
     for axes, angle in (([0.06, 0.03], 0), ([0.03, 0.06], 90)):
         body = {"shape": "ellipse", "semi_axes": axes, "angle": angle, "position": [0, 0.031], "velocity": [0, -1], "mesh_size": 0.015}
@@ -266,8 +288,12 @@ def test_bodies_turn_about_their_stated_centre(tmp_path):
 
 
 def test_a_body_that_passes_through_itself_is_warned_about(tmp_path):
-    """Without self-contact the free arm of a hairpin closes its slot of 10 mm at 6 m/s and goes on into the other one: the warning says when, which is not before 10 mm / 12 m/s,
-    and where, on a wall of the slot; as long as the slot is open there is none."""
+    """Without self-contact the free arm of a hairpin closes its slot of 10 mm at 6 m/s and passes
+    into the other arm.
+
+    A warning has the time, not before 10 mm / 12 m/s, and the place on a wall of the slot. While
+    the slot is open, there is none.
+    """
     pin = {"shape": "polygon", "vertices": [[0, 0], [0.1, 0], [0.1, 0.01], [0.01, 0.01], [0.01, 0.02], [0.1, 0.02], [0.1, 0.03], [0, 0.03]],
            "position": [0, 0.0151], "velocity": [0, -6], "mesh_size": 0.009, "contact_mesh_size": 0.009}
     for end, words in ((4e-3, "overlap: the body passes through itself from t = "), (8e-4, "")):
@@ -282,7 +308,8 @@ def test_a_body_that_passes_through_itself_is_warned_about(tmp_path):
 
 @pytest.mark.parametrize("dimension, shape, zeros", [("plane-strain", "disc", 0), ("axisymmetric", "ball", 0), ("3d", "ball", 1)])
 def test_bodies_that_never_meet(tmp_path, dimension, shape, zeros):
-    """Refused before anything is meshed: bodies at rest; bodies that fly apart while the end is left open, and only then."""
+    """Refused before meshing: bodies at rest, and bodies that fly apart if end_time is automatic,
+    only then."""
     def prepare(up: float, **more) -> None:
         def body(name: str, y: float, v: float) -> dict:
             return dict(name=name, shape=shape, radius=0.02, position=[0, y] + zeros * [0], velocity=[0, v] + zeros * [0])
@@ -291,7 +318,7 @@ def test_bodies_that_never_meet(tmp_path, dimension, shape, zeros):
 
     with pytest.raises(BadInput, match="^velocity: 0 of every body"):
         prepare(0)
-    for more in ({}, {"gravity": 9.81}):                  # both fall alike
+    for more in ({}, {"gravity": 9.81}):  # both fall equally
         with pytest.raises(BadInput, match="^end_time: 0 is the end of the contact, but no bodies ever come into contact"):
             prepare(1, **more)
     assert not list(tmp_path.iterdir())
@@ -301,7 +328,7 @@ def test_bodies_that_never_meet(tmp_path, dimension, shape, zeros):
 
 @pytest.fixture(scope="module")
 def inputs(tmp_path_factory):
-    """mesh.msh and scene.dat of two discs that touch."""
+    """mesh.msh and scene.dat of two discs in contact."""
     folder = tmp_path_factory.mktemp("inputs")
     assembly.assemble(scene.load("two-discs").override({"accuracy": 0.4})).write(folder)
     return folder
@@ -334,7 +361,7 @@ def inputs(tmp_path_factory):
     ("mesh.msh", None, None, "mesh: the file"),
 ])
 def test_what_a_direct_run_refuses(file, old, new, said, inputs, tmp_path):
-    """bodies.edp on a bad data file or mesh: exit code 10, one line, nothing left behind."""
+    """bodies.edp with a bad data file or mesh: exit code 10, one line, no files left."""
     for name in ("scene.dat", "mesh.msh"):
         text = (inputs / name).read_text()
         if name == file == "scene.dat" and old:
@@ -350,7 +377,8 @@ def test_what_a_direct_run_refuses(file, old, new, said, inputs, tmp_path):
 
 
 def _other_triangles(text: str, what: str, new) -> str:
-    """The mesh with the region, or first corner, of its triangles as `new` says of them, or cut among them."""
+    """The mesh with the region, or the first corner, of its triangles changed by `new`, or
+    truncated within the triangles."""
     lines = text.splitlines()
     n, t, _ = map(int, lines[0].split())
     if what == "cut":
@@ -371,18 +399,18 @@ def _other_triangles(text: str, what: str, new) -> str:
     ("disc-plane", ("-block_height", "1"), "block_height: disc-plane takes no such parameter (accepted: in disc-block)"),
 ])
 def test_flags_of_another_script_are_refused(script, flags, said):
-    """A direct run refuses, with exit code 10, what its script would not look at."""
+    """A direct run refuses parameters that its script does not use, with exit code 10."""
     done = freefem_run(*flags, script=script)
     assert done.returncode == 10 and said in done.stderr and done.stderr.count("\n") == 1
 
 
 def test_scripts_describe_themselves():
-    """The scripts that there are, and of two bodies the columns of each."""
+    """The list of scripts, and the columns of each of two bodies."""
     assert describe()["scripts"] == "disc-plane|disc-block|ball-axisymmetric|ball-plane|bodies|bodies-axisymmetric|bodies-3d" and describe(script="disc-block")["bodies"] == 2
     assert {name for name in scene.built_in() if scene.load(name).bodies} == {"two-discs", "three-in-a-row", "disc-bowl", "disc-corner", "block-corner", "disc-step", "two-balls", "ball-cylinder", "ball-block", "balls-3d", "disc-beam", "ball-beam", "hollow-ball", "drop-weight", "roller"} < set(scene.built_in())
 
 
-# ---- what is set is what runs
+# ---- dependent entries
 
 @pytest.mark.parametrize("name, given, opened, kept", [
     ("disc-oblique", {"friction_static": "0.3"}, {"friction_dynamic": 0.3}, {"penalty": 1e10, "slip_velocity": 0.1}),
@@ -392,10 +420,14 @@ def test_scripts_describe_themselves():
     ("disc-normal", {"young": 5e6, "density": 1100}, {"penalty": "auto"}, {}), ("disc-normal", {"exponent": 1.5}, {"penalty": "auto"}, {}),
     ("disc-normal", {"young": 5e6, "penalty": 3e9}, {"penalty": 3e9}, {}), ("ball", {"young": 5e6}, {"penalty": "auto"}, {}),
     ("disc-rolling", {"radius": 0.5}, {"mesh_size": "open", "contact_mesh_size": "open", "penalty": "auto"}, {"end_time": 0.2}),
-    ("disc-normal", {"height": 0.01}, {}, {"penalty": 1e10}),                       # of the fall, not of a body
+    ("disc-normal", {"height": 0.01}, {}, {"penalty": 1e10}),  # height of the fall, not of a body
     ("disc-block", {"radius": 0.1}, {"block_width": 2.0, "block_height": 0.4}, {})])
 def test_what_a_scene_fixed_for_its_own_follows(name, given, opened, kept):
-    """What a built-in scene fixes for its material, size or static friction is open again where that is set alone, and a sentence says so; all else stays."""
+    """If material, size or static friction of a built-in scene is set alone, its dependent entries
+    become automatic, and a sentence reports it.
+
+    All other entries stay.
+    """
     before = scene.load(name)
     after = before.override(given)
     used, alone = after.description()["used"], before.override(dict.fromkeys(set(opened) - set(given), "auto") | given
@@ -408,7 +440,11 @@ def test_what_a_scene_fixed_for_its_own_follows(name, given, opened, kept):
 
 
 def test_what_a_scene_of_bodies_fixed_follows():
-    """The same of dotted names: coefficients in their table, sizes in their body, the penalty of any material; a pair's friction_static alone sets both, too."""
+    """The same for dotted names: coefficients in their table, sizes in their body, the penalty of
+    any material.
+
+    A pair's friction_static alone sets both coefficients, too.
+    """
     bowl = scene.load("disc-bowl")
     after = bowl.override({"contact.friction_static": "0.3"})
     assert after.contact["friction_dynamic"] == "auto" and after.released == ("contact.friction_dynamic is reset to automatic: the value 0.4 of the scene belonged to its own contact.friction_static",)
@@ -425,7 +461,8 @@ def test_what_a_scene_of_bodies_fixed_follows():
 
 
 def test_a_sweep_over_friction_sets_both(tmp_path):
-    """Every point of an axis friction_static is of one coefficient where the dynamic one is not set; with it set, of two."""
+    """Every point of an axis friction_static has one coefficient if the dynamic one is not set;
+    else it has two."""
     for more, wanted in (("", [0.7, 0.3]), ("[set]\nfriction_dynamic = 0.2\n", [0.2, 0.2])):
         (tmp_path / "friction.toml").write_text(f'scene = "disc-oblique"\n{more}[product]\nfriction_static = [0.7, 0.3]\n')
         found = sweep.load(str(tmp_path / "friction.toml"))

@@ -1,4 +1,5 @@
-"""Bodies that touch themselves: what makes them, and that nothing is lost when they do."""
+"""Bodies that may come into contact with themselves: when they do, and conservation during this
+contact."""
 
 import numpy as np
 import pytest
@@ -27,25 +28,26 @@ from tests.support.self_contact import (
 
 
 def partners(given: dict) -> list[tuple[int, int]]:
-    """The pairs of a scene of bodies with themselves."""
+    """The contact pairs of bodies with themselves in a scene."""
     return [(pair.first, pair.second) for pair in read(given).pairs if pair.first == pair.second]
 
 
 @pytest.mark.few(1)
 @pytest.mark.parametrize("friction", [0, 0.4])
 def test_a_hairpin_closes_and_opens_again(tmp_path, friction):
-    """Its free arm closes the slot of 10 mm at 6 m/s, no further than a hundredth of it, and comes back; energy with the work of friction is kept."""
+    """Its free arm closes the slot of 10 mm at 6 m/s, to a hundredth of it, and returns. Energy
+    with friction work is conserved."""
     found = ran(tmp_path, SCENE | {"body": [PIN], "end_time": 12e-3, "fields": 40, "contact": {"friction_static": friction}})
     balanced(found)
     assert "self-contact" not in found.summary["skipped"] and (found.summary["friction_work"] > 0.1) == (friction > 0)
-    # without the tips' corners, which lie beyond the last contact points
+    # Without the corners of the ends, which lie beyond the last contact points.
     slot = distances(found, lambda x, y: (abs(y - 0.005) < 1e-9) & (abs(x - 0.01) < 0.035), lambda x, y: (abs(y + 0.005) < 1e-9) & (x > -0.03))
     closed = slot.argmin()
     assert abs(slot[closed]) < 2e-4 and slot[0] > 0.0099 and slot[closed:].max() > 0.003 and found.summary["max_penetration"] < 2e-4
 
 
 def test_a_ring_hits_a_plane_so_hard_that_it_closes(tmp_path):
-    """Its inner sides meet, and part again before it leaves the plane."""
+    """Its inner sides come into contact and separate before it leaves the plane."""
     found = ran(tmp_path, SCENE | {"body": [RING], "end_time": 14e-3, "fields": 30})
     balanced(found)
     hole = distances(found, lambda x, y: (abs(np.hypot(x, y) - 0.044) < 1e-9) & (y > 0.02), lambda x, y: (abs(np.hypot(x, y) - 0.044) < 1e-9) & (y < -0.02))
@@ -55,7 +57,8 @@ def test_a_ring_hits_a_plane_so_hard_that_it_closes(tmp_path):
 @pytest.mark.few(1)
 @pytest.mark.parametrize("friction", [0, 0.4])
 def test_a_free_hairpin_keeps_all_momenta(tmp_path, friction):
-    """A disc closes the slot of a hairpin in empty space, off its centre: what the hairpin does to itself moves and turns nothing as a whole."""
+    """A disc closes the slot of a free hairpin off its centre: self-contact neither moves nor
+    rotates the hairpin as a whole."""
     disc = DISC | {"position": [0.04, 0.0255], "velocity": [0, -12]}
     found = ran(tmp_path, SCENE | {"obstacle": [], "body": [PIN | {"position": [0, 0], "velocity": [0, 0]}, disc], "end_time": 4e-3, "fields": 20, "contact": {"friction_static": friction}})
     balanced(found)
@@ -67,7 +70,8 @@ def test_a_free_hairpin_keeps_all_momenta(tmp_path, friction):
 
 
 def test_a_groove_of_revolution_closes(tmp_path):
-    """Likewise in a section through the axis, with friction: the flange of a cylinder comes down on its other one."""
+    """The same in a section through the axis, with friction: a flange of a cylinder comes into
+    contact with its other flange."""
     flanges = [[0, 0], [0.05, 0], [0.05, 0.005], [0.012, 0.005], [0.012, 0.009], [0.05, 0.009], [0.05, 0.014], [0, 0.014]]
     body = {"shape": "polygon", "vertices": flanges, "position": 0.00705, "velocity": -12, "mesh_size": 0.005, "contact_mesh_size": 0.005}
     given = SCENE | {"dimension": "axisymmetric", "body": [body], "end_time": 2e-3, "contact": {"friction_static": 0.3}}
@@ -78,7 +82,11 @@ def test_a_groove_of_revolution_closes(tmp_path):
 
 
 def test_which_bodies_touch_themselves(tmp_path):
-    """auto: those that may fold onto themselves; on and off: all and none; a pair of a body with itself is stronger. What is used is the same scene again."""
+    """auto: bodies that may come into contact with themselves; on and off: all and none. A pair of
+    a body with itself has priority.
+
+    The scene as used reads back equal.
+    """
     thick, block = RING | {"inner_radius": 0.01}, DISC | {"position": [1, 1]}
     bodies = [PIN, RING | {"position": [0.3, 0.1]}, thick | {"name": "thick", "position": [0.6, 0.1]}, block]
     given = SCENE | {"body": bodies}
@@ -96,7 +104,8 @@ def test_which_bodies_touch_themselves(tmp_path):
 
 
 def test_where_it_cannot_happen_it_changes_nothing(tmp_path):
-    """A thick ring on a plane, with its own outline as a partner and without: the same motion, and one of the two says that self-contact was skipped."""
+    """A thick ring on a plane has the same motion with and without its own outline as counter-body.
+    The run without reports that self-contact was skipped."""
     ring = RING | {"inner_radius": 0.015, "velocity": [0, -2], "mesh_size": 0.015}
     on, off = (ran(tmp_path, SCENE | {"body": [ring], "end_time": 1e-3, "contact": {"self_contact": word}}, word) for word in ("on", "auto"))
     assert "self-contact" not in on.summary["skipped"] and "self-contact" in off.summary["skipped"]
@@ -113,8 +122,11 @@ SHAPES = {"polygon": lambda folder: BOX, "file": box_file,
 @pytest.mark.parametrize("shape", SHAPES)
 def test_walls_of_a_hole_stop_each_other(tmp_path, shape):
     """A peg closes the slot of 4 mm in a box. With self_contact = "auto" its walls stop each other
-    and keep energy. With "off" they pass through each other, and the warning says so before they
-    are a millimetre in, and not while they are apart."""
+    and conserve energy.
+
+    With "off" they pass through each other, and a warning reports it before they overlap by a
+    millimetre, and not while they are apart.
+    """
     body = SHAPES[shape](tmp_path)
     def pinched(word: str, end: float):
         given = PINCHED | {"body": [body], "end_time": end, "contact": {"self_contact": word}}
@@ -133,8 +145,8 @@ def test_walls_of_a_hole_stop_each_other(tmp_path, shape):
 
 
 def test_walls_of_a_ring_are_watched(tmp_path):
-    """Two pegs pinch a ring. Without self-contact its walls pass through each other in the end, and
-    the warning says so; as long as they are apart there is none."""
+    """Two pegs compress a ring. Without self-contact its walls pass through each other at the end,
+    with a warning; while they are apart there is none."""
     ring = {"shape": "ring", "radius": 0.05, "inner_radius": 0.045, "position": [0, 0],
             "mesh_size": 0.0025, "contact_mesh_size": 0.0025}
     below = {"kind": "circle", "centre": [0, -0.0651], "radius": 0.015}

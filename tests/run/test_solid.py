@@ -1,4 +1,5 @@
-"""Pictures of a body in three dimensions: the surfaces and the pressure that they show, and what happens without PyVista."""
+"""Pictures of bodies in three dimensions: surfaces and pressure, and the behaviour without PyVista.
+"""
 
 import re
 from importlib.util import find_spec
@@ -31,7 +32,7 @@ def ball(tmp_path_factory):
 
 @pytest.fixture
 def no_pyvista(monkeypatch):
-    """A Python that lacks it, whatever is installed."""
+    """A Python without PyVista, whatever is installed."""
     monkeypatch.setattr(solid, "PROBE", "import no_such_module")
     solid.missing.cache_clear()
     yield
@@ -46,7 +47,10 @@ def area(skin: vtu.Skin, points: np.ndarray) -> float:
 @pytest.mark.few(1)
 @pytest.mark.parametrize("symmetry", ["quarter", "half", "full"])
 def test_surface_of_the_whole_and_of_the_cut_ball(ball, symmetry):
-    """Whatever part was computed: 4 pi R^2 of the whole, nothing inside; of the cut one 3/4 of that and two half discs, or half and a disc. To 1 %."""
+    """For any computed part the whole ball has 4 pi R^2 and no inner faces, to 1 %.
+
+    The cut ball has 3/4 of this and two half discs, or half of it and a disc.
+    """
     axes = solid.AXES.get(symmetry, ())
     body = solid.whole(vtu.read_solid(vtu.series(ball(symmetry).folder / "fields.pvd")[0][1]), axes)
     every, cut = solid.skin(body.tetrahedra), solid.skin(body.tetrahedra[~solid.in_front(body, axes)])
@@ -56,7 +60,7 @@ def test_surface_of_the_whole_and_of_the_cut_ball(ball, symmetry):
 
 
 def test_mirror_image_moves_as_a_mirror_image(ball):
-    """Displacement and stress of the image: x and u_x change their signs, nothing else."""
+    """Displacement and stress of the image: only x and u_x change their signs."""
     part = vtu.read_solid(vtu.series(ball("quarter").folder / "fields.pvd")[2][1])
     both = solid.whole(part, (0,))
     n = len(part.points)
@@ -68,7 +72,8 @@ def test_mirror_image_moves_as_a_mirror_image(ball):
 
 
 def test_pressure_on_the_surface_bears_the_force(ball):
-    """The pressure that is drawn, summed over the whole surface, is the normal force of the history within 2 %, without load nothing."""
+    """The sum of the drawn pressure over the whole surface is the normal force of the history
+    within 2 %, and zero without load."""
     result = ball("quarter")
     table, history = contact.read(result.folder), result.history
     t = table.t[table.pressure.argmax()]
@@ -85,7 +90,8 @@ def test_pressure_on_the_surface_bears_the_force(ball):
 
 
 def test_without_pyvista_the_rest_is_drawn(ball, no_pyvista, capsys):
-    """All other figures, one line that says what is missing, and exit code 0; the film is that of the cut."""
+    """All other figures are drawn, one line reports what is missing, and the exit code is 0. The
+    film shows the section."""
     result = ball("quarter")
     (result.folder / "figures/solid.png").unlink(missing_ok=True)
     assert main(["figures", str(result.folder)]) == 0
@@ -99,7 +105,7 @@ def test_without_pyvista_the_rest_is_drawn(ball, no_pyvista, capsys):
 
 
 def test_a_crash_of_the_renderer_is_said_and_harms_nothing(ball, monkeypatch, capfd):
-    """VTK crashes where there is no OpenGL at all: the process that is asked first takes it."""
+    """VTK crashes without OpenGL: a test process crashes instead of the program."""
     monkeypatch.setattr(solid, "PROBE", "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)")
     solid.missing.cache_clear()
     assert main(["figures", str(ball("quarter").folder)]) == 0
@@ -109,7 +115,7 @@ def test_a_crash_of_the_renderer_is_said_and_harms_nothing(ball, monkeypatch, ca
 
 @pytest.mark.robustness
 def test_a_run_says_nothing_of_it(ball, no_pyvista, tmp_path, capfd):
-    """`make ball` without PyVista: its figures, nothing on stderr."""
+    """`make ball` without PyVista draws its figures and prints nothing on stderr."""
     given = [f"{name}={value}" for name, value in COARSE.items()]
     assert main(["run", "ball", "--set", *given, "end_time=2e-4", "speed=2", "--out", str(tmp_path / "out")]) == 0
     assert capfd.readouterr().err == "" and (tmp_path / "out/figures/energies.png").exists()
@@ -118,7 +124,8 @@ def test_a_run_says_nothing_of_it(ball, no_pyvista, tmp_path, capfd):
 @pytest.mark.skipif(not find_spec("pyvista"), reason="PyVista is not installed")
 @pytest.mark.parametrize("symmetry", ["quarter", "half"])
 def test_picture_and_film(ball, symmetry):
-    """solid.png, and a stage whose views show the body, change with time and show no pressure before the touch."""
+    """solid.png, and a stage whose views show the body, change with time and show no pressure
+    before contact."""
     result = ball(symmetry)
     if reason := solid.missing():
         pytest.skip(reason)
@@ -137,7 +144,11 @@ def test_picture_and_film(ball, symmetry):
 
 @pytest.mark.robustness
 def test_whole_ball_is_cut_for_figures_and_films(ball, no_pyvista, tmp_path):
-    """Without a plane of symmetry in the mesh, and without PyVista: the cut is a disc of the ball's radius, one closed outline; its shapes are drawn."""
+    """Without a plane of symmetry in the mesh and without PyVista the section is a disc of the
+    ball's radius with one closed outline.
+
+    Its shapes are drawn.
+    """
     result = ball("full")
     t, path = vtu.series(result.folder / "fields.pvd")[0]
     snapshot = vtu.read(path)
@@ -152,7 +163,7 @@ def test_whole_ball_is_cut_for_figures_and_films(ball, no_pyvista, tmp_path):
 
 
 def test_obstacles_are_in_the_views(ball):
-    """Of a scene of one body the plane y = 0, of a scene of bodies its own obstacles."""
+    """For a scene of one body the plane y = 0 is shown, for a scene of bodies its obstacles."""
     result = ball("quarter")
     views = solid.Views(vtu.series(result.folder / "fields.pvd"), contact.read(result.folder), result.scene)
     assert [one.kind for one in views.rigid] == ["plane"] and views.rigid[0].gap(np.array([[0.1, 0.02, 0.3]])) == pytest.approx([0.02])

@@ -1,4 +1,5 @@
-"""Meshes and scene files of edp/bodies-3d.edp: whatever is wrong in them is named in one line, with exit code 10, and nothing is left behind."""
+"""Meshes and scene files of edp/bodies-3d.edp: every error is one line with exit code 10, and no
+files are left."""
 
 import re
 
@@ -12,7 +13,7 @@ TWO = Scene([ball((0, 0, 0), 0.05, 1, shift=(0, 0.06, 0), velocity=(0, -2, 0)), 
 
 
 def block(text: str, keyword: str, change) -> str:
-    """The mesh with the words of the first line behind a keyword and its count changed."""
+    """The mesh with changes of the first line after a keyword and of its count."""
     lines = text.splitlines()
     at = next(k for k, line in enumerate(lines) if line.startswith(keyword)) + 2
     lines[at] = " ".join(change(lines[at].split()))
@@ -65,7 +66,8 @@ def test_bad_meshes(tmp_path, case):
 
 
 def test_the_last_line_needs_no_end(tmp_path):
-    """A mesh whose last word is the last of the file is read: what is refused is the wrong scene behind it."""
+    """A mesh whose last word is the end of the file is read; the wrong scene after it is refused.
+    """
     mesh, data = (write(TWO, tmp_path)[name] for name in ("mesh", "bodies"))
     mesh.write_text(mesh.read_text().rstrip())
     data.write_text(data.read_text().replace("1722.0 0.0 0.0 0.0", "1722.0 0.0 0.5 0.0", 1))
@@ -84,7 +86,7 @@ def test_bad_scenes(tmp_path, case):
 
 
 def test_what_breaks_the_symmetry(tmp_path):
-    """A part of the bodies is computed only where start and obstacles have their mirror images."""
+    """A part of the bodies is computed only if initial state and obstacles are symmetric."""
     for part, said in (({"velocity": (0, -2, 1)}, "starts away from z = 0, along z"), ({"spin": (0, 0, 1)}, "starts away from x = 0, along x, or turning")):
         write(Scene([ball((0, 0, 0), 0.05, 1, 4, **part)], [("plane", (0, -1, 0, 0, 1, 0), (0, 0, 0))], copies=4), tmp_path)
         refused(tmp_path, f"bodies: body0 {said}")

@@ -1,4 +1,5 @@
-"""The runs of a scene: the one that estimates the error beside the main one where a core is free, and what is left where one of them is lost."""
+"""The runs of a scene: the run for the error estimate uses a second core if one is free; results
+after the loss of a run."""
 
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
@@ -17,7 +18,8 @@ from tests.support.solver import ANSWERS, SCENES, go
 
 @pytest.fixture
 def order(monkeypatch):
-    """What starts and what ends, in its order, by the names of the folders; the main one is "out.part"."""
+    """The starts and ends of runs in their order, by the names of the folders. The main run is
+    "out.part"."""
     seen, start = [], freefem.start
 
     @contextmanager
@@ -32,7 +34,8 @@ def order(monkeypatch):
 
 @pytest.mark.parametrize("name", SCENES)
 def test_two_at_a_time_give_the_same_to_the_last_digit(order, monkeypatch, tmp_path, name):
-    """Where there are two cores the coarser run starts before the main one has ended, and is run once; answers, estimates and files are those of one after the other."""
+    """With two cores the coarser run starts before the main one has ended and runs once. Results,
+    estimates and files equal those of sequential runs."""
     found = {}
     for cores in (2, 1):
         monkeypatch.setattr(freefem, "CORES", cores)
@@ -49,7 +52,8 @@ def test_two_at_a_time_give_the_same_to_the_last_digit(order, monkeypatch, tmp_p
 
 @pytest.mark.parametrize("why", ["a thread of a study", "no estimate", "one core"])
 def test_one_at_a_time(order, monkeypatch, tmp_path, why):
-    """A study has a run on every core already: its runs start no second process; nor do those without an estimate, or on one core."""
+    """A study has a run on every core, so that its runs start no second process; nor do runs
+    without an estimate or on one core."""
     monkeypatch.setattr(freefem, "CORES", 1 if why == "one core" else 2)
     with ThreadPoolExecutor(1) as pool:
         call = (lambda act: pool.submit(act).result()) if why == "a thread of a study" else lambda act: act()
@@ -58,7 +62,8 @@ def test_one_at_a_time(order, monkeypatch, tmp_path, why):
 
 
 def test_sizes_that_are_used_otherwise_are_run_again(order, monkeypatch, tmp_path):
-    """A coarser run beside that is not the one that the finished main run asks for ends and is made anew."""
+    """If the simultaneous coarser run is not the one that the finished main run requires, it is
+    ended and repeated."""
     monkeypatch.setattr(freefem, "CORES", 2)
     wanted, guesses = scene.load("disc-normal"), []
 
@@ -71,7 +76,8 @@ def test_sizes_that_are_used_otherwise_are_run_again(order, monkeypatch, tmp_pat
 
 
 def test_a_main_run_that_fails_takes_the_other_with_it(order, monkeypatch, tmp_path):
-    """The failure is that of the main run; its files stay, and nothing of the run beside it, process or folder or checkpoint."""
+    """The failure is that of the main run. Its files stay; process, folder and checkpoint of the
+    simultaneous run are removed."""
     monkeypatch.setattr(freefem, "CORES", 2)
     with pytest.raises(Failure) as error:
         go("disc-normal", tmp_path / "out", law="svk", speed="60", checkpoint_every="1")
@@ -80,7 +86,8 @@ def test_a_main_run_that_fails_takes_the_other_with_it(order, monkeypatch, tmp_p
 
 
 def test_a_run_beside_that_fails_is_said_where_it_was(monkeypatch, tmp_path):
-    """A coarser run without an answer leaves the main one as it is, with a sentence why its error is not known."""
+    """A coarser run without a result does not change the main one, and a sentence has the reason
+    why the error is unknown."""
     monkeypatch.setattr(freefem, "CORES", 2)
     wanted = scene.load("disc-normal")
     monkeypatch.setattr(solver, "scaled", lambda scene, *given: estimate.other(*given) | {"speed": 60, "law": "svk"})

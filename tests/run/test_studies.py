@@ -1,4 +1,5 @@
-"""The studies: runs in parallel that survive failures, limits and interruption; hard parameters on top."""
+"""Studies: parallel runs that survive failures, time limits and interruption; and difficult
+parameters."""
 
 import signal
 import sys
@@ -21,7 +22,8 @@ def go(folder, points=POINTS, limit=30.0) -> pd.DataFrame:
 
 
 def test_rows_are_parameters_outcome_and_summary(fake, tmp_path):
-    """A row a point in the given order, with the numbers of its summary; a point given twice is run once."""
+    """There is a row for each point in the given order, with the numbers of its summary. A repeated
+    point runs once."""
     rows = go(tmp_path, [*POINTS, POINTS[0]])
     assert rows[["speed", "dt"]].to_dict("records") == [*POINTS, POINTS[0]]
     assert (rows.exit == 0).all() and (rows.message == "").all() and not rows.reused.any()
@@ -36,8 +38,11 @@ def test_rows_are_parameters_outcome_and_summary(fake, tmp_path):
     ("ok", 0, 0, ""), ("step", 0, 11, "step: no convergence"), ("crash", 4, 1, "killed by SIGABRT"),
     *(pytest.param(*more, marks=pytest.mark.robustness) for more in (("material", 0, 12, "material: det F"), ("chatter", 0, 11, "chatter")))])
 def test_what_is_done_is_not_done_again(fake, tmp_path, monkeypatch, mode, again, code, words, sizes):
-    """Finished runs and failures of the same code are reused, crashes are not; with other code all is run again. A point that fails keeps its code, its message and what
-    the script knew; the others go on."""
+    """Finished runs and failures of the same code are reused, crashes are not. With other code
+    everything runs again.
+
+    A failed point keeps its code, its message and the numbers of the script. The others continue.
+    """
     fake(mode)
     monkeypatch.setattr(sys.modules[__name__], "BASE", sizes | {"fields": 0})
     first = go(tmp_path)
@@ -51,7 +56,7 @@ def test_what_is_done_is_not_done_again(fake, tmp_path, monkeypatch, mode, again
 
 
 def test_time_limit_kills_and_reports(fake, tmp_path):
-    """A run that does not end is killed at its limit, says so, and leaves nothing."""
+    """A run that does not end is killed at its limit, reports it, and leaves no files."""
     fake("slow")
     rows = go(tmp_path, POINTS[:2], limit=1.0)
     assert (rows.exit == 124).all() and (rows.message == "no end after 1 s: killed").all()
@@ -59,7 +64,7 @@ def test_time_limit_kills_and_reports(fake, tmp_path):
 
 
 def test_an_error_that_nobody_expects_is_a_row(fake, tmp_path, monkeypatch, capsys):
-    """An error of the program itself costs its own row only, and is printed."""
+    """An error of the program itself affects its own row only and is printed."""
     work = study.outcome_of
     monkeypatch.setattr(study, "outcome_of", lambda folder, wanted, *more: 1 / 0 if wanted.values["speed"] == 4 else work(folder, wanted, *more))
     rows = go(tmp_path)
@@ -69,7 +74,8 @@ def test_an_error_that_nobody_expects_is_a_row(fake, tmp_path, monkeypatch, caps
 
 @pytest.mark.parametrize("number, code", [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
 def test_interruption_is_clean(fake, tmp_path, number, code):
-    """One FreeFem++ a core at most; Ctrl-C ends them all, leaves no half-finished folder and no traceback."""
+    """At most one FreeFem++ runs on each core. Ctrl-C ends them all and leaves neither an
+    incomplete folder nor a traceback."""
     fake("slow")
     process = start("stress", "--quick", "7", "--out", str(tmp_path / "out"), module="benchmarks", start_new_session=True)
     wait_for(lambda: fake.starts() >= study.CORES)
@@ -83,7 +89,8 @@ def test_interruption_is_clean(fake, tmp_path, number, code):
 @pytest.mark.parametrize("mode, returned, words", [pytest.param("ok", 0, "requirement holds", marks=pytest.mark.robustness), ("material", 0, "exit 12: law"),
                                                    ("crash", 1, "requirement FAILS for 6 sets")])
 def test_stress_reports(fake, tmp_path, capsys, mode, returned, words):
-    """The verdict follows the requirement; every set that did not finish is listed; the CSV is there."""
+    """The verdict follows the requirement, every set that did not finish is listed, and the CSV
+    file exists."""
     fake(mode)
     assert stress.main(["--quick", "6", "--out", str(tmp_path)]) == returned
     out = capsys.readouterr().out

@@ -1,4 +1,4 @@
-"""Supports: parts of a boundary that are held or moved. What beams, rods and pressed discs do on them."""
+"""Supports: parts of a boundary that are held or moved, with beams, rods and pressed discs."""
 
 import math
 
@@ -15,15 +15,19 @@ BAR = {"shape": "rectangle", "width": LENGTH, "height": THICKNESS, "position": [
 STIFF = {"law": "svk", "young": 1e6, "nu": 0.0, "density": 1000, "accuracy": 0.02}
 # ---- a clamped beam
 
-FORCE = -0.01                # N/m, at the tip
+FORCE = -0.01  # N/m, at the free end
 
 
 def timoshenko(frequency: float) -> float:
-    """0 at the angular frequencies [rad/s] of the clamped beam with shear and rotary inertia,
-    shear factor 5/6, nu = 0 (Timoshenko 1921): the determinant of what is left at the free end."""
+    """A function that vanishes at the angular frequencies [rad/s] of the clamped beam with shear
+    and rotary inertia.
+
+    It is the determinant of the conditions at the free end, with shear factor 5/6 and nu = 0
+    (Timoshenko 1921).
+    """
     young, density = STIFF["young"], STIFF["density"]
     inertia, shear = THICKNESS**3 / 12, 5 / 6 * young / 2 * THICKNESS
-    system = np.zeros((4, 4))            # of deflection, rotation, moment, shear force
+    system = np.zeros((4, 4))  # of deflection, rotation, moment, shear force
     system[0, 1], system[0, 3] = 1, 1 / shear
     system[1, 2] = 1 / (young * inertia)
     system[2, 1], system[2, 3] = -density * inertia * frequency**2, -1
@@ -37,8 +41,8 @@ def euler_bernoulli(factor: float) -> float:
 
 
 def oscillations(t: np.ndarray, values: np.ndarray, guess: list[float]) -> tuple[np.ndarray, np.ndarray]:
-    """Angular frequencies near the guess, and the mean and the amplitudes of cosines and sines, that
-    fit values best."""
+    """Angular frequencies near the guess, and the mean and the amplitudes of cosines and sines,
+    that fit the values best."""
     def waves(frequencies: np.ndarray) -> np.ndarray:
         return np.column_stack([np.ones_like(t), *(turn(one * t) for one in frequencies for turn in (np.cos, np.sin))])
 
@@ -52,27 +56,32 @@ def oscillations(t: np.ndarray, values: np.ndarray, guess: list[float]) -> tuple
 
 @pytest.fixture(scope="module", name="beam")
 def _beam(tmp_path_factory):
-    """The beam under a force at its tip that is there from the start on, for two periods."""
+    """The beam under a force at its free end from the start, for two periods."""
     loaded = BAR | {"support": [{"where": "left"}], "load": [{"where": "right", "traction": [0, FORCE / THICKNESS]}]}
     return bodies(tmp_path_factory.mktemp("beam"), STIFF | {"end_time": 8.0, "dt": 4e-3, "body": [loaded]})
 
 
 def test_a_clamped_beam_has_its_bending_frequencies(beam):
-    """The first three in the moment at the clamp, to 0.1 % of Timoshenko's; these are up to 2.6 % below
-    those without shear, which the beam has not."""
+    """The first three frequencies of the moment at the clamp agree with Timoshenko's to 0.1 %.
+
+    These are up to 2.6 % below those without shear, which the beam does not have.
+    """
     slender = [euler_bernoulli(factor) for factor in (1.875104, 4.694091, 7.854757)]
     exact = [brentq(timoshenko, 0.85 * one, 1.01 * one) for one in slender]
     assert [a / b for a, b in zip(exact, slender)] == pytest.approx([0.998, 0.989, 0.974], abs=1e-3)
     history = beam.history
-    middle = history["t"][1:] - history["dt"][1:] / 2        # forces are means over a step
+    middle = history["t"][1:] - history["dt"][1:] / 2  # forces are means over a step
     found, _ = oscillations(middle, history["support_moment_1"][1:], exact)
     assert found == pytest.approx(exact, rel=1e-3)
 
 
 def test_a_step_load_overshoots_to_twice_the_static_state(beam):
-    """The moment at the clamp oscillates about F L, that of the force at rest: from rest a mode goes from
-    0 to twice its share, which of the slender beam is 4/beta^2 of F L, signs in turn, beta the factor of
-    the mode; of the deflection of the tip it is 12/beta^4. The work of the force is the beam's energy."""
+    """The moment at the clamp oscillates about F L, the static value.
+
+    From rest a mode goes from 0 to twice its share, 4/beta^2 of F L for the slender beam, with
+    alternating signs and the factor beta of the mode. For the deflection of the free end the share
+    is 12/beta^4. The work of the force is the energy of the beam.
+    """
     history = beam.history
     middle = history["t"][1:] - history["dt"][1:] / 2
     guess = [brentq(timoshenko, 0.85 * euler_bernoulli(one), 1.01 * euler_bernoulli(one)) for one in (1.8751, 4.6941, 7.8548)]
@@ -81,12 +90,14 @@ def test_a_step_load_overshoots_to_twice_the_static_state(beam):
     assert -cosine / mean == pytest.approx(4 / 1.875104**2, rel=5e-3) and abs(sine) < 1e-2 * abs(cosine)
     assert history["load_work"] == pytest.approx(energy(history), rel=1e-6, abs=1e-9 * energy(history).max())
     deflection = FORCE * LENGTH**3 / (3 * STIFF["young"] * THICKNESS**3 / 12)
-    largest = history["load_work"].max() / FORCE             # of the tip: modes have 0.971 of it, 0.025 and less
+    # The deflection of the free end: modes have shares of 0.971, 0.025 and less.
+    largest = history["load_work"].max() / FORCE
     assert largest == pytest.approx(2 * deflection, rel=0.02)
 
 
 def test_forces_at_the_clamp_are_what_the_momentum_leaves(beam):
-    """Rate of momentum = load + support, in every step; likewise of the angular momentum (the audit)."""
+    """Rate of momentum = load + support in every step; the same for the angular momentum (the
+    audit)."""
     history = beam.history
     rate = np.diff(history["momentum_y"]) / history["dt"][1:]
     assert rate == pytest.approx(FORCE + history["support_force_y_1"][1:], abs=1e-8 * abs(history["support_force_y_1"]).max())
@@ -98,8 +109,11 @@ def test_forces_at_the_clamp_are_what_the_momentum_leaves(beam):
 # ---- release
 
 def test_what_is_released_flies_freely(tmp_path):
-    """From its release on a block that was moved has the energy, momenta and spin that it had, and no
-    force of the support. The release is the end of a step."""
+    """After its release a block that was moved keeps energy, momenta and spin, without a force of
+    the support.
+
+    The release is at the end of a step.
+    """
     block = BAR | {"width": 0.2, "position": [0, 0], "support": [
         {"where": "left", "motion": ["0.02*min(t/0.01, 1)^2", "0.01*sin(100*t)"], "release": 0.01}]}
     run = bodies(tmp_path, SOFT | {"end_time": 0.03, "body": [block]})
@@ -107,7 +121,7 @@ def test_what_is_released_flies_freely(tmp_path):
     after = history["t"] >= 0.01 * (1 - 1e-12)
     assert history["t"][after][0] == pytest.approx(0.01, rel=1e-12) and 10 < after.sum() < len(after) - 10
     assert np.ptp(energy(history)[after]) < 1e-9 * energy(history).max()
-    gained = energy(history)[after][0] - energy(history)[0]          # held nodes are moved from the start on
+    gained = energy(history)[after][0] - energy(history)[0]  # held nodes move from the start
     assert history["support_work"][after][0] == pytest.approx(gained, rel=1e-9)
     for name in ("momentum_x", "momentum_y", "angular_momentum"):
         assert np.ptp(history[name][after]) < 1e-8 * abs(history[name]).max()
@@ -122,9 +136,12 @@ def test_what_is_released_flies_freely(tmp_path):
 @pytest.mark.few(1)
 @pytest.mark.parametrize("elements, close", [(20, 0.03), (40, 0.015)])
 def test_a_clamped_rod_strikes_a_wall(tmp_path, elements, close):
-    """V5: L = E = rho = 1, compressed evenly by its support and let go at one end, which the wall is a
-    strain away from: contact from 1 to 2 with the stress of that strain, the energy it had at the start,
-    and the state of the start again at 3."""
+    """V5: L = E = rho = 1, compressed evenly by its support and released at one end; the distance
+    of the wall corresponds to the strain.
+
+    Contact lasts from 1 to 2 with the stress of this strain and the initial energy; the initial
+    state returns at 3.
+    """
     strain, begin, size = 1e-4, 8.0, 1 / elements
     ramp = f"-{strain}*(10*min(t/{begin},1)^3 - 15*min(t/{begin},1)^4 + 6*min(t/{begin},1)^5)"
     rod = {"shape": "rectangle", "width": 1, "height": 3 * size, "position": [0.5 + strain, 0], "mesh_size": size,
@@ -141,14 +158,18 @@ def test_a_clamped_rod_strikes_a_wall(tmp_path, elements, close):
     assert energy(history)[free].mean() == pytest.approx(strain**2 / 2 * area, rel=1e-3)
     assert np.ptp(energy(history)[free]) < 1e-8 * energy(history).max()
     assert history["support_force_x_2"][free][2] / area / strain == pytest.approx(-1, rel=5e-3)
-    back = (np.interp(3, t, history["x"]) - 0.5) / strain            # u = strain (1 - x): the mean is half of it
+    # U = strain (1 - x): the mean is half of the strain.
+    back = (np.interp(3, t, history["x"]) - 0.5) / strain
     assert back == pytest.approx(0.5, abs=2 * close)
 
 
 def test_a_disc_that_is_pressed_slowly_follows_the_law_of_cylinders(tmp_path):
-    """The upper half of a disc's outline is moved down, 0.006 R past the touch. The force P and the depth
-    keep delta = P (ln(4 pi R E'/P) + C)/(pi E') (Gerl and Zippelius 1999), with one C, which what holds
-    the disc decides, to 1.5 %; half-width and largest pressure are Hertz'."""
+    """The upper half of the outline of a disc moves down by 0.006 R beyond contact.
+
+    Force P and depth satisfy delta = P (ln(4 pi R E'/P) + C)/(pi E') (Gerl and Zippelius 1999) with
+    one C, which depends on the support, to 1.5 %. Half-width and largest pressure are those of
+    Hertz.
+    """
     radius, depth, gap, end = 0.05, 3e-4, 2e-5, 0.2
     top = {"kind": "half-plane", "point": [0, radius + gap], "normal": [0, 1]}
     motion = [0, f"-{depth + gap}*(1 - cos(pi*t/{end}))/2"]
@@ -183,7 +204,8 @@ SOLID = SOFT | {"dimension": "3d", "end_time": 4e-3, "contact": {"friction_stati
 
 @pytest.mark.parametrize("scene", [RUBBED, ROUND, SOLID], ids=["plane", "revolution", "space"])
 def test_moving_supports_with_friction_do_exact_work(tmp_path, scene):
-    """Energy with the works of supports and friction to 1e-9, momenta with their forces to 1e-8."""
+    """Energy with the works of supports and friction is balanced to 1e-9, momenta with their forces
+    to 1e-8."""
     run = bodies(tmp_path, scene)
     history, summary = run.history, run.summary
     assert abs(history["balance"]).max() < 1e-9 * energy(history).max()
@@ -193,7 +215,8 @@ def test_moving_supports_with_friction_do_exact_work(tmp_path, scene):
 
 
 def test_a_support_across_a_flat_side_lets_it_slide(tmp_path):
-    """fix = normal of a side across y is fix = y; either leaves x free: a push along x goes on for ever."""
+    """For a side perpendicular to y, fix = normal equals fix = y. Both leave x free: a push along x
+    continues without end."""
     runs = []
     for fix in ("normal", "y"):
         block = BAR | {"width": 0.2, "position": [0, 0], "velocity": [1, 0], "support": [{"where": "bottom", "fix": fix}]}

@@ -1,4 +1,4 @@
-"""Rigid obstacles whose surface is that of an STL file or of a mesh."""
+"""Rigid obstacles with the surface of an STL file or of a mesh."""
 
 import math
 
@@ -11,7 +11,8 @@ from tests.support.surfaces import SCENE, run, slab, sphere
 
 
 def test_a_slab_is_a_plane(tmp_path):
-    """To the accuracy of the solver; the file stands beside the scene, in mm, and a copy goes into the results."""
+    """They agree to the accuracy of the solver. The file is beside the scene, in mm, and is copied
+    to the results."""
     slab(tmp_path / "slab.stl")
     found = run(tmp_path, 'kind = "surface"\nfile = "slab.stl"\nscale = 0.001')
     plane = run(tmp_path, 'kind = "plane"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]', name="plane")
@@ -22,7 +23,7 @@ def test_a_slab_is_a_plane(tmp_path):
 
 
 def test_a_fine_surface_is_read_whole(tmp_path):
-    """8192 triangles, turned outward, of the volume of the sphere."""
+    """8192 triangles, oriented outwards, with the volume of the sphere."""
     points, triangles = surface_file.read(sphere(tmp_path / "fine.stl", 0.1, 5))
     assert len(triangles) == 8192
     a, b, c = points[triangles].transpose(1, 0, 2)
@@ -35,7 +36,7 @@ def test_a_fine_surface_is_read_whole(tmp_path):
     ('file = "text.stl"', "obstacle.1.file"), ('file = "slab.stl"\nscale = -1', "obstacle.1.scale"),
     ('file = "slab.stl"\nrounding = -1', "obstacle.1.rounding"), ('fil = "slab.stl"', "obstacle.1.fil")])
 def test_wrong_files(tmp_path, capsys, what, named):
-    """One line that names the entry, exit code 10."""
+    """One line with the entry, exit code 10."""
     slab(tmp_path / "slab.stl")
     lines = (tmp_path / "slab.stl").read_text().split("facet normal")
     (tmp_path / "open.stl").write_text("facet normal".join(lines[:-1]) + "endsolid one\n")

@@ -1,4 +1,5 @@
-"""Sweeps: the file and its errors, the table, kills and two drivers at once, Snakemake, trends, maps and histories."""
+"""Sweeps: the file and its errors, the table, killed and simultaneous sweeps, Snakemake, trends,
+maps and histories."""
 
 import errno
 import os
@@ -24,7 +25,8 @@ from tests.support.sweep import COARSE, DRAWN, SIX, orphans, table, write
 # ---- the file
 
 def test_points_are_products_of_axes_and_zips(tmp_path):
-    """Every combination of lists, ranges and zips, the first axis slowest; each point again with what refines it."""
+    """Every combination of lists, ranges and zips, with the first axis slowest. Each point appears
+    again with its refinement."""
     wanted = sweep.load(str(write(tmp_path, 'scene = "disc-oblique"\n[product]\nspeed = { from = 1, to = 100, points = 3, spacing = "log" }\n'
                                   '[[zip]]\nnu = [0.3, 0.4]\nlaw = ["svk", "neohookean"]\n[refine]\naccuracy = 0.001\n')))
     assert [tuple(point.values()) for point in wanted.points] == [
@@ -87,7 +89,7 @@ def test_points_are_products_of_axes_and_zips(tmp_path):
     ("[product]\nspeed = [1, 2]\nnu = [0.1, 0.2]\n[figure]\nkind = 'map'\nx = 'speed'\ny = 'nu'\ncolour = 'impulse'\nlevel = 1\nband = -1", "band = -1"),
 ])
 def test_bad_files_are_one_line(tmp_path, text, words):
-    """The line names the file, the entry, the value and what is accepted; nothing has run."""
+    """The line has the file, the entry, the value and what is accepted. Nothing has run."""
     path = write(tmp_path, text)
     with pytest.raises(BadInput) as error:
         sweep.load(str(path))
@@ -97,8 +99,12 @@ def test_bad_files_are_one_line(tmp_path, text, words):
 
 @pytest.mark.parametrize("name", sweep.built_in())
 def test_built_in_sweeps_are_sound(name):
-    """Each loads, has a title and a figure, says nu in its title or as what varies, and has its target in the Makefile. No point leaves open what its scene fixes: an axis
-    over the static coefficient has the dynamic one beside it."""
+    """Each loads, has a title and a figure, nu in its title or as varied parameter, and a target in
+    the Makefile.
+
+    No point leaves entries automatic that its scene fixes: an axis of the static coefficient has
+    the dynamic one beside it.
+    """
     wanted = sweep.load(name)
     given = sweep.scene.load(wanted.scene)
     assert not {said for point in wanted.points for said in given.override(wanted.base | point).released}
@@ -109,7 +115,8 @@ def test_built_in_sweeps_are_sound(name):
 # ---- the table
 
 def test_table_and_figure(fake, tmp_path, capsys):
-    """A row a point in the order of the file, every collected number, a figure, the file itself, and no half-written files."""
+    """There is a row for each point in the order of the file, with every collected number; a
+    figure, the file itself, and no incomplete files."""
     out = tmp_path / "out"
     assert sweep.main([str(write(tmp_path, DRAWN)), "--out", str(out)]) == 0
     rows = table(out)
@@ -126,7 +133,8 @@ def test_table_and_figure(fake, tmp_path, capsys):
 @pytest.mark.few(2)
 @pytest.mark.parametrize("mode, code, returned", [("material", 12, 0), ("step", 11, 0), ("crash", 1, 1)])
 def test_failed_points_are_kept_with_their_reason(fake, tmp_path, capsys, mode, code, returned):
-    """They do not stop the rest; what would fail again is not run again, what was killed is, and that is said on stderr."""
+    """They do not stop the others. Reproducible failures are reused, killed runs run again, which
+    is reported on stderr."""
     fake(mode)
     path, out = write(tmp_path, DRAWN), tmp_path / "out"
     assert main(["sweep", str(path), "--out", str(out)]) == returned
@@ -139,7 +147,7 @@ def test_failed_points_are_kept_with_their_reason(fake, tmp_path, capsys, mode, 
 
 
 def test_bad_input_of_a_point_is_said_with_its_code(fake, tmp_path, capsys):
-    """A point that cannot be run is a row like any other, and the sweep ends with its exit code and one line."""
+    """A point that cannot run is a row, and the sweep ends with its exit code and one line."""
     assert main(["sweep", str(write(tmp_path, "[product]\nmesh_size = [0.02, 1.0]\n")), "--out", str(tmp_path / "out")]) == 10
     said = capsys.readouterr()
     assert said.err.count("\n") == 1 and "1 of 2 points have no answer, first: mesh_size=1.0: mesh_size: 1 is larger than the radius 0.05" in said.err
@@ -156,7 +164,7 @@ def test_a_parameter_with_the_name_of_a_result_keeps_its_values(fake, tmp_path):
 
 @pytest.mark.parametrize("text", ["[]", '{"exit_code": 11}', '{"exit_code": 11, "provenance": {}}', '{"exit_code": 12, "provenance": null}'])
 def test_damaged_folders_are_run_again(fake, tmp_path, text):
-    """A failure.json that is none stops nothing."""
+    """An invalid failure.json stops nothing."""
     path, out = write(tmp_path, COARSE + "[product]\nspeed = [4]\n"), tmp_path / "out"
     wanted = sweep.load(str(path))
     place = study.place(out, wanted.points[0])
@@ -166,7 +174,7 @@ def test_damaged_folders_are_run_again(fake, tmp_path, text):
 
 
 def test_a_full_disk_is_a_row(fake, tmp_path, monkeypatch):
-    """Where a run cannot be written its row says so with exit code 14."""
+    """If a run cannot be written, its row has exit code 14."""
     def full(*_, **__):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "file")
     monkeypatch.setattr(run, "run", full)
@@ -175,7 +183,8 @@ def test_a_full_disk_is_a_row(fake, tmp_path, monkeypatch):
 
 
 def test_error_bars_are_what_refining_changes(tmp_path):
-    """With [refine] the number is that of the refined run, its error the difference to the plain one."""
+    """With [refine] the number is that of the refined run, and its error the difference to the
+    plain one."""
     text = "collect = ['impulse', 'dofs']\n[set]\ndegree = 1\nend_time = 1e-3\naccuracy = 0.02\n[product]\nspeed = [4, 8]\n[refine]\naccuracy = 0.005\n"
     wanted = sweep.load(str(write(tmp_path, text)))
     rows = sweep.collect(wanted, tmp_path / "out")
@@ -188,7 +197,8 @@ def test_error_bars_are_what_refining_changes(tmp_path):
 
 @pytest.mark.parametrize("after", [pytest.param(0.0, marks=pytest.mark.robustness), 0.3, pytest.param(0.8, marks=pytest.mark.robustness)])
 def test_killed_driver_leaves_nothing_running_and_is_taken_up(fake, tmp_path, monkeypatch, after):
-    """kill -9 of the driver ends its FreeFem++; the same command runs only what is not finished; the table is the same."""
+    """kill -9 of the Python process ends its FreeFem++ processes. The same command runs only
+    unfinished points, and the table is the same."""
     path, out, calm = write(tmp_path, DRAWN), tmp_path / "out", tmp_path / "calm"
     assert main(["sweep", str(path), "--out", str(calm)]) == 0
     first = fake.starts()
@@ -210,7 +220,8 @@ def test_killed_driver_leaves_nothing_running_and_is_taken_up(fake, tmp_path, mo
 
 
 def test_snakemake_gives_the_same_table(fake, tmp_path):
-    """One job a run, the same results as the driver, which finds nothing left to do."""
+    """Each run is a job. The results equal those of the sweep command, which finds nothing left to
+    do."""
     pytest.importorskip("snakemake", reason="the optional snakemake is not installed")
     path, out, calm = write(tmp_path, DRAWN), tmp_path / "out", tmp_path / "calm"
     assert call("sweep", str(path), "--out", str(calm))[0] == 0
@@ -220,7 +231,8 @@ def test_snakemake_gives_the_same_table(fake, tmp_path):
     assert fake.starts() == 12 and "7 of 7 steps (100%) done" in done.stderr
     pd.testing.assert_frame_equal(table(out), table(calm))
     assert call("sweep", str(path), "--out", str(out))[0] == 0 and fake.starts() == 12
-    shutil.rmtree(study.place(out, {"speed": 4.0, "nu": 0.3}))       # what is missing, and only that, is made again
+    # Only the missing run is made again.
+    shutil.rmtree(study.place(out, {"speed": 4.0, "nu": 0.3}))
     (out / "sweep.csv").unlink()
     again = subprocess.run(done.args, cwd=tmp_path, capture_output=True, text=True, timeout=120)
     assert again.returncode == 0 and fake.starts() == 13, again.stderr
@@ -232,7 +244,7 @@ def test_snakemake_gives_the_same_table(fake, tmp_path):
     ("law = 'svk'\n[product]\nspeed = [4, 8]\nlaw = ['neohookean', 'svk']", 1), ("young = 5e6\n[product]\nspeed = [4, 8]", 0),
     ("viscosity = 10\n[product]\nspeed = [4, 8]", 0)])
 def test_the_papers_star_stands_in_studies_of_its_scene(fake, tmp_path, given, stars):
-    """The paper's number is drawn where one of the curves is of its law and scene, and nowhere else."""
+    """The paper's number is drawn only if one of the curves has its law and scene."""
     by = "by = 'law'\n" if "'neohookean', 'svk'" in given else ""
     given = given.replace("law = 'svk'\n", "") if by else given
     text = f"[set]\n{given}\n[figure]\nx = 'speed'\ny = 'contact_time'\n{by}"
@@ -244,14 +256,14 @@ def test_the_papers_star_stands_in_studies_of_its_scene(fake, tmp_path, given, s
 
 
 def test_words_as_axes(fake, tmp_path, capsys):
-    """A parameter with words may vary, be an axis of a figure and stand in the table."""
+    """A parameter with words may vary, be an axis of a figure and be in the table."""
     text = COARSE + '[product]\nlaw = ["svk", "neohookean"]\nspeed = [4, 8]\n[figure]\nx = "law"\ny = "contact_time"\nby = "speed"\n'
     assert sweep.main([str(write(tmp_path, text)), "--out", str(tmp_path / "out")]) == 0
     assert "| neohookean |" in capsys.readouterr().out and (tmp_path / "out/sweep.png").exists()
 
 
 def test_the_sweep_of_the_docs_is_sound(tmp_path):
-    """What docs/how-to/sweeps.md shows is accepted as it stands."""
+    """The example of docs/how-to/sweeps.md is accepted."""
     text = (parameters.ROOT / "docs/how-to/sweeps.md").read_text()
     example = re.search(r"```\n(scene = \"disc-normal\".*?)```", text, re.S)[1]
     wanted = sweep.load(str(write(tmp_path, example)))
@@ -259,7 +271,8 @@ def test_the_sweep_of_the_docs_is_sound(tmp_path):
 
 
 def test_a_refused_point_keeps_no_other(fake, tmp_path, capsys):
-    """A point that the scene refuses, the first one too, is a row with exit code 10 that is named; the others run, and --open lists it no more."""
+    """A refused point, also the first one, is a row with exit code 10 that is reported. The others
+    run, and --open does not list it."""
     shutil.copy(parameters.ROOT / "orchestrate/ffimpact/scenes/two-discs.toml", tmp_path / "two.toml")
     path = write(tmp_path, 'scene = "two.toml"\ncollect = ["impulse"]\n[product]\n"body.1.position.1" = [0.05, -0.06]\n')
     wanted = sweep.load(str(path))
@@ -272,4 +285,5 @@ def test_a_refused_point_keeps_no_other(fake, tmp_path, capsys):
     said, rows = capsys.readouterr(), table(tmp_path / "plane")
     assert list(rows.exit) == [10, 0] and rows.contact_time.notna().tolist() == [False, True]
     assert "first: angle=60.0,symmetry=half: symmetry: half" in said.err and said.err.count("\n") == 1 and "failed, exit 10: angle=60.0,symmetry=half" in said.out
-    assert main(["sweep", str(write(tmp_path, 'scene = "two.toml"\n[product]\n"body.1.position.1" = [0.05, 0.06]\n')), "--list"]) == 10   # none is left
+    # No point is left.
+    assert main(["sweep", str(write(tmp_path, 'scene = "two.toml"\n[product]\n"body.1.position.1" = [0.05, 0.06]\n')), "--list"]) == 10

@@ -10,7 +10,8 @@ from tests.support.tubes import HEAD, run
 
 
 def test_a_tube_on_its_end_is_a_bar(tmp_path):
-    """nu = 0: it leaves with its speed after 2 h/c, within the stated errors; its mass is that by Pappus."""
+    """nu = 0: it leaves with its speed after 2 h/c, within the error estimates. Its mass is that of
+    Pappus' theorem."""
     found = run(tmp_path, 'shape = "tube"\nradius = 0.03\ninner_radius = 0.02\nheight = 0.1\nposition = [0, 0.0501]')
     error = found["estimated_error"]
     assert abs(found["restitution"] - 1) < error["rebound"] < 0.02
@@ -21,21 +22,22 @@ def test_a_tube_on_its_end_is_a_bar(tmp_path):
 
 
 def test_an_o_ring_has_the_mass_of_a_torus(tmp_path):
-    """2 pi R pi r^2, on curved elements; energy and momentum are kept."""
+    """The mass is 2 pi R pi r^2 times the density, on curved elements. Energy and momentum are
+    conserved."""
     found = run(tmp_path, 'shape = "torus"\nradius = 0.03\nsection = 0.01\nposition = [0, 0.0101]', nu=0.3)
     assert found["mass"] == pytest.approx(1000 * 2 * math.pi * 0.03 * math.pi * 0.01**2, rel=1e-3)
     assert found["energy_drift"] < 1e-9 and found["momentum_drift"] < 1e-10 and 0.5 < found["restitution"] < 1
 
 
 def test_a_ball_is_caught_by_a_ring(tmp_path):
-    """It falls on the ring's inner edge, which is round, and both are driven apart without overlap."""
+    """It falls on the round inner edge of the ring, and both are driven apart without overlap."""
     ball = '[[body]]\nshape = "ball"\nradius = 0.025\nposition = [0, 0.0445]\nvelocity = [0, -0.3]\n'
     found = run(tmp_path, 'shape = "torus"\nradius = 0.03\nsection = 0.01\nposition = [0, 0.0101]', nu=0.3, accuracy=0.1, beside=ball)
     assert found["energy_drift"] < 1e-8 and not any("overlap" in one for one in found["warnings"])
 
 
 def test_a_mesh_file_beside_the_axis(tmp_path):
-    """FreeFEM's .msh of a rectangle at x > 0: the same tube."""
+    """FreeFEM's .msh of a rectangle at x > 0 is the same tube."""
     n, m = 2, 12
     x, y = np.meshgrid(np.linspace(0.02, 0.03, n + 1), np.linspace(0, 0.1, m + 1), indexing="ij")
     number = np.arange((n + 1) * (m + 1)).reshape(n + 1, m + 1) + 1
@@ -58,7 +60,7 @@ def test_a_mesh_file_beside_the_axis(tmp_path):
     ('shape = "polygon"\nvertices = [[-0.01, 0], [0.03, 0], [0.03, 0.1]]', "body.1.vertices"),
     ('shape = "polygon"\nvertices = [[0.02, 0], [0.03, 0.1], [0.03, 0], [0.02, 0.1]]', "body.1.vertices")])
 def test_wrong_sections(tmp_path, capsys, entries, named):
-    """One line that names the entry, exit code 10."""
+    """One line with the entry, exit code 10."""
     file = tmp_path / "scene.toml"
     file.write_text(HEAD.format(nu=0.0, accuracy=0.1) + entries + "\nposition = [0, 0.1]\n")
     assert main(["run", str(file), "--out", str(tmp_path / "out")]) == 10
@@ -67,7 +69,7 @@ def test_wrong_sections(tmp_path, capsys, entries, named):
 
 
 def test_a_wall_too_thin_to_mesh_is_refused(tmp_path, capsys):
-    """At once, instead of a mesh of millions of elements."""
+    """The refusal is immediate, in place of a mesh of millions of elements."""
     scene = tmp_path / "thin.toml"
     scene.write_text('dimension = "axisymmetric"\nlaw = "neohookean"\nyoung = 7e6\nnu = 0.45\ndensity = 1000\n[[body]]\nshape = "shell"\nradius = 0.05\n'
                      'inner_radius = 0.0499999\nposition = 0.06\nvelocity = -1\n[[obstacle]]\nkind = "plane"\npoint = [0, 0]\nnormal = [0, 1]\n')

@@ -1,4 +1,5 @@
-"""make verify: the verdicts follow from the numbers, the table names the worst, the exit code says whether all pass."""
+"""make verify: the verdicts follow from the numbers, the table has the worst number, the exit code
+shows whether all pass."""
 
 import json
 import os
@@ -18,7 +19,7 @@ from verification.case import Row
 
 @pytest.fixture
 def cases(monkeypatch, fake):
-    """cases(case, ...): in the place of the real ones."""
+    """cases(case, ...): replaces the real cases."""
     return lambda *given: monkeypatch.setattr(verify, "CASES", given)
 
 
@@ -26,7 +27,8 @@ FINE = [("half: a", 0.2, 1.05, 1, 1), ("half: b", 0.2, 1e-9, 0), ("half: a", 0.1
 
 
 def test_all_pass(cases, tmp_path, capsys):
-    """Exit code 0, a table with a row a case, all numbers in verify.csv, a figure a case, and the page of the report."""
+    """Exit code 0, a table with a row for each case, all numbers in verify.csv, a figure for each
+    case, and the page of the report."""
     def beside(axes, folder):
         axes.plot([0, 1], [1, 0])
     cases(case(FINE, name="V1 space", beside=beside),
@@ -43,7 +45,7 @@ def test_all_pass(cases, tmp_path, capsys):
 
 
 def test_a_case_that_fails_is_named(cases, tmp_path, capsys):
-    """Exit code 1; its number, what was expected, and the tolerance; the page says so too."""
+    """Exit code 1 with the number, the expected value and the tolerance; also on the page."""
     cases(case(FINE), case([("depth", 2, 1.3, 1), ("depth", 1, 1.2, 1)], name="V9"))
     assert guarded(verify.main, ["--out", str(tmp_path)]) == 1
     out = capsys.readouterr().out
@@ -53,7 +55,7 @@ def test_a_case_that_fails_is_named(cases, tmp_path, capsys):
 
 
 def test_a_case_that_does_not_run_fails(cases, tmp_path, capsys):
-    """Its message takes the place of the numbers, the other cases are run."""
+    """Its message replaces the numbers, and the other cases run."""
     def broken(folder):
         yield Row("a", 1, 1, 1)
         raise Failure("rod.edp: exit code 8")
@@ -64,24 +66,27 @@ def test_a_case_that_does_not_run_fails(cases, tmp_path, capsys):
 
 
 def test_a_run_that_was_cut_short_leaves_no_verdict(cases, tmp_path):
-    """summary.json is of a finished verification only: the report then asks for it again."""
+    """summary.json belongs to a finished verification only: otherwise the report requires a new
+    one."""
     cases(case(FINE))
     assert guarded(verify.main, ["--out", str(tmp_path)]) == 0
     cases(case([], rows=lambda folder: 1 / 0))
     assert guarded(verify.main, ["--out", str(tmp_path)]) == 0, "what the same code has left is taken as it is"
     def stopped(folder):
-        os.kill(os.getpid(), signal.SIGINT)    # Ctrl-C, while the case runs
+        os.kill(os.getpid(), signal.SIGINT)  # Ctrl-C while the case runs
         yield from ()
     cases(case([], rows=stopped))
     assert guarded(verify.main, ["--force", "--out", str(tmp_path)]) == 130 and not (tmp_path / "summary.json").exists()
 
 
 def test_parts_run_side_by_side_in_one_order(cases, tmp_path):
-    """Two parts of a case run at the same time, in one folder; whichever ends first, verify.csv is that of one after the other."""
+    """Two parts of a case run simultaneously in one folder. Whichever ends first, verify.csv has
+    the order of sequential runs."""
     def part(name, other, value):
         def rows(folder):
             (folder / name).touch()
-            while not (folder / other).exists() and value > 0:   # the first ends only when the second has run
+            # The first part ends only after the second has run.
+            while not (folder / other).exists() and value > 0:
                 time.sleep(0.01)
             yield from (Row(name, size, value + size, value) for size in (0.2, 0.1))
         return rows
@@ -94,7 +99,7 @@ def test_parts_run_side_by_side_in_one_order(cases, tmp_path):
 
 
 def test_a_case_that_breaks_down_fails(cases, tmp_path, capfd):
-    """An error that nobody expects costs its case alone, which fails."""
+    """An unexpected error affects its case only, which fails."""
     cases(case([], name="V5", rows=lambda folder: 1 / 0), case(FINE))
     assert guarded(verify.main, ["--out", str(tmp_path)]) == 1
     out = capfd.readouterr().out

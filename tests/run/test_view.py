@@ -1,4 +1,4 @@
-"""The player of a run: one page without a network, looked at in a headless browser."""
+"""The player of a run: one page that needs no network, tested in a headless browser."""
 
 import io
 import re
@@ -54,7 +54,7 @@ def browser(tmp_path_factory):
 
 
 def test_a_page_is_small_and_needs_no_network(result, tmp_path):
-    """At most 5 MB for up to 60 states; nothing is loaded from elsewhere."""
+    """At most 5 MB for up to 60 states. The page loads nothing from elsewhere."""
     path = result.view(tmp_path / "impact.html")
     text = path.read_text("utf-8")
     assert path.stat().st_size < 5e6 and 3 < len(result.fields) <= 61
@@ -63,9 +63,9 @@ def test_a_page_is_small_and_needs_no_network(result, tmp_path):
 
 
 def test_the_picture_follows_slider_and_field(result, tmp_path, browser):
-    """Not blank; another picture at another state and with another field; the cursor moves."""
+    """The picture is not blank, and differs for another state and another field. The cursor moves."""
     browser.get(result.view(tmp_path / "impact.html").as_uri())
-    wait(browser, "return Number(document.body.dataset.state) > 0")  # that of the largest force
+    wait(browser, "return Number(document.body.dataset.state) > 0")  # state of the largest force
     move(browser, "state", 0)
     first, cursor = seen(browser), left(browser)
     last = len(result.fields.times) - 1
@@ -82,7 +82,7 @@ def test_the_picture_follows_slider_and_field(result, tmp_path, browser):
 
 
 def wait(browser, script, seconds=30):
-    """Until a script of the page returns true."""
+    """Waits until a script of the page returns true."""
     end = time.monotonic() + seconds
     while not browser.execute_script(script):
         assert time.monotonic() < end, script
@@ -90,7 +90,7 @@ def wait(browser, script, seconds=30):
 
 
 def move(browser, name, value):
-    """A control of the page set, as by hand."""
+    """Sets a control of the page as a user does."""
     script = (
         "const one = document.getElementById(arguments[0]); one.value = arguments[1];"
         "one.dispatchEvent(new Event('input')); one.dispatchEvent(new Event('change'));"
@@ -99,7 +99,7 @@ def move(browser, name, value):
 
 
 def left(browser):
-    """Where the cursor is in the figure [%]."""
+    """The position of the cursor in the figure [%]."""
     return float(
         browser.execute_script("return parseFloat(document.getElementById('cursor').style.left)")
     )
@@ -128,7 +128,7 @@ def test_the_command_writes_a_page(result, tmp_path, capsys):
 
 
 def test_energy_density_is_that_of_the_history(tmp_path):
-    """Summed over the reference area it is the elastic energy, to the error of its means."""
+    """Its integral over the reference area is the elastic energy, to the error of its means."""
     found = ff.run(drop(), accuracy=0.05, estimate=False, out=tmp_path / "run")
     history = found.history
     times = np.array(found.fields.times)

@@ -1,4 +1,5 @@
-"""nu -> 0.5 (edp/core/law/volume.idp): volume in the mean of an element, without locking, in scripts and kernels."""
+"""nu -> 0.5 (edp/core/law/volume.idp): volume as the mean over an element, without locking, in
+scripts and kernels."""
 
 import pytest
 
@@ -16,7 +17,8 @@ SCENES = {"disc": ("disc-plane", RUBBED), "svk": ("disc-plane", {"law": "svk", "
 @pytest.mark.few(1)
 @pytest.mark.parametrize("name", SCENES)
 def test_an_impact_keeps_energy_and_momenta(tmp_path, name):
-    """At nu = 0.4999 the balances close to 1e-9, with kernels as without; the summary says that volume is projected."""
+    """At nu = 0.4999 the balances close to 1e-9, with and without kernels. The summary has the
+    projected volume."""
     script, flags = SCENES[name]
     run, scripted = (disc(tmp_path / without, script, **IMPACT | flags, without=without) for without in ("none", "kernels"))
     summary = run.summary
@@ -27,7 +29,8 @@ def test_an_impact_keeps_energy_and_momenta(tmp_path, name):
 
 
 def test_up_to_nu_045_nothing_changes(tmp_path):
-    """The paper's nu: the same history to the byte as with all of lambda at points."""
+    """At the paper's nu the history is equal, byte by byte, to that with all of lambda at points.
+    """
     for volume in ("auto", "plain"):
         run = disc(tmp_path / volume, law="neohookean", nu=0.45, accuracy=0.3, volume=volume)
         assert run.summary["volume"] == "plain"
@@ -35,7 +38,10 @@ def test_up_to_nu_045_nothing_changes(tmp_path):
 
 
 def test_bodies_of_a_scene_each_have_theirs(tmp_path):
-    """Of two discs one is nearly incompressible, or has J = 1: energy and momenta stay, and the iterations of the first are as many as at nu = 0.45."""
+    """One of two discs is nearly incompressible or has J = 1: energy and momenta are constant.
+
+    The nearly incompressible disc takes as many iterations as nu = 0.45.
+    """
     def scene(nu, law="neohookean"):
         body = {"shape": "disc", "radius": 0.05, "law": "neohookean", "young": 7e6, "density": 1722.0}
         return {"accuracy": 0.2, "body": [body | {"name": "a", "position": [0, 0.051], "velocity": [0, -3], "nu": nu, "law": law},
@@ -49,7 +55,8 @@ def test_bodies_of_a_scene_each_have_theirs(tmp_path):
 
 
 def test_linear_elements_are_refused(tmp_path):
-    """An element of degree 1 has one volume: asked for by name it is an error, as is another name."""
+    """An element of degree 1 has one volume: its projection, if requested, is an error, as is an
+    unknown name."""
     with pytest.raises(BadInput, match="volume: 'mean' is not known"):
         describe({"volume": "mean"})
     with pytest.raises(Exception, match="volume: projected is of degree=2"):
@@ -62,7 +69,8 @@ HELD = {"law": "incompressible", "nu": 0.5, "accuracy": 0.1, "speed": 4}
 @pytest.mark.few(1)
 @pytest.mark.parametrize("name", SCENES)
 def test_incompressible_bodies_keep_their_volume(tmp_path, name):
-    """J = 1: the mean volume of every element stays to 1e-6, energy and momenta to 1e-9, with kernels as without."""
+    """J = 1: the mean volume of every element is constant to 1e-6, energy and momenta to 1e-9, with
+    and without kernels."""
     script, flags = SCENES[name]
     given = HELD | {"tolerance": 1e-14} | {key: value for key, value in flags.items() if key != "law"}
     run, scripted = (disc(tmp_path / without, script, **given, without=without) for without in ("none", "kernels"))
@@ -75,7 +83,8 @@ def test_incompressible_bodies_keep_their_volume(tmp_path, name):
 
 
 def test_snapshots_have_their_own_pressures(tmp_path):
-    """Of a body with J = 1: none before it touches, above 0 under the contact while it is pressed; -tr/3 of the stress."""
+    """The pressure of a body with J = 1 is zero before contact, positive near contact under load,
+    and -tr/3 of the stress."""
     disc(tmp_path, **HELD | {"fields": 5})
     shots = [vtu.read(path).fields for _, path in vtu.series(tmp_path / "fields.pvd")]
     assert all(shot["pressure"] == pytest.approx(-shot["cauchy_stress"][:, :3].sum(axis=1) / 3, rel=1e-6, abs=1e-3) for shot in shots)
@@ -84,7 +93,8 @@ def test_snapshots_have_their_own_pressures(tmp_path):
 
 
 def test_it_is_the_limit_of_nu(tmp_path):
-    """The answers of nu = 0.4999 go on to those of J = 1, in as many iterations, give or take a quarter."""
+    """The results for nu = 0.4999 tend to those of J = 1, with the same number of iterations to a
+    quarter."""
     held = disc(tmp_path / "held", **HELD | {"accuracy": 0.02}).summary
     near = disc(tmp_path / "near", **HELD | {"accuracy": 0.02, "law": "neohookean", "nu": 0.4999}).summary
     assert held["impulse"] == pytest.approx(near["impulse"], rel=1e-3) and held["rebound_vy"] == pytest.approx(near["rebound_vy"], rel=2e-3)
@@ -95,7 +105,10 @@ def test_it_is_the_limit_of_nu(tmp_path):
 @pytest.mark.parametrize("law, own, script", [("neohookean", "none", "disc-plane"), ("mooney-rivlin", "0.3", "disc-plane"),
                                               ("ogden", "1.3,0.6,5,0.4", "ball-axisymmetric")])
 def test_laws_with_j_1(tmp_path, law, own, script):
-    """nu = 0.5 is J = 1 of any law of J: volume and energy stay. In the plane the two invariants are then the same, and Mooney-Rivlin is neo-Hookean."""
+    """nu = 0.5 means J = 1 for any law of J: volume and energy are constant.
+
+    In the plane the two invariants are then equal, and Mooney-Rivlin is neo-Hookean.
+    """
     one = disc(tmp_path / "one", script, **HELD | {"law": law, "law_parameters": own}).summary
     assert one["volume_change"] < 1e-6 and one["energy_drift"] < 1e-9 and one["volume"] == "projected"
     if script == "disc-plane":
@@ -106,6 +119,7 @@ def test_laws_with_j_1(tmp_path, law, own, script):
 @pytest.mark.few(2)
 @pytest.mark.parametrize("flags", [{"nu": 0.4}, {"degree": 1}, {"volume": "plain"}, {"integrator": "newmark"}, {"integrator": "central-difference"}, {"law": "svk"}])
 def test_what_cannot_be_incompressible_is_refused(tmp_path, flags):
-    """One line that says what is accepted: nu = 0.5, a law of J, quadratic elements whose mean volume is held, the energy-momentum step."""
+    """One line with what is accepted: nu = 0.5, a law of J, quadratic elements with projected
+    volume, the energy-momentum step."""
     with pytest.raises(Exception, match="exit code 10.* 0.[45] .J = 1. of law = .*accepted: up to 0.4999, or 0.5 with any law but svk, degree = 2"):
         disc(tmp_path, **HELD | flags)

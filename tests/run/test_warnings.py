@@ -1,4 +1,5 @@
-"""Warnings and notes: each appears where its condition holds, with its number, and not where it does not; tables and reports show them."""
+"""Warnings and notes: each appears if its condition holds, with its number, and not otherwise;
+tables and reports show them."""
 
 import json
 import re
@@ -17,13 +18,16 @@ from verification import measure
 
 COARSE = dict(accuracy=0.1, mesh_size=0.02, contact_mesh_size=0.006, dt=5e-5)
 OBLIQUE = COARSE | dict(angle=60, law="neohookean", friction_static=0.7)
-LONG = dict(mesh_size=0.008, contact_mesh_size=0.006, dt=2e-5, penalty=1e10)   # its last touch is a grazing one
+# Its last contact is a grazing one.
+LONG = dict(mesh_size=0.008, contact_mesh_size=0.006, dt=2e-5, penalty=1e10)
 RELAXING = COARSE | dict(relaxation_modulus=1e6)
 DAMPED = COARSE | dict(integrator="backward-euler", accuracy=0.02)
 SPINS = COARSE | dict(speed=1, spin=60, angle=90, height=0.01, law="neohookean", accuracy=0.002, dt=1e-4, without="flight")
 STEEL = dict(young=2.1e11, nu=0.3, density=7850, speed=1)
 HELD = dict(accuracy=0.1, law="incompressible", nu=0.5)
-CASES = [   # name, flags with which it appears, flags with which it does not, a number it tells and what that is about
+# Name, flags with which it appears, flags with which it does not, a number in it and the bounds of
+# this number.
+CASES = [
     ("density", COARSE | dict(density=1.7), COARSE | dict(density=30, young=1e7), r"density: (\S+) kg/m3 beside young = 7e\+06 Pa, is it in g/cm3", (1.7, 1.7)),
     ("density", COARSE | STEEL | dict(density=7.85), COARSE | STEEL, r"sqrt\(E/rho\) is (\S+) m/s", (1.6e5, 1.7e5)),
     ("density", COARSE | dict(density=9, young=2e5), COARSE | dict(density=9, young=5e4, speed=1), r"density: (\S+) kg/m3", (9, 9)),
@@ -51,7 +55,7 @@ CASES = [   # name, flags with which it appears, flags with which it does not, a
 
 @pytest.fixture(scope="module")
 def disc(tmp_path_factory):
-    """The outcome of a run with these flags, each set once."""
+    """The outcome of a run with these flags. Each set runs once."""
     known = {}
 
     def go(flags: dict) -> measure.Outcome:
@@ -69,7 +73,8 @@ def found(outcome: measure.Outcome, name: str, kind: str = "warnings") -> list[s
 @pytest.mark.few(10)
 @pytest.mark.parametrize("name, bad, good, number, limits", CASES)
 def test_each_warning_appears_where_it_should_and_only_there(disc, name, bad, good, number, limits):
-    """One sentence that says what, how much, and what to do; none of that name where the condition does not hold. `message` is for failures."""
+    """There is one sentence with fact, number and advice, and none of this name if the condition
+    does not hold. `message` is for failures."""
     sentences = found(disc(bad), name)
     assert len(sentences) == 1 and ": take " in sentences[0] and not set(sentences[0]) & set('";'), sentences
     assert limits[0] <= float(re.search(number, sentences[0])[1]) <= limits[1], sentences[0]
@@ -83,13 +88,15 @@ NOTES = [("contact time", LONG, LONG | dict(accuracy=0.05), r"for the last (\S+)
 
 @pytest.mark.parametrize("name, bad, good, number, limits", NOTES)
 def test_what_is_always_so_of_a_number_is_a_note(disc, name, bad, good, number, limits):
-    """It has the number, is no warning, and names the number of the summary that it is a footnote of."""
+    """It has the number, is not a warning, and refers to the number of the summary whose footnote
+    it is."""
     sentence, = found(disc(bad), name, "notes")
     assert limits[0] <= float(re.search(number, sentence)[1]) <= limits[1], sentence
     assert found(disc(bad), name) == [] == found(disc(good), name, "notes") and disc(bad).summary[notes.number(sentence)] > 0
 
 
-# metal foam, expanded polystyrene, aerogel, metallic microlattice, diamond, beryllium, a soft gel in units of its own, tungsten
+# Metal foam, expanded polystyrene, aerogel, metallic microlattice, diamond, beryllium, a soft gel
+# in units of its own, tungsten.
 REAL = [(300, 1e9), (11, 3e6), (3, 1e4), (5, 5e4), (3500, 1.1e12), (1850, 2.9e11), (1, 1), (19300, 4.1e11)]
 
 
@@ -102,7 +109,8 @@ def test_real_materials_are_not_asked_about(disc, density, young):
 
 @pytest.mark.parametrize("name, names", [("disc-normal", []), ("disc-oblique-svk", ["ellipticity"]), ("ball-axisymmetric-svk", ["breakdown"])])
 def test_scenes_of_the_paper_have_no_warning_or_the_one_that_a_reader_must_know(tmp_path, name, names):
-    """Each as it is called first, with its estimate. The screen has a line of each sentence, with its mark at the number, and where the whole text is."""
+    """Each with its estimate and default settings. The screen has a line for each sentence, with
+    its mark at the number, and the place of the whole text."""
     result = run.run(scene.load(name), {"fields": 0}, tmp_path / "out")
     assert [notes.name(each) for each in result.summary["warnings"]] == names
     lines, whole = report.report(result).splitlines(), report.report(result, verbose=True)
@@ -115,7 +123,7 @@ def test_scenes_of_the_paper_have_no_warning_or_the_one_that_a_reader_must_know(
 
 
 def test_numbers_of_the_warnings_are_those_of_the_history(disc):
-    """Penetration, energy and ellipticity of the warnings are found again in history and summary."""
+    """Penetration, energy and ellipticity of the warnings agree with history and summary."""
     deep = disc(COARSE | dict(penalty=1e8))
     told = float(re.search(r"(\S+) % of the radius", found(deep, "penetration")[0])[1])
     assert told == pytest.approx(100 * deep.history["max_penetration"].max() / 0.05, rel=0.05)
@@ -123,7 +131,8 @@ def test_numbers_of_the_warnings_are_those_of_the_history(disc):
     told, h = float(re.search(r"off by (\S+) %", found(spins, "angular momentum")[0])[1]), spins.history
     flies = h["normal_force"].cumsum() == 0
     assert told == pytest.approx(100 * spins.summary["angular_momentum_drift"], rel=0.05)
-    assert told / 100 >= 1 - h["angular_momentum"][flies][-1] / h["angular_momentum"][0] > 1e-3   # about its centre nothing turns a disc without friction
+    # Without friction a disc cannot rotate about its centre.
+    assert told / 100 >= 1 - h["angular_momentum"][flies][-1] / h["angular_momentum"][0] > 1e-3
     damped = disc(DAMPED)
     told = float(re.search(r"lost (\S+) %", found(damped, "energy")[0])[1])
     assert told == pytest.approx(-100 * damped.history["balance"].min() / damped.summary["energy_initial"], rel=0.05)
@@ -139,8 +148,12 @@ def test_numbers_of_the_warnings_are_those_of_the_history(disc):
 
 @pytest.mark.parametrize("flags", [LONG, COARSE, COARSE | dict(height=1e-3), COARSE | dict(dt=3e-4), OBLIQUE | dict(slip_velocity=2)])
 def test_thresholded_contact_time(disc, flags):
-    """From the first to the last crossing of 1 % of the largest step mean of the normal force, linear between the middles of the
-    steps, or of the part of a step between touch and end; zero at the first and the last touch, so that it is inside the contact."""
+    """From the first to the last crossing of 1 % of the largest step mean of the normal force,
+    linear between the middles of the steps.
+
+    In steps that contain the onset or end of contact, the middle is that of the part in contact.
+    The force is zero at both, so that the time is within the contact.
+    """
     outcome = disc(flags)
     h, start = outcome.history, outcome.summary["contact_start"]
     end = start + outcome.summary["contact_time"]
@@ -158,7 +171,8 @@ def test_thresholded_contact_time(disc, flags):
 
 
 def test_contact_that_is_not_over_is_measured_to_the_end(disc):
-    """At an end_time in the middle of the contact, both contact times end there; nothing is said of the last touch."""
+    """At an end_time during contact both contact times end there. There is no sentence about the
+    end of contact."""
     outcome = disc(COARSE | dict(end_time=2e-3))
     assert outcome.summary["contact_time"] == pytest.approx(2e-3 - outcome.summary["contact_start"], rel=1e-9)
     assert 0.95 * 2e-3 < outcome.summary["thresholded_contact_time"] <= 2e-3 and found(outcome, "contact time") == []
@@ -166,19 +180,22 @@ def test_contact_that_is_not_over_is_measured_to_the_end(disc):
 
 @pytest.mark.parametrize("speed, gravity", [(8, 0), (8, 9.81), (0, 9.81)])
 def test_an_impact_that_is_not_over_is_named_under_gravity_too(disc, speed, gravity):
-    """At the end_time it is in contact, and the force far above the weight; what lies on the plane is as it should be."""
+    """At the end_time the body is in contact, and the force is far above the weight. A body that
+    lies on the plane is not reported."""
     assert bool(found(disc(COARSE | dict(speed=speed, gravity=gravity, end_time=2e-3)), "not over")) == (speed > 0)
 
 
 def test_no_contact_no_contact_time(disc):
-    """A flight has neither contact time, and no warning; nor has one whose energy is less than the round-off of its balance."""
+    """A flight has neither contact time nor this warning; nor has one whose energy is below the
+    round-off of its balance."""
     assert [each.split(":")[0] for each in disc(COARSE | dict(speed=0, spin=1e-13, height=1, end_time=1e-3)).summary["warnings"]] == ["no contact"]
     outcome = disc(COARSE | dict(height=1, end_time=1e-3))
     assert outcome.summary["contact_time"] is outcome.summary["thresholded_contact_time"] is None and [each.split(":")[0] for each in outcome.summary["warnings"]] == ["no contact"]
 
 
 def test_direct_run_prints_its_warnings(tmp_path):
-    """Lines `warning` and `note` at the end of what FreeFem++ prints: what is so, of the sentences of summary.json."""
+    """FreeFem++ prints lines `warning` and `note` at its end, with the fact of the sentences in
+    summary.json."""
     process = freefem.find().call("edp/disc-plane.edp", "-accuracy", "0.1", "-penalty", "1e8", "-out", str(tmp_path / "out"), timeout=120)
     for kind, least in (("warning", 2), ("note", 1)):
         said, told = re.findall(rf"^{kind} +(.*)$", process.stdout, re.MULTILINE), results.read_summary(tmp_path / "out")[f"{kind}s"]
@@ -187,7 +204,7 @@ def test_direct_run_prints_its_warnings(tmp_path):
 
 
 def test_the_report_shows_them_and_figures_do_not(tmp_path):
-    """A line each in the report; pictures are the same, whatever the warnings are."""
+    """The report has a line for each. Figures do not depend on the warnings."""
     result = run.run(scene.load("disc-normal"), dict(penalty=1e8, accuracy=0.1, fields=0), tmp_path / "out", estimate=False)
     told, lines = result.summary["warnings"], report.report(result).splitlines()
     assert len(told) > 1 and [line for line in lines if line.startswith("  warning ")] == [notes.line("  warning   ", each) for each in told]
@@ -198,7 +215,8 @@ def test_the_report_shows_them_and_figures_do_not(tmp_path):
 
 
 def test_tables_have_a_column_of_them(tmp_path, capsys):
-    """Sweeps: the column `warnings` of sweep.csv joins the sentences with "; "; the printed report counts them by name."""
+    """Sweeps: the column `warnings` of sweep.csv joins the sentences with "; ". The printed report
+    counts them by name."""
     (tmp_path / "soft.toml").write_text('scene = "disc-normal"\n[set]\naccuracy = 0.1\nfields = 0\n[product]\npenalty = [1e8, 1e10]\n')
     assert sweep.main([str(tmp_path / "soft.toml"), "--out", str(tmp_path / "out")]) == 0
     rows = pd.read_csv(tmp_path / "out/sweep.csv", keep_default_na=False)

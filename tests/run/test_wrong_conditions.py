@@ -1,4 +1,5 @@
-"""Supports and loads that cannot be: every wrong entry is named in one line, with what is accepted; the exit code is 10."""
+"""Invalid supports and loads: every wrong entry is reported in one line with what is accepted; exit
+code 10."""
 
 import pytest
 
@@ -112,7 +113,8 @@ def test_what_is_wrong_is_named(tmp_path, capsys, name):
 
 
 def test_symmetry_that_a_support_or_load_breaks_is_refused(tmp_path, capsys):
-    """Half or a quarter of a body in space only where its supports and loads are mirror images of themselves."""
+    """Half or a quarter of a body in space is possible only if its supports and loads are
+    symmetric."""
     box = {"name": "box", "shape": "box", "width": 0.1, "height": 0.1, "depth": 0.1, "position": [0, 0, 0]}
     for word, more, said in (
             ("quarter", {"support": [{"where": "left"}]}, "'box' has a support that is not its own mirror image in the plane x = 0 (accepted: auto|full|half)"),

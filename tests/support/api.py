@@ -1,4 +1,4 @@
-"""Shared by the tests of api."""
+"""Helpers that the modules test_api.py share."""
 
 import ffimpact as ff
 
@@ -6,7 +6,7 @@ RUBBER = ff.NeoHookean(young=7e6, nu=0.45, density=1722)
 
 
 def drop(**entries) -> ff.Scene:
-    """A disc 1 mm above the floor."""
+    """A scene with a disc 1 mm above the floor."""
     disc = ff.Disc(radius=0.05, material=RUBBER, position=(0, 0.051), velocity=(0, -8))
     return ff.Scene(
         bodies=[disc], obstacles=[ff.Plane()], contact=ff.Contact(friction_static=0.3), **entries

@@ -1,4 +1,5 @@
-"""The Python interface from a scene to a sweep, as a reader types it, in cells of a notebook; coarse, so that it is quick."""
+"""The Python interface from a scene to a sweep, as a user types it in the cells of a notebook;
+coarse, hence fast."""
 
 SCENE = """
 import ffimpact as ff

@@ -1,4 +1,4 @@
-"""Shared by the tests of bodies."""
+"""Helpers that the modules test_bodies.py share."""
 
 import copy
 

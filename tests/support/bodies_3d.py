@@ -1,4 +1,4 @@
-"""Shared by the tests of bodies_3d."""
+"""Helpers that the modules test_bodies_3d.py share."""
 
 import math
 
@@ -17,10 +17,11 @@ def read(*tables: dict, obstacles=(FLOOR,), folder=SCENES, **top) -> Scene:
     return read_scene(SCENE | top | {"body": [{"position": [0, 0, 0]} | table for table in tables], "obstacle": list(obstacles)}, folder, "scene")
 
 
-# ---- what is round in a file
+# ---- recognition of round surfaces in a file
 
 def prism(corners: int, path) -> None:
-    """A prism of radius 0.05 and height 0.08 along y in Medit's format, whose vertices but that in the middle all lie on one sphere."""
+    """Writes a prism of radius 0.05 and height 0.08 along y in Medit's format. All vertices but the
+    central one lie on one sphere."""
     turn = 2 * math.pi * np.arange(corners) / corners
     points = np.vstack([[[0, 0, 0]], *(np.column_stack([0.05 * np.cos(turn), np.full(corners, y), 0.05 * np.sin(turn)]) for y in (-0.04, 0.04))])
     k = np.arange(corners)

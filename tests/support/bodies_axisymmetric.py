@@ -1,4 +1,4 @@
-"""Shared by the tests of bodies_axisymmetric."""
+"""Helpers that the modules test_bodies_axisymmetric.py share."""
 
 import math
 
@@ -15,7 +15,8 @@ def read(*tables: dict, obstacles=(FLOOR,), folder=SCENES, **top) -> Scene:
 
 # ---- shapes
 
-SHAPES = {   # volume
+# The volume of each shape.
+SHAPES = {
     "ball": ({"shape": "ball", "radius": 0.3}, 4 / 3 * math.pi * 0.027),
     "ellipsoid": ({"shape": "ellipsoid", "semi_axes": [0.3, 0.1]}, 4 / 3 * math.pi * 0.009),
     "cylinder": ({"shape": "cylinder", "radius": 0.2, "height": 0.5}, math.pi * 0.02),

@@ -1,4 +1,4 @@
-"""Shared by the tests of checkpoint."""
+"""Helpers that the modules test_checkpoint.py share."""
 
 import signal
 import subprocess
@@ -19,14 +19,14 @@ EFFORT = ("start_seconds", "wall_seconds", "total_seconds", "cpu_seconds", "esti
 
 
 def direct(flags: dict, out: Path, script: str = "disc-plane") -> subprocess.Popen:
-    """FreeFem++ without Python."""
+    """Starts FreeFem++ without Python."""
     program = freefem.find()
     return subprocess.Popen(program.words(f"edp/{script}.edp", *freefem.words_of(flags | {"out": out})), cwd=parameters.ROOT, text=True,
                             env=program.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
 
 def rows_known(checkpoint: Path) -> int:
-    """Rows of the history that the checkpoint knows; 0 where there is none yet."""
+    """The number of rows of the history in the checkpoint; 0 if there is none yet."""
     try:
         return int(checkpoint.read_bytes().split(b"\n", 1)[0] or 0)
     except FileNotFoundError:
@@ -34,7 +34,7 @@ def rows_known(checkpoint: Path) -> int:
 
 
 def kill_at(process: subprocess.Popen, checkpoint: Path, rows: int) -> None:
-    """kill -9 once the checkpoint knows so many rows."""
+    """Sends kill -9 when the checkpoint has this number of rows."""
     end = time.monotonic() + 60
     while rows_known(checkpoint) < rows:
         assert process.poll() is None, "it ended before it could be killed"
@@ -46,8 +46,12 @@ def kill_at(process: subprocess.Popen, checkpoint: Path, rows: int) -> None:
 
 
 def assert_same(folder: Path, straight: Path) -> None:
-    """Histories and summaries agree to round-off, 1e-12 of the largest value of a column (the balance is itself round-off:
-    of the energy); snapshots to their 9 digits."""
+    """Asserts that histories and summaries agree to round-off, 1e-12 of the largest value of a
+    column.
+
+    For the balance, which is itself round-off, it is 1e-12 of the energy. Snapshots agree to their
+    9 digits.
+    """
     there, expected = results.read_history(folder), results.read_history(straight)
     assert list(there) == list(expected)
     for name, column in expected.items():

@@ -1,4 +1,4 @@
-"""Shared by the tests of cli."""
+"""Helpers that the modules test_cli.py share."""
 
 import signal
 import subprocess
@@ -12,7 +12,7 @@ ROOT = parameters.ROOT
 
 
 def hear_interrupts() -> None:
-    """In a child: a shell's background job has SIGINT ignored, and hands that on."""
+    """In a child process: resets SIGINT, which background jobs of a shell ignore and inherit."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 

@@ -1,4 +1,4 @@
-"""Shared by the tests of direct."""
+"""Helpers that the modules test_direct.py share."""
 
 import subprocess
 from pathlib import Path

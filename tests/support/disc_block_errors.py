@@ -1,4 +1,4 @@
-"""Shared by the tests of disc_block_errors."""
+"""Helpers that the modules test_disc_block_errors.py share."""
 
 import pandas as pd
 
@@ -12,7 +12,7 @@ RUN = MASSES | {"exit": 0, "message": "", "rebound_vy_1": 2.0, "rebound_vy_2": -
 
 
 def tables(monkeypatch, tmp_path, *changes: dict) -> pd.DataFrame:
-    """The table of one case of runs at two accuracies and a reference, with these changes in turn."""
+    """The table of one case: runs at two accuracies and a reference, with these changes in turn."""
     runs = [RUN | change for change in (*changes, *[{}] * (3 - len(changes)))]
     monkeypatch.setattr(study, "study", lambda points, folder, *_: pd.DataFrame(runs[2:] if folder.name == "finer" else runs[:2]))
     monkeypatch.setattr(block, "read_scene", lambda _: {"radius": 0.5, "mesh_size": 0.1, "contact_mesh_size": 0.02, "dt": 0.0, "penalty": 1e9, "slip_velocity": 0.05,

@@ -1,4 +1,4 @@
-"""Shared by the tests of end_to_end."""
+"""Helpers that the modules test_end_to_end.py share."""
 
 import os
 import subprocess

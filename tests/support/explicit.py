@@ -1,4 +1,4 @@
-"""Shared by the tests of explicit."""
+"""Helpers that the modules test_explicit.py share."""
 
 
 

@@ -1,7 +1,8 @@
-"""Stands in for FreeFem++ in the tests: same flags, same files, same exit codes, no physics.
+"""A substitute for FreeFem++ in tests: the same flags, files and exit codes, without physics.
 
-FAKE decides what happens: ok (default), silent (exit 0, no summary), nan, step (11), material (12), crash, plugin,
-slow (a minute), brief (half a second), old, ten, noplugin. Every start for a run adds a line to the file FAKE_COUNT.
+The variable FAKE selects the behaviour: ok (default), silent (exit 0, no summary), nan, step (11),
+material (12), crash, plugin, slow (a minute), brief (half a second), old, ten, noplugin. Every
+start for a run adds a line to the file FAKE_COUNT.
 """
 
 import json
@@ -15,13 +16,15 @@ from pathlib import Path
 
 COLUMNS = ("t dt normal_force friction_force kinetic elastic contact friction_work external_work balance momentum_x momentum_y "
            "angular_momentum vx vy spin max_penetration contact_size sliding_fraction min_jacobian min_stretch newton_iterations min_ellipticity")
-REAL = os.environ.get("FAKE_REAL") or shutil.which("FreeFem++")   # what scenes are made of is no physics: it says that
+# The real FreeFem++ describes scenes, which needs no physics.
+REAL = os.environ.get("FAKE_REAL") or shutil.which("FreeFem++")
 BANNERS = {"old": '{"version": "4.6"}', "ten": '-- FreeFem++ v4.10 (date - git no git)\n{"version": "4.1"}'}
 ENERGY, MASS, SPEED, CONTACT = 432.8, 13.525, 8.0, 4.67e-3
 
 
 def write_history(folder: Path, rows: int = 200, bad: bool = False) -> None:
-    """A bounce: half a sine of force, with waves on it, and energies that add up to ENERGY."""
+    """Writes the history of a bounce: half a sine of force with waves, and energies that add up to
+    ENERGY."""
     vy, dt = -SPEED, CONTACT / (rows - 10)
     lines = [COLUMNS.replace(" ", ",")]
     for i in range(rows):
@@ -41,7 +44,8 @@ def write_history(folder: Path, rows: int = 200, bad: bool = False) -> None:
 
 
 def write_fields(folder: Path, count: int) -> None:
-    """Snapshots of half a disc of quadratic triangles (fan of rings) that is squeezed and released."""
+    """Writes snapshots of half a disc of quadratic triangles (fan of rings) that is compressed and
+    released."""
     (folder / "fields").mkdir(exist_ok=True)
     rings, sectors, radius = 12, 24, 0.05
     points = [(radius * i / (2 * rings) * math.sin(math.pi * j / (2 * sectors)),
@@ -86,7 +90,8 @@ def _write_vtu(path: Path, points, cells, displacement, stress) -> None:
 
 
 def write_scene(folder: Path, values: dict[str, str]) -> None:
-    """scene.toml as the scripts write it, every parameter as used; the snapshots are of half a disc."""
+    """Writes scene.toml as the scripts do, with the used value of every parameter. The snapshots
+    show half a disc."""
     flags = [word for name, text in values.items() for word in (f"-{name}", text)]
     answer = subprocess.run([REAL, "-nw", "-ne", "-v", "0", "edp/describe.edp", *flags], capture_output=True, text=True)
     used = json.loads(answer.stdout)["used"] | {"symmetry": "half"}
@@ -94,7 +99,7 @@ def write_scene(folder: Path, values: dict[str, str]) -> None:
 
 
 def summary(status: str = "ok", message: str = "") -> dict:
-    """summary.json without provenance."""
+    """The content of summary.json without provenance."""
     return dict(status=status, message=message, warnings=[], contact_time=CONTACT, contact_intervals=1, peak_force=70e3, impulse=208.2,
                 rebound_vx=0.0, rebound_vy=7.394, rebound_spin=0.0, energy_initial=ENERGY, energy_final=ENERGY, vibration_energy=60.0,
                 friction_work=0.0, energy_drift=1e-11, momentum_drift=1e-12, min_jacobian=0.8, min_stretch=0.7,
@@ -134,7 +139,8 @@ def main(arguments: list[str]) -> int:
         (folder / "failure.json").write_text(json.dumps(summary(mode, message)))
         print(f"ffimpact: {message}", file=sys.stderr)
         return code
-    if mode == "chatter":       # its output stops in the middle of a line, as that of a full buffer does
+    if mode == "chatter":
+        # The output stops in the middle of a line, as that of a full buffer does.
         print("progress 0.5 t=", end="", flush=True)
         print("ffimpact: chatter", file=sys.stderr)
         return 11

@@ -1,4 +1,4 @@
-"""Shared by the tests of files."""
+"""Helpers that the modules test_files.py share."""
 
 from ffimpact.mesh import mesh
 
@@ -19,7 +19,8 @@ def solid(file: str, **entries) -> dict:
 
 
 def write_step(path, radius: float = 0.0) -> None:
-    """A STEP file of a box of 100 x 60 x 40 mm, its edges rounded by fillets of a radius [mm]."""
+    """Writes a STEP file of a box of 100 x 60 x 40 mm, with edges rounded by fillets of this radius
+    [mm]."""
     with mesh.gmsh_session() as gmsh:
         occ = gmsh.model.occ
         box = occ.addBox(0, 0, 0, 100, 60, 40)

@@ -1,4 +1,4 @@
-"""Shared by the tests of flights."""
+"""Helpers that the modules test_flights.py share."""
 
 from pathlib import Path
 

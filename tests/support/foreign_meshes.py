@@ -1,4 +1,4 @@
-"""Shared by the tests of foreign_meshes."""
+"""Helpers that the modules test_foreign_meshes.py share."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -11,18 +11,20 @@ from ffimpact.running import run
 RADIUS, DENSITY = 0.05, 1722.0
 # ---- bodies
 
-SIZE = 0.008                # of the elements of other shapes [m]
+# Element size of other shapes [m].
+SIZE = 0.008
 SETTINGS = {"law": "neohookean", "penalty": 1e9, "speed": 4, "fields": 0, "dt": 4e-5}
 
 
 def go(out: Path, m: mesh.Mesh, **values) -> results.Record:
-    """A run of disc-normal with these values on this mesh; the file is beside the folder."""
+    """A run of disc-normal with these values on this mesh. The mesh file is beside the result
+    folder."""
     mesh.write(m, out.with_suffix(".msh"))
     return run.run(scene.load("disc-normal"), SETTINGS | values, out, mesh_file=out.with_suffix(".msh"), estimate=False)
 
 
 def shaped(draw, size: float = SIZE) -> mesh.Mesh:
-    """The mesh of what draw(gmsh.model.occ) makes, all outlines of which may touch."""
+    """The mesh of the shape that draw(gmsh.model.occ) makes. All outlines may come into contact."""
     with mesh.gmsh_session() as gmsh:
         gmsh.option.setNumber("Mesh.MeshSizeMax", size)
         draw(gmsh.model.occ)

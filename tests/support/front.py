@@ -1,4 +1,4 @@
-"""Shared by the tests of front."""
+"""Helpers that the modules test_front.py share."""
 
 from ffimpact import scene
 
@@ -22,7 +22,7 @@ normal = [0, 1]
 
 
 def given(text: str, tmp_path, **entries) -> scene.Scene:
-    """The scene of a text with some entries set, by dotted names with two underscores for a dot."""
+    """The scene of a text with some entries set. In names two underscores stand for a dot."""
     path = tmp_path / "scene.toml"
     path.write_text(text)
     return scene.load(str(path)).override({name.replace("__", "."): value for name, value in entries.items()})

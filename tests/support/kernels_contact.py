@@ -1,4 +1,4 @@
-"""Shared by the tests of kernels_contact."""
+"""Helpers that the modules test_kernels_contact.py share."""
 
 
 

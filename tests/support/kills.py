@@ -1,10 +1,10 @@
-"""Shared by the tests of kills."""
+"""Helpers that the modules test_kills.py share."""
 
 from pathlib import Path
 
 
 def at_work(out: Path) -> list[int]:
-    """The processes that have this folder among their words."""
+    """The numbers of the running processes with this folder in their command line."""
     found = []
     for place in Path("/proc").glob("[0-9]*"):
         try:

@@ -1,10 +1,11 @@
-"""Shared by the tests of loads."""
+"""Helpers that the modules test_loads.py share."""
 
 import numpy as np
 
 FLOOR = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}
 SOFT = {"law": "neohookean", "young": 1e6, "nu": 0.3, "density": 1000, "accuracy": 0.1}
-RADIUS, WALL = 0.05, 0.002   # m, of the middle of thin rings and shells
+# Mean radius and thickness of thin rings and shells [m].
+RADIUS, WALL = 0.05, 0.002
 THIN = {"law": "svk", "young": 1e7, "nu": 0.0, "density": 1000, "accuracy": 0.05}
 
 
@@ -14,7 +15,8 @@ def energy(history: dict) -> np.ndarray:
 
 
 def assert_exact(run) -> None:
-    """Energy with all works to 1e-9 of the largest, momenta to 1e-8."""
+    """Asserts that the energy with all works is balanced to 1e-9 of its largest value, and momenta
+    to 1e-8."""
     assert abs(run.history["balance"]).max() < 1e-9 * energy(run.history).max()
     assert run.summary["momentum_drift"] < 1e-8 and (run.summary["angular_momentum_drift"] or 0) < 1e-8
 

@@ -1,4 +1,4 @@
-"""Shared by the tests of malformed."""
+"""Helpers that the modules test_malformed.py share."""
 
 import os
 import re
@@ -8,7 +8,7 @@ from ffimpact.__main__ import main
 from ffimpact.freefem import freefem
 from ffimpact.input import parameters
 
-LONG = "x" * 300                        # longer than a name may be
+LONG = "x" * 300  # longer than a name may be
 NO_NUMBERS = ["x", "8x", "--8", "+-8", "1e", "e5", "1e+", ".", "-", "8.", "0x10", "nan", "inf", "-inf", "1,5", "1 2", "1_000", "８", "٣.٥", "½",
               "8\n9", "true", "[8]", "$(touch pwned)", "`touch pwned`", "'; touch pwned; '", '"', "\\", "8" * 5000]
 RANGES = [("young", "0"), ("young", "1e30"), ("nu", "0.5"), ("nu", "0.51"), ("nu", "-0.1"), ("density", "0"), ("density", "-1722"), ("radius", "0"), ("radius", "1e30"),
@@ -19,7 +19,8 @@ RANGES = [("young", "0"), ("young", "1e30"), ("nu", "0.5"), ("nu", "0.51"), ("nu
 WORDS = [("law", "hooke"), ("law", "SVK"), ("law", "svk|neohookean"), ("law", " "), ("law", "svk\n"), ("law", "'; touch pwned; '"), ("symmetry", "third"),
          ("integrator", "euler"), ("breakdown", "ignore"), ("regularization", "Linear"), ("without", "everything")]
 NAMES = ["sped", "SPEED", "spéed", "out2", "velocity", "speed ", "young's"]
-SENSELESS = {   # what is accepted by itself, but not together: these reach the scripts
+# Values that are accepted individually, but not together. The scripts check these.
+SENSELESS = {
     "speed: 0 without spin, gravity or body force": {"speed": "0"}, "symmetry: half": {"angle": "60", "symmetry": "half"},
     "symmetry: half needs": {"spin": "1", "symmetry": "half"}, "mesh_size: 0.06 is larger than the radius 0.05": {"mesh_size": "0.06"},
     r"mesh_size: 0\.06 is larger than the radius": {"contact_mesh_size": "0.06"}, "contact_mesh_size: 0.02 is larger than mesh_size 0.01": {"mesh_size": "0.01", "contact_mesh_size": "0.02"},
@@ -41,18 +42,18 @@ def check(code: int, error: str, words: str, wanted: int, before: set[str]) -> N
     assert re.match(rf"ffimpact: .*(?:{words})", error) and error.endswith("\n"), error
     lines = error.splitlines()
     assert len(lines) < 25 and all(line.startswith("ffimpact: ") for line in lines), error
-    assert "8" * 201 not in error and max(map(len, lines)) < 2500  # of a value
+    assert "8" * 201 not in error and max(map(len, lines)) < 2500  # length of a value
     assert tree(Path.cwd()) == before
 
 
 def by_python(capsys, words: str, *arguments: str, code: int = 10) -> None:
-    """The command line, in this process."""
+    """Runs the command line in this process."""
     before = tree(Path.cwd())
     check(main(list(arguments)), capsys.readouterr().err, words, code, before)
 
 
 def directly(words: str, *flags: str, code: int = 10) -> str:
-    """FreeFem++ without Python; what it says."""
+    """Runs FreeFem++ without Python and returns its message."""
     before = tree(Path.cwd())
     process = freefem.find().call(parameters.ROOT / "edp/disc-plane.edp", *flags, cwd=None, timeout=20)
     check(process.returncode, process.stderr, words, code, before)
@@ -60,18 +61,18 @@ def directly(words: str, *flags: str, code: int = 10) -> str:
 
 
 def in_a_scene(capsys, words: str, text: str | bytes, code: int = 10) -> None:
-    """A scene file."""
+    """Runs a scene file."""
     Path("scene.toml").write_bytes(text if isinstance(text, bytes) else text.encode())
     by_python(capsys, words, "run", "scene.toml", "--out", "a/out", code=code)
 
 
-# ---- values, over all three routes
+# ---- values, by all three interfaces
 
 VALUES = [("speed", text) for text in NO_NUMBERS] + RANGES + WORDS
 
 
 def special(kind: str) -> str:
-    """A path on which reading or writing would hang, loop or fail."""
+    """Makes a path on which reading or writing would block, loop or fail."""
     if kind == "pipe":
         os.mkfifo("pipe")
     if kind == "loop":
@@ -87,9 +88,10 @@ def special(kind: str) -> str:
 
 
 INPUTS = ("pipe", "loop", "dangling", "folder", "device", "long", "below a file", "nowhere")
-# ---- words of the command line
+# ---- arguments of the command line
 
-FLAGS = {   # what FreeFem++ gets, what the line names
+# The arguments of FreeFem++ and the text that the message contains.
+FLAGS = {
     ("speed=8",): "'speed=8'", ("8",): "'8'", ("-",): "'-'", ("",): "''", ("--", "-speed", "8"): "'8'", ("-speed", "8", "9"): "'9'", ("-8",): "'-8'", ("=",): "'='",
     ("-speed",): "speed: a value is missing", ("-law",): "law: a value is missing", ("-speed", ""): "speed: the value is empty", ("-out", ""): "out: the value is empty",
     ("-speed", "8", "-speed", "8"): "speed: given twice", ("-out", "a", "-out", "b"): "out: given twice", ("-speed", "-nu", "0.4"): "'0.4'",

@@ -1,4 +1,4 @@
-"""Shared by the tests of meetings."""
+"""Helpers that the modules test_meetings.py share."""
 
 from pathlib import Path
 

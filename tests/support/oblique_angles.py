@@ -1,4 +1,4 @@
-"""Shared by the tests of oblique_angles."""
+"""Helpers that the modules test_oblique_angles.py share."""
 
 import math
 
@@ -6,11 +6,12 @@ import pandas as pd
 
 from benchmarks import oblique_angles as angles
 
-SLIDES, STICKS = 20.0, 60.0      # degrees, at a friction of 0.3
+SLIDES, STICKS = 20.0, 60.0  # degrees, for a friction coefficient of 0.3
 
 
 def rows(psi_2=None, e=1.0, **given) -> pd.DataFrame:
-    """A run of each body and kind at SLIDES and STICKS that does what the theory of its kind says; `given` replaces columns."""
+    """A run of each body and kind at SLIDES and STICKS with the result of its theory. `given`
+    replaces columns."""
     table = []
     for body, inertia in angles.INERTIA.items():
         for kind in angles.KINDS:

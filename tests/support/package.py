@@ -1,4 +1,4 @@
-"""Shared by the tests of package."""
+"""Helpers that the modules test_package.py share."""
 
 import tomllib
 from pathlib import Path
@@ -9,7 +9,7 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
 
 
 def packed() -> dict[str, Path]:
-    """What pyproject.toml puts into site-packages: the name there, and the file."""
+    """The files that pyproject.toml installs into site-packages, by the name in site-packages."""
     tools = PROJECT["tool"]["setuptools"]
     found = {}
     for package in tools["packages"]:

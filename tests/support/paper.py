@@ -1,9 +1,9 @@
-"""Shared by the tests of paper."""
+"""Helpers that the modules test_paper.py share."""
 
 import numpy as np
 import pandas as pd
 
-import examples.paper.paper  # noqa: F401  it fills STATEMENTS
+import examples.paper.paper  # noqa: F401  the import fills STATEMENTS
 from examples.paper.judging import AGREES, DIFFERS, OPEN, PARTLY, STATEMENTS
 from tests.support.paper_results import (
     BLOCK,
@@ -29,14 +29,14 @@ from tests.support.paper_results import (
 FIND = {find.__name__: find for _, _, find in STATEMENTS}
 
 
-# ---- what is changed in the results; `SAME` changes nothing
+# ---- changes of the results; `SAME` changes nothing
 
 def SAME(given):
-    """The results as they are."""
+    """Leaves the results unchanged."""
 
 
 def of(kind, *names, **changes):
-    """Entries of summaries, scenes, histories of runs or columns of tables, changed."""
+    """Changes entries of summaries, scenes, histories of runs or columns of tables."""
     def change(given):
         for name in names:
             given[kind][name] = given[kind][name].assign(**changes) if kind == "table" else given[kind][name] | changes
@@ -44,7 +44,7 @@ def of(kind, *names, **changes):
 
 
 def impacts(*laws, meshes=(0, 1), **changes):
-    """The histories of the oblique impact with these laws, on these meshes."""
+    """Changes the histories of the oblique impact with these laws, on these meshes."""
     def change(given):
         for law in laws:
             given["histories"][jump(law)] = [each | changes if k in meshes else each for k, each in enumerate(given["histories"][jump(law)])]
@@ -52,7 +52,7 @@ def impacts(*laws, meshes=(0, 1), **changes):
 
 
 def blocks(*names, **changes):
-    """The disc on the block: columns of the history or numbers of the summary."""
+    """Changes columns of the history or numbers of the summary of the disc on the block."""
     def change(given):
         for name in names or ("disc-block", "disc-block-neohookean"):
             given["history"][name] = BLOCK | {key: value for key, value in changes.items() if key in BLOCK}
@@ -61,14 +61,14 @@ def blocks(*names, **changes):
 
 
 def curve(name, times, error=1e-5, **columns):
-    """A sweep over the speed."""
+    """Replaces a sweep over the speed."""
     def change(given):
         given["table"][name] = speeds(times, error).assign(**columns)
     return change
 
 
 def rows(name, where, **changes):
-    """The rows of a table that `where` (a query) chooses."""
+    """Changes the rows of a table that `where` (a query) selects."""
     def change(given):
         table = given["table"][name]
         for column, value in changes.items():
@@ -77,7 +77,7 @@ def rows(name, where, **changes):
 
 
 def tabulated(law, factor, panel="b"):
-    """A tabulated friction law, scaled where it sticks."""
+    """Scales the sticking part of a tabulated friction law."""
     def change(given):
         table = given["laws"]
         table.loc[(table.panel == panel) & (table.law == law) & (table.side == "stick"), "ratio"] *= factor
@@ -85,28 +85,28 @@ def tabulated(law, factor, panel="b"):
 
 
 def tabulated_all(law, factor):
-    """A tabulated friction law, scaled."""
+    """Scales a tabulated friction law."""
     def change(given):
         given["laws"].loc[(given["laws"].panel == "b") & (given["laws"].law == law), "ratio"] *= factor
     return change
 
 
 def searched(**columns):
-    """The search of sliding and sticking."""
+    """Changes the search of sliding and sticking."""
     def change(given):
         given["stick-slip"] = given["stick-slip"].assign(**columns)
     return change
 
 
 def summaries(key, *ends):
-    """The summaries of a sweep's point, plain and refined."""
+    """Replaces the summaries of a point of a sweep, plain and refined."""
     def change(given):
         given["summaries"][key] = list(ends)
     return change
 
 
 def costs(speeds=(1, 10), **counts):
-    """What the neo-Hookean runs of figure 7 took."""
+    """Changes the counts of the neo-Hookean runs of figure 7."""
     def change(given):
         for speed in speeds:
             given["summaries"][forces("neohookean", speed)] = [each | counts for each in given["summaries"][forces("neohookean", speed)]]
@@ -114,31 +114,31 @@ def costs(speeds=(1, 10), **counts):
 
 
 def histories(key, *runs):
-    """The histories of a sweep's point, plain and refined."""
+    """Replaces the histories of a point of a sweep, plain and refined."""
     def change(given):
         given["histories"][key] = list(runs)
     return change
 
 
 def modes(frequencies):
-    """The natural modes of the disc, all with one energy."""
+    """Replaces the natural modes of the disc by modes of equal energy."""
     def change(given):
         given["modes"] = pd.DataFrame({"mode": range(1, 1 + len(frequencies)), "frequency": frequencies, "energy": 1.0})
     return change
 
 
 def printed(end, width="auto"):
-    """What (14), (15) as printed come to."""
+    """Replaces the results of (14), (15) as printed."""
     return summaries(pairs("pairwise-printed", width), end, end)
 
 
 def maps(query="nu > 0", **changes):
-    """The runs of all maps of contact times with these k."""
+    """Changes the runs of all maps of contact times with these k."""
     return both(*(rows(name, query, **changes) for name in ("calibrate", OBLIQUE, MAP, SOLID)))
 
 
 def both(*changes):
-    """One change after the other."""
+    """Makes one change after the other."""
     def change(given):
         for each in changes:
             each(given)
@@ -154,10 +154,12 @@ BALL, BALL_NEO = "ball-axisymmetric-svk", "ball-axisymmetric"
 TWICE = {"contact_intervals": 2.0}
 MAP, SOLID, OBLIQUE = "calibrate-ball", "calibrate-ball-3d", "calibrate-oblique"
 ONE_K = both(rows("calibrate", "nu > 0", contact_time=4.8e-3), rows(OBLIQUE, "penalty == 1e9", contact_time=4.5e-3),
-             rows(MAP, "penalty == 1e9", contact_time=6.03e-3), rows(SOLID, "penalty == 1e9", contact_time=6.03e-3))   # all numbers at k = 1e9
+             # All contact times at k = 1e9.
+             rows(MAP, "penalty == 1e9", contact_time=6.03e-3), rows(SOLID, "penalty == 1e9", contact_time=6.03e-3))
 LOSES = summaries(jump("svk"), END, END)
 WAVES = histories(jump("svk"), waves(2000), waves(2000))
-# name of the statement: (what is changed, verdict, words of the finding); the first line is of the results as they are
+# Cases by the name of the statement: (change, verdict, words of the finding). The first case has
+# the unchanged results.
 CASES = {
     "friction_laws": [(SAME, AGREES, "φ³ with v/(2ε) 0e+00"), (tabulated("linear-printed", 2), DIFFERS, "φ³ with v/(2ε) 5e-01"), (tabulated("sqrt", 0.99), DIFFERS, ""),
                       (tabulated("tanh", 0.99), DIFFERS, ""), (tabulated("linear", 0.5, "c"), DIFFERS, "")],

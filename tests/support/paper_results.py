@@ -1,4 +1,5 @@
-"""Results of the paper's cases made up for the tests of its verdicts: small, complete, and held in memory."""
+"""Artificial results of the paper's cases for tests of the verdicts: small, complete and in memory.
+"""
 
 from copy import deepcopy
 
@@ -8,21 +9,23 @@ import pandas as pd
 from examples.paper import judging as paper_judging
 from ffimpact.report.friction_laws import VALUES
 
-# An impact of eleven steps of contact and a flight after it: two maxima of the force, everything slides in its first two steps
+# An impact of eleven steps in contact and a flight after it. The force has two maxima; everything
+# slides in the first two steps.
 IMPACT = {"t": np.arange(14) * 4e-4, "dt": np.full(14, 4e-4), "normal_force": [0, 2, 5, 3, 6, 5, 6, 7, 6, 4, 2, 1, 0, 0],
           "sliding_fraction": [0, 1, 1, 0.1, 0.9, 0.1, 0.9, 0.1, 0.9, 0.1, 0.9, 0, 0, 0], "contact": np.zeros(14),
           "elastic": [0, 100, 300, 250, 400, 450, 500, 550, 400, 300, 200, 100, 100, 100], "vx": np.linspace(6, 2.6, 14), "spin": np.linspace(0, -130, 14)}
 IMPACT["kinetic"] = np.array([900, 890, 880, 870, 860] + [850] * 9) - IMPACT["elastic"]
-SMOOTH = IMPACT | {"sliding_fraction": [0, 1, 1, 0.8, 0.6, 0.4, 0.2, 0, 0, 0, 0, 0, 0, 0]}   # the control: equal coefficients
+# The control with equal coefficients.
+SMOOTH = IMPACT | {"sliding_fraction": [0, 1, 1, 0.8, 0.6, 0.4, 0.2, 0, 0, 0, 0, 0, 0, 0]}
 END = {"contact_time": 4.51e-3, "thresholded_contact_time": 4.48e-3, "dofs": 304, "ellipticity_lost_time": 1e-4, "breakdown_time": None, "rebound_vx": 3.0, "rebound_vy": 8.7,
        "energy_drift": 2e-11, "cpu_seconds": 2.0, "steps": 100, "newton_iterations": 300, "factorizations": 20, "estimated_error": {"rebound": 0.002}}
 KEPT = END | {"ellipticity_lost_time": None}
 SPACE = KEPT | {"contact_time": 5e-3, "thresholded_contact_time": 4.8e-3, "impulse": 14.2, "rebound_vy": 7.8, "estimated_error": {"impulse": 2e-4, "rebound": 4e-4, "thresholded_contact_time": 4e-3}}
-# Bodies of 10 kg/m that a force throws back
+# Bodies of 10 kg/m that rebound under a force.
 PUSH = {"t": np.arange(5) * 1e-3, "dt": np.full(5, 1e-3), "normal_force": np.array([0, 50e3, 80e3, 20e3, 0])}
 PUSH["momentum_y"] = -80 + np.cumsum(PUSH["normal_force"] * 1e-3)
 PUSH["vy"] = PUSH["momentum_y"] / 10
-# A disc of 1000 kg/m on a block of 20000 kg/m: three steps of contact, one of flight
+# A disc of 1000 kg/m on a block of 20000 kg/m: three steps in contact, one in flight.
 BLOCK = {"t": [0, 0.01, 0.02, 0.03, 0.04], "normal_force": [0, 5, 5, 5, 0], "vy_1": [-10, -5, 1, 4, 4], "vy_2": [0, -0.25, -0.55, -0.7, -0.7],
          "kinetic_1": [50e3, 20e3, 5e3, 9e3, 8e3], "elastic_1": [0, 10e3, 5e3, 1e3, 2e3], "kinetic_2": [0, 10e3, 20e3, 25e3, 20e3],
          "elastic_2": [0, 9e3, 19e3, 15e3, 20e3], "kinetic": [50e3, 30e3, 25e3, 34e3, 28e3], "elastic": [0, 19e3, 24e3, 16e3, 22e3], "contact": [0, 1e3, 1e3, 0, 0]}
@@ -31,9 +34,11 @@ BLOCK_END = {"mass_1": 1000.0, "mass_2": 20000.0, "energy_initial": 50e3, "vibra
 DISC = {"radius": 0.05, "young": 7e6, "density": 1722, "speed": 8.0}
 
 
-# Friction and normal force [N] on 10 kg at steps of 20 and 5 us: the first jumps once, or does not, the second is smooth
+# Friction and normal force [N] on 10 kg for steps of 20 and 5 us. The friction force jumps once or
+# not at all, the normal force is smooth.
 def slips(height, n):
-    """The history of n steps of contact of 1 ms and one before: the friction force falls by `height` in one step."""
+    """The history of n steps in a contact of 1 ms and one step before it. The friction force falls
+    by `height` in one step."""
     t = np.arange(n + 1) / n
     history = {"t": 1e-3 * t, "dt": np.full(n + 1, 1e-3 / n), "normal_force": 10 + 100 * t, "friction_force": 10 * t - height * (t > 0.5), "momentum_y": -80 + 0 * t, "vy": -8 + 0 * t}
     history["normal_force"][0] = 0
@@ -41,14 +46,15 @@ def slips(height, n):
 
 
 def waves(frequency):
-    """The history of 200 steps of contact of 4.4 ms, whose force is a push with waves of a frequency [Hz]."""
+    """The history of 200 steps in a contact of 4.4 ms. The force is half a sine with waves of a
+    frequency [Hz]."""
     t = np.arange(201) * 2.2e-5
     force = np.maximum(np.sin(np.pi * t / 4.4e-3) * (1 + 0.3 * np.sin(2 * np.pi * frequency * t)), 0)
     return {"t": t, "dt": np.full(201, 2.2e-5), "normal_force": force}
 
 
 JUMPS, SLIDES = ([slips(height, n) for n in (50, 200)] for height in (200.0, 0.0))
-# By the disc on the block
+# Results of the disc on the block.
 NEAR = {"rebound_vy_1": 5.0, "rebound_vy_2": -0.75, "impulse_y_1": 15e3, "mass_1": 1000.0, "contact_intervals": 1, "peak_force": 1e6, "warnings": [], "cpu_seconds": 2.0,
         "phase_seconds": {"search": 0.1}, "ellipticity_lost_time": None}
 CHATTERS = NEAR | {"contact_intervals": 30, "peak_force": 2e6, "rebound_vy_1": 4.95}
@@ -56,12 +62,16 @@ LEAKS = CHATTERS | {"warnings": ["range: points slip through between each other"
 
 
 class Memory(paper_judging.Results):
-    """Results from dictionaries: summaries, histories and scenes by run; tables by sweep; of its runs histories and summaries, plain and
-    refined, by (sweep, what they are chosen by)."""
+    """Results from dictionaries: summaries, histories and scenes by run; tables by sweep.
+
+    Histories and summaries of the runs of a sweep, plain and refined, are stored by (sweep,
+    selected values).
+    """
 
     def __init__(self, folder, given):
         super().__init__(folder)
-        self.given, self.read = given, set()          # read: the folders of what was asked for
+        # read: the folders that were read.
+        self.given, self.read = given, set()
 
     def summary(self, name):
         self.read.add(self.run(name))
@@ -106,7 +116,7 @@ def _arrays(history):
 
 
 def key(name, **values):
-    """Under which a sweep's histories and summaries are kept."""
+    """The key of the histories and summaries of a sweep."""
     return (name, *sorted(values.items()))
 
 
@@ -147,7 +157,7 @@ def laws() -> pd.DataFrame:
 
 
 def base() -> dict:
-    """Results in which the verdicts are those of the first line of each statement's cases."""
+    """Results that give the verdict of the first case of each statement."""
     both = ("svk", "neohookean")
     rebound = {"rebound_vx": 3.0, "rebound_vx_error": 0.01, "rebound_vy": 8.7, "rebound_vy_error": 0.0, "contact_time": 4.1e-3, "contact_time_error": 3e-5, "exit": 0}
     given = {
@@ -182,11 +192,13 @@ def base() -> dict:
             "slip-limit": pd.DataFrame({"slip_velocity": [3.0, 1, 0.1, 0.01], "exit": 0, "rebound_vx": [3.3, 3.1, 3.04, 3.03], "rebound_vx_error": 0.02,
                                         "friction_work": [60.0, 50, 45, 44.5], "friction_work_error": 1.0}),
             "pairing": pd.DataFrame({"pairing_range": ["auto", 0.049]}),
-            # the stiffer the shorter; the finer mesh's are 0.1 ms longer; with k = 1e9 all lose ellipticity
+            # Stiffer contacts are shorter. On the finer mesh contacts are 0.1 ms longer. With k =
+            # 1e9 all runs lose ellipticity.
             "calibrate-oblique": pd.DataFrame([{"angle": angle, "nu": nu, "penalty": k, "mesh_size": h, "exit": 0, "contact_time": time + 1e-4 * (h == 0.008) + 2e-4 * (angle == 30),
                                                 "breakdown_time": np.nan, "ellipticity_lost_time": 1e-4 if k == 1e9 else np.nan}
                                                for angle in (60.0, 30.0) for nu in (0.3, 0.45) for k, time in ((3e8, 5e-3), (1e9, 4.7e-3), (1e10, 4.3e-3)) for h in (0.01, 0.008)]),
-            # softer contacts last longer; with the stiff one, and on the finest mesh with each, ellipticity is lost
+            # Softer contacts are longer. Ellipticity is lost with the stiff contact, and on the
+            # finest mesh with all.
             "calibrate-ball": pd.DataFrame([{"nu": nu, "penalty": k, "mesh_size": h, "exit": 0, "contact_time": time + 100 * (0.3 - nu) * 1e-6, "breakdown_time": np.nan,
                                              "ellipticity_lost_time": 2e-3 if h == 0.01 or k == 1e9 else np.nan}
                                             for nu in (0.3, 0.45) for k, time in ((3e8, 6.1e-3), (5e8, 6.031e-3), (1e9, 5.8e-3)) for h in (0.0175, 0.015, 0.01)]),

@@ -1,4 +1,4 @@
-"""Shared by the tests of report_figures."""
+"""Helpers that the modules test_report_figures.py share."""
 
 import numpy as np
 
@@ -7,7 +7,8 @@ SCENE = dict(script="disc-plane", law="svk", young=7e6, nu=0.45, density=1722, r
 
 
 def history(**given) -> dict[str, np.ndarray]:
-    """A contact of 4 ms, 1 ms of flight after it, in steps of 0.05 ms, the first row just before the touch."""
+    """A contact of 4 ms and 1 ms of flight after it, in steps of 0.05 ms. The first row is just
+    before contact."""
     t = np.linspace(5e-5, 5e-3, 100)
     none = np.zeros_like(t)
     force = np.where(t < 4e-3, 1e4 * np.sin(np.pi * t / 4e-3), 0)

@@ -1,4 +1,4 @@
-"""Shared by the tests of rest."""
+"""Helpers that the modules test_rest.py share."""
 
 import pytest
 
@@ -12,7 +12,11 @@ def weight(volume: float) -> float:
 
 
 def rests(found, force: float) -> None:
-    """It ended at rest: the contact bears the weight to the accuracy, momentum is exact and the balance of all energies closed."""
+    """Asserts that a run ended at rest.
+
+    The contact force equals the weight to the accuracy, momentum is exact, and the balance of all
+    energies closes.
+    """
     assert found.summary["ended"] == "rest" and found.summary["status"] == "ok"
     assert found.history["normal_force"][-1] == pytest.approx(force, rel=ACCURACY)
     assert found.summary["energy_drift"] < 1e-9 and found.summary["momentum_drift"] < 1e-7

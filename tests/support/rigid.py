@@ -1,4 +1,4 @@
-"""Shared by the tests of rigid."""
+"""Helpers that the modules test_rigid.py share."""
 
 import json
 
@@ -25,7 +25,7 @@ penalty = 1e7
 
 
 def run(tmp_path, text: str, name: str = "scene", **more):
-    """Summary and history of a scene."""
+    """Runs a scene and returns its summary and history."""
     file = tmp_path / f"{name}.toml"
     file.write_text(text)
     out = tmp_path / name

@@ -1,4 +1,4 @@
-"""Shared by the tests of run."""
+"""Helpers that the modules test_run.py share."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Shared by the tests of self_contact."""
+"""Helpers that the modules test_self_contact.py share."""
 
 from pathlib import Path
 
@@ -15,7 +15,7 @@ PIN = {"name": "pin", "shape": "polygon", "vertices": [[0, 0], [0.1, 0], [0.1, 0
        "position": [0, 0.0151], "velocity": [0, -6], "mesh_size": 0.009, "contact_mesh_size": 0.009}
 RING = {"name": "ring", "shape": "ring", "radius": 0.05, "inner_radius": 0.044, "position": [0, 0.0501], "velocity": [0, -8], "mesh_size": 0.006, "contact_mesh_size": 0.006}
 DISC = {"name": "disc", "shape": "disc", "radius": 0.01, "mesh_size": 0.005, "contact_mesh_size": 0.005}
-# a box with a slot in it, which a peg closes
+# A box with a slot, which a peg closes.
 WIDE, HIGH, SLOT_WIDE, SLOT_HIGH = 0.08, 0.02, 0.06, 0.004
 CORNERS = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]]
 BOX = {"name": "box", "shape": "polygon", "position": [0, 0],
@@ -33,8 +33,10 @@ def read(given: dict, folder: Path = Path()):
 
 
 def box_file(folder: Path, contact: str = "") -> dict:
-    """The box as a file of gmsh, with a physical curve `contact` of all curves, of the outer ones,
-    or without any."""
+    """Writes the box as a gmsh file. Returns its tables.
+
+    The physical curve `contact` contains all curves, or the outer ones, or does not exist.
+    """
     with mesh.gmsh_session() as gmsh:
         occ = gmsh.model.occ
         outer = occ.addRectangle(-WIDE / 2, -HIGH / 2, 0, WIDE, HIGH)
@@ -56,7 +58,7 @@ def box_file(folder: Path, contact: str = "") -> dict:
 
 
 def slot_of(found) -> np.ndarray:
-    """The least height of the slot in every snapshot, away from its ends."""
+    """The smallest height of the slot in every snapshot, away from its ends."""
     def wall(side: int):
         return lambda x, y: (abs(y - side * SLOT_HIGH / 2) < 1e-9) & (abs(x) < 0.45 * SLOT_WIDE)
     return distances(found, wall(1), wall(-1))
@@ -71,7 +73,11 @@ def ran(tmp_path, given: dict, name: str = "run"):
 
 
 def distances(found, of, to) -> np.ndarray:
-    """Of every snapshot, the least height of nodes of the reference set `of` above the polygon through those of `to`, which is over every x once."""
+    """The smallest height of the nodes of the reference set `of` above the polygon through those of
+    `to`, for every snapshot.
+
+    The polygon covers every x once.
+    """
     least = []
     for _, path in vtu.series(found.folder / "fields.pvd"):
         seen = vtu.read(path)

@@ -1,4 +1,4 @@
-"""Shared by the tests of solid."""
+"""Helpers that the modules test_solid.py share."""
 
 
 

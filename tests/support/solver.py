@@ -1,4 +1,4 @@
-"""Shared by the tests of solver."""
+"""Helpers that the modules test_solver.py share."""
 
 from ffimpact import scene
 from ffimpact.output import results

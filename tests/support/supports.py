@@ -1,4 +1,4 @@
-"""Shared by the tests of supports."""
+"""Helpers that the modules test_supports.py share."""
 
 import numpy as np
 

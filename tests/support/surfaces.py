@@ -1,4 +1,4 @@
-"""Shared by the tests of surfaces."""
+"""Helpers that the modules test_surfaces.py share."""
 
 import json
 from pathlib import Path
@@ -28,7 +28,7 @@ friction_static = 0.3
 
 
 def stl(path: Path, points: np.ndarray, triangles: np.ndarray) -> Path:
-    """Writes an ASCII STL."""
+    """Writes an ASCII STL file."""
     with open(path, "w") as file:
         file.write("solid one\n")
         for corners in points[triangles]:
@@ -40,14 +40,14 @@ def stl(path: Path, points: np.ndarray, triangles: np.ndarray) -> Path:
 
 
 def slab(path: Path, size=(200.0, 50.0, 200.0)) -> Path:
-    """A box with its top at y = 0."""
+    """Writes a box with its top at y = 0."""
     corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 0) for z in (-1, 1)]) * size
     quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
     return stl(path, corners, np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]))
 
 
 def sphere(path: Path, radius: float, splits: int) -> Path:
-    """An octahedron, its triangles split again and again, on a sphere about (0, -radius, 0)."""
+    """Writes a sphere about (0, -radius, 0): an octahedron whose triangles are split repeatedly."""
     points = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0], [0, -1, 0], [0, 0, -1]], dtype=float)
     corners = np.array([points[[i, j, k]] if ((i > 2) + (j > 2) + (k > 2)) % 2 == 0 else points[[i, k, j]]
                         for i in (0, 3) for j in (1, 4) for k in (2, 5)])

@@ -1,4 +1,4 @@
-"""Shared by the tests of sweep."""
+"""Helpers that the modules test_sweep.py share."""
 
 from pathlib import Path
 

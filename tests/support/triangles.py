@@ -1,4 +1,5 @@
-"""What tests measure of triangles, of meshes and of snapshots, and half a body made whole."""
+"""Areas and angles of the triangles of meshes and snapshots, and the mirror image of half a body.
+"""
 
 import numpy as np
 
@@ -6,13 +7,13 @@ from ffimpact.mesh import mesh
 
 
 def areas(m) -> np.ndarray:
-    """Of the triangles; counter-clockwise ones above 0."""
+    """The areas of the triangles; those of counter-clockwise triangles are positive."""
     (ax, ay), (bx, by), (cx, cy) = (m.points[m.triangles[:, k]].T for k in range(3))
     return ((bx - ax) * (cy - ay) - (cx - ax) * (by - ay)) / 2
 
 
 def smallest_angle(m) -> float:
-    """In degrees."""
+    """The smallest angle of the triangles in degrees."""
     corners, angles = m.points[m.triangles], []
     for k in range(3):
         u, v = corners[:, (k + 1) % 3] - corners[:, k], corners[:, (k + 2) % 3] - corners[:, k]
@@ -21,7 +22,7 @@ def smallest_angle(m) -> float:
 
 
 def whole_of(half: mesh.Mesh) -> mesh.Mesh:
-    """A half body and its mirror image in the line x = 0: no edge is left on the axis."""
+    """A half body with its mirror image in the line x = 0. No edge is left on the axis."""
     on_axis = abs(half.points[:, 0]) < 1e-12
     number = np.where(on_axis, np.arange(len(half.points)), len(half.points) + np.cumsum(~on_axis) - 1)
     outline = half.edges[half.labels != mesh.AXIS]

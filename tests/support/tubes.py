@@ -1,4 +1,4 @@
-"""Shared by the tests of tubes."""
+"""Helpers that the modules test_tubes.py share."""
 
 import json
 

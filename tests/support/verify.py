@@ -1,4 +1,4 @@
-"""Shared by the tests of verify."""
+"""Helpers that the modules test_verify.py share."""
 
 from verification.case import Case, Row
 

@@ -39,7 +39,8 @@ def test_entries_are_set_by_dotted_names():
 
 
 def test_an_entry_set_to_none_is_left_to_the_program():
-    """Of a scene, of a body and of contact; a component of a vector cannot be."""
+    """Entries of a scene, of a body and of contact become automatic. A component of a vector cannot
+    be None."""
     changed = drop(accuracy=0.02).set({"accuracy": None, "contact.friction_static": None})
     assert changed.accuracy is None and changed.contact == ff.Contact()
     with pytest.raises(ff.BadInput, match="body.1.velocity"):
@@ -53,7 +54,7 @@ def test_a_body_may_be_given_as_the_table_of_a_file():
 
 
 def test_all_that_is_wrong_with_a_scene_is_told_at_once():
-    """A line each, whatever table it is in."""
+    """The message has a line for each error, in whatever table it is."""
     given = drop().table()
     given["body"][0] |= {"radius": -1, "velocty": [0, 1], "position": [0, "x"]}
     given["obstacle"][0] |= {"exponent": 2}
@@ -142,7 +143,7 @@ def test_the_command_prints_the_schema(capsys):
 
 
 def test_help_lists_the_entries_with_their_units():
-    """A notebook shows the constructor's entries, what they mean, and which are needed."""
+    """A notebook shows the entries of the constructor, their meaning, and which are required."""
     told = inspect.signature(ff.Disc).parameters
     assert "[m]" in told["radius"].annotation and told["radius"].default is inspect.Parameter.empty
     assert told["material"].default is None and "[m/s]" in told["velocity"].annotation

@@ -1,4 +1,4 @@
-"""Scenes of one's own: what a file says becomes bodies, one mesh and a data file; whatever is wrong in it is named in one line."""
+"""Scenes from files: bodies, one mesh and a data file. Every error is reported in one line."""
 
 import math
 import os
@@ -18,7 +18,7 @@ from tests.support.bodies import FLOOR, SCENE, SQUARE, changed, read, with_body
 
 
 def test_bodies_lie_where_the_file_says():
-    """position is the centre of area, angle turns about it counter-clockwise."""
+    """`position` is the centre of area, and `angle` rotates the body about it counter-clockwise."""
     body = read(with_body(shape="polygon", vertices=[[5, 5], [7, 5], [7, 6], [5, 6]], position=[1, 2], angle=90)).bodies[0]
     assert sorted(map(tuple, body.placed.loops[0].corners.round(12))) == [(0.5, 1.0), (0.5, 3.0), (1.5, 1.0), (1.5, 3.0)]
     assert body.placed.area_centre == pytest.approx([1, 2])
@@ -27,19 +27,20 @@ def test_bodies_lie_where_the_file_says():
 @pytest.mark.parametrize("entries, velocity", [({"velocity": [1, -2]}, [1, -2]), ({"speed": 3, "direction": -90}, [0, -3]),
                                                ({"speed": 2, "direction": 30}, [math.sqrt(3), 1]), ({}, [0, 0])])
 def test_velocity_or_speed_and_direction(entries, velocity):
-    """direction is measured counter-clockwise from x; right angles are exact."""
+    """`direction` is measured counter-clockwise from x. Right angles are exact."""
     assert read(with_body(shape="disc", radius=1, **entries)).bodies[0].velocity == pytest.approx(velocity, rel=1e-15, abs=0)
 
 
 def test_material_comes_from_the_body_or_from_the_top():
-    """What a body does not say of its material the top of the file says."""
+    """Material entries that a body does not have come from the top of the file."""
     first, second = read(changed(("body.2.young", 1e9), ("body.2.law", "neohookean"))).bodies
     assert (first.law, first.young, first.nu, first.density) == ("svk", 7e6, 0.45, 1722)
     assert (second.law, second.young, second.nu, second.density) == ("neohookean", 1e9, 0.45, 1722)
 
 
 def test_the_radius_of_a_body_is_half_its_thickness():
-    """The size rule's radius: that of a disc, half the height of a block, no more than the wall of a ring."""
+    """The radius of the size field is that of a disc, half the height of a block, and at most the
+    wall thickness of a ring."""
     def thickness(**entries):
         return read(with_body(**entries)).bodies[0].outline.half_thickness
     assert thickness(shape="disc", radius=0.5) == pytest.approx(0.5, rel=1e-5)
@@ -48,7 +49,8 @@ def test_the_radius_of_a_body_is_half_its_thickness():
 
 
 def test_a_segment_of_a_circle_has_its_area_and_centre():
-    """A half disc as a loop of arcs and a straight side, either way round: area and centre of the closed forms."""
+    """Area and centre of a half disc, a loop of arcs and a straight side in either direction, agree
+    with closed forms."""
     angles = np.linspace(0, math.pi, 8)
     corners = np.column_stack([np.cos(angles), np.sin(angles)]) + [3, 4]
     hubs = np.where(np.arange(8)[:, None] < 7, [3.0, 4.0], math.nan)
@@ -58,7 +60,8 @@ def test_a_segment_of_a_circle_has_its_area_and_centre():
 
 
 def test_mesh_files_that_cannot_be_used_are_named(tmp_path):
-    """Half a body, a file that is no mesh and one that is not there: the entry, the file and what is accepted."""
+    """Half a body, a file without a mesh and a missing file: the message has the entry, the file
+    and what is accepted."""
     mesh.write(mesh.disc(0.05, 0.02, 0.01, True), tmp_path / "half.msh")
     (tmp_path / "text.msh").write_text("no mesh")
     (tmp_path / "empty.msh").write_text("0 0 0\n")
@@ -71,8 +74,11 @@ def test_mesh_files_that_cannot_be_used_are_named(tmp_path):
 
 
 def test_open_values_follow_the_scripts_rule():
-    """auto penalty: that of a disc of the softest body's material and the smallest radius at the largest closing speed; friction_dynamic
-    follows friction_static; what is given stays."""
+    """The automatic penalty is that of a disc with the material of the softest body and the
+    smallest radius at the largest closing speed.
+
+    `friction_dynamic` follows `friction_static`. Prescribed values do not change.
+    """
     asked = []
 
     def rule(values):
@@ -96,7 +102,8 @@ def test_a_file_is_named_with_what_is_wrong_in_it(tmp_path):
 # ---- entries by dotted names
 
 def test_entries_are_set_by_name():
-    """Dotted names, counted from 1, reach every entry, also one that is not there yet; the scene itself stays as it was."""
+    """Dotted names, counted from 1, reach every entry, also a missing one. The scene itself does
+    not change."""
     scene = read(SCENE | {"obstacle": [FLOOR]})
     other = scene.override({"body.2.young": "2e6", "body.1.velocity.2": -5, "contact.penalty": 1e8, "gravity": 9.81, "obstacle.1.point": "[0, -2]"})
     assert other.bodies[1].young == 2e6 and list(other.bodies[0].velocity) == [0, -5]
@@ -125,7 +132,8 @@ def test_names_that_reach_nothing_are_named(name, words):
 # ---- polygons
 
 def test_plane_geometry():
-    """Distances are signed and exact for a circle and a polygon; a polygon that crosses itself is found."""
+    """Distances are signed and exact for a circle and a polygon. A polygon that crosses itself is
+    detected."""
     disc = ellipse_loop(2, 2)
     assert disc.gap(np.array([[0, 0], [3, 4], [0, 2]])) == pytest.approx([-2, 3, 0])
     square = np.array(SQUARE, dtype=float)
@@ -136,7 +144,8 @@ def test_plane_geometry():
 
 @pytest.mark.parametrize("file", ["\0", "folder", "pipe"])
 def test_a_mesh_that_is_no_file(file, tmp_path):
-    """A folder, a pipe that nobody writes to, a name that no file has: refused at once, by name."""
+    """A folder, a pipe without a writer and an impossible name are refused at once, with the name.
+    """
     (tmp_path / "folder").mkdir()
     os.mkfifo(tmp_path / "pipe")
     with pytest.raises(BadInput, match=r"^body.1.file: '.*' is no file"):
@@ -144,29 +153,30 @@ def test_a_mesh_that_is_no_file(file, tmp_path):
 
 
 def test_a_broken_mesh_file_is_named_as_given(tmp_path):
-    """The message has the user's name of the file, and no other, and what is accepted."""
+    """The message has the user's name of the file only, and what is accepted."""
     (tmp_path / "mine.msh").write_text("3 1 3\n0 0")
     with pytest.raises(BadInput, match="^body.1.file: mine.msh is no mesh .accepted: a 2D mesh as FreeFEM's savemesh or gmsh writes it, .msh"):
         read_scene(SCENE | {"body": [dict(shape="mesh", file="mine.msh", position=[0, 1])]}, tmp_path, "mine")
 
 
 def test_a_sliver_is_refused_by_its_thickness():
-    """A polygon thinner than any length that is accepted."""
+    """A polygon thinner than any accepted length is refused."""
     with pytest.raises(BadInput, match=r"^body.1: is 1e-12 m thick \(accepted: from 2e-09 m\)"):
         read(with_body(shape="polygon", vertices=[[0, 0], [1, 0], [1, 1e-12]]))
 
 
-# ---- written down
+# ---- writing
 
 def odd_texts(count: int) -> list[str]:
-    """Texts of characters that files trip over, drawn at random, the first of all control characters."""
+    """Random texts of characters that are difficult in files. The first has all control characters.
+    """
     rng = np.random.default_rng(20)
     odd = [*map(chr, range(0x80)), *"\x80\x85\xa0\u2028\u2029\ufeff\ufffd\U0001f600ß中", '"""', "'''", "\r\n", "\\u0041", "]]", " # ", " = "]
     return ["".join(map(chr, range(0xa1))), *("".join(rng.choice(odd, rng.integers(0, 12))) for _ in range(count))]
 
 
 def test_what_toml_accepts_is_written_back():
-    """Whatever a TOML file can say is written so that it reads, as the same."""
+    """Everything that a TOML file can contain is written so that it reads back equal."""
     texts = odd_texts(400)
     said = {text: [text, 1e-300, -0.0, True, 10**30, [[], [1.5, "x"]], math.inf] for text in texts}
     said |= {"table": {text: text for text in texts}, "list": [{"a": text, "b": {text: {}}} for text in texts], "none": [], "mixed": [{"a": "\x7f"}, 1]}

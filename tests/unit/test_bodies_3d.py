@@ -1,4 +1,5 @@
-"""Scenes of bodies in three dimensions: shapes and their distances, meshes, files, symmetry, what is refused, and runs."""
+"""Scenes of bodies in three dimensions: shapes and distances, meshes, files, symmetry, refused
+input, and runs."""
 
 import math
 
@@ -14,7 +15,8 @@ from tests.support.bodies_3d import BALL, BLOCK, FLOOR, read
 
 # ---- shapes
 
-SHAPES = {   # volume, area
+# Volume and area of each shape.
+SHAPES = {
     "ball": (solids.ball(0.3), 4 / 3 * math.pi * 0.027, 4 * math.pi * 0.09),
     "box": (solids.box(np.array([0.4, 0.1, 0.2])), 0.008, 2 * (0.04 + 0.02 + 0.08)),
     "cylinder": (solids.cylinder(0.2, 0.5), math.pi * 0.02, 2 * math.pi * 0.2 * 0.7),
@@ -23,7 +25,8 @@ SHAPES = {   # volume, area
 
 @pytest.mark.parametrize("name", SHAPES)
 def test_shapes_know_their_surface(name):
-    """Volume and area; samples lie on the surface, as close as asked; distances grow by the way from the surface, and are negative inside."""
+    """Volume and area are exact. Samples lie on the surface at the requested spacing. Distances are
+    exact along the normal and negative inside."""
     shape, volume, area = SHAPES[name]
     assert shape.volume == pytest.approx(volume) and shape.area == pytest.approx(area)
     points = shape.sampled(0.02)
@@ -34,7 +37,7 @@ def test_shapes_know_their_surface(name):
 
 
 def test_a_surface_of_triangles_has_the_distances_of_its_body():
-    """Of a meshed box: outside, near edges and corners, and inside."""
+    """Distances from a meshed box: outside, near edges and corners, and inside."""
     sizes = mesh.Sizes(0.05, 0.05, np.empty((0, 3)), 0.0)
     made = solid_mesh.mesh_shape("box", np.array([0.4, 0.1, 0.2]), np.eye(3), (), sizes, 0.1)
     surface, box = solids.surface(made.points[made.faces]), SHAPES["box"][0]
@@ -44,7 +47,8 @@ def test_a_surface_of_triangles_has_the_distances_of_its_body():
 
 
 def test_distances_from_slender_triangles():
-    """Beside a long prism of 64 faces, whose triangles have their centres far from most of their points."""
+    """Distances from a long prism of 64 faces, whose triangles have centres far from most of their
+    points."""
     turn, count = math.tau / 64, 64
     ring = [np.column_stack([np.cos(turn * np.arange(count)), np.sin(turn * np.arange(count)), np.full(count, z)]) for z in (-50, 50)]
     faces = [(low[k], low[k - 1], high[k - 1]) for low, high in (ring, ring[::-1]) for k in range(count)]
@@ -55,7 +59,8 @@ def test_distances_from_slender_triangles():
 
 
 def test_places_turns_and_motions():
-    """turn is an axis times an angle in degrees, angle and a single spin are about z; a box turned by 90 degrees about x stands on its depth."""
+    """`turn` is an axis times an angle in degrees; `angle` and a single `spin` are about z. A box
+    rotated by 90 degrees about x stands on its depth."""
     body, = read(BLOCK | {"position": [1, 2, 3], "turn": [90, 0, 0], "spin": 4}).bodies
     assert body.placed.points[:, 1].max() == pytest.approx(2.1) and body.spin.tolist() == [0, 0, 4]
     assert np.array_equal(tumbling.rotation(np.radians([0, 0, 90])), [[0, -1, 0], [1, 0, 0], [0, 0, 1]])
@@ -64,7 +69,8 @@ def test_places_turns_and_motions():
 
 
 def test_moments_of_inertia():
-    """Those of a box by the formula and by its triangles; a ball and a cylinder by points that fill them."""
+    """Moments of inertia of a box by the formula and by its triangles; of a ball and a cylinder by
+    points inside."""
     sides = np.array([0.05, 0.1, 0.2])
     made = solid_mesh.mesh_shape("box", sides, np.eye(3), (), mesh.Sizes(0.1, 0.1, np.empty((0, 3)), 0.0), 0.025)
     assert solids.surface(made.points[made.faces]).moments == pytest.approx(solids.box(sides).moments, rel=1e-9, abs=1e-15)
@@ -76,7 +82,8 @@ def test_moments_of_inertia():
 
 
 def test_balls_meet_where_geometry_says():
-    """Two balls off their centres: the part of their speed along the line of centres at the touch, and across it; the radius of the smaller."""
+    """Two balls off centre: closing speed along the line of centres at contact, sliding speed
+    across it, and the smaller radius."""
     met, = approach.meetings(read(BALL | {"position": [-0.2, 0, 0], "velocity": [3, 0, 0]}, BALL | {"name": "other", "radius": 0.08, "position": [0.2, 0.03, 0.04], "velocity": [-1, 0, 0]},
                                   obstacles=()))
     sine = 0.05 / 0.13
@@ -89,13 +96,15 @@ def test_balls_meet_where_geometry_says():
     ({}, {}, 4), ({"velocity": [1, -8, 0]}, {}, 2), ({"velocity": [0, -8, 1]}, {}, 1), ({"spin": 5}, {}, 2), ({"spin": [0, 5, 0]}, {}, 1),
     ({"position": [0.01, 0.051, 0]}, {}, 2), ({"position": [0, 0.051, 0.01]}, {}, 1), ({}, {"body_force_x": 1}, 2), ({}, {"symmetry": "half"}, 2), ({}, {"symmetry": "full"}, 1)])
 def test_as_much_symmetry_as_there_is(entries, top, copies):
-    """A quarter where nothing breaks it, half where all moves in the plane z = 0, else all; less where less is asked for."""
+    """The symmetry is a quarter if nothing breaks it, half if all moves in the plane z = 0, else
+    none; less if less is requested."""
     assert mirror.copies(read(BALL | entries, BLOCK, **top)) == copies
 
 
 @pytest.mark.parametrize("turn, copies", [([0, 0, 90], 4), ([0, 0, 30], 2), ([0, 30, 0], 1), ([90, 90, 0], 1)])
 def test_a_turned_box_keeps_what_symmetry_it_has(turn, copies):
-    """About z it has its mirror image in z = 0 at any angle, in x = 0 at right angles; a cylinder on its side likewise."""
+    """A rotated box is symmetric to z = 0 for any angle about z, and to x = 0 for right angles; a
+    lying cylinder likewise."""
     assert mirror.copies(read(BALL | {"position": [0, 0.3, 0]}, BLOCK | {"turn": turn})) == copies
     lying = {"shape": "cylinder", "radius": 0.03, "height": 0.1, "position": [0, -0.04, 0], "turn": turn}
     about_itself = turn == [0, 30, 0]
@@ -103,7 +112,8 @@ def test_a_turned_box_keeps_what_symmetry_it_has(turn, copies):
 
 
 def test_obstacles_break_symmetry():
-    """A wall that faces x leaves half, one that faces z nothing; a sphere off the axis as well."""
+    """A wall that faces x leaves half, a wall that faces z no symmetry; a sphere off the axis
+    leaves half."""
     for obstacle, copies in ((FLOOR | {"normal": [1, 1, 0], "point": [-1, 0, 0]}, 2), (FLOOR | {"normal": [0, 1, 1], "point": [0, -1, -1]}, 1),
                              ({"kind": "sphere", "centre": [0, -1, 0], "radius": 0.5}, 4), ({"kind": "bowl", "centre": [0.1, 0, 0], "radius": 3}, 2),
                              (FLOOR | {"velocity": [0, 0, 1]}, 1)):
@@ -130,13 +140,13 @@ BAD = [
 
 @pytest.mark.parametrize("entries, top, words", BAD, ids=[words.split(" (")[0] for *_, words in BAD])
 def test_what_is_wrong_is_named(entries, top, words):
-    """One line with the entry, the value and what is accepted, exit code 10."""
+    """The message is one line with the entry, the value and what is accepted; exit code 10."""
     with pytest.raises(BadInput) as caught:
         read(BALL | entries, BLOCK, **top)
     assert words in str(caught.value) and caught.value.code == 10 and "\n" not in str(caught.value)
 
 
 def test_symmetry_is_an_entry_of_three_dimensions():
-    """In the plane the table has no such key."""
+    """Tables of plane scenes do not have the entry symmetry."""
     with pytest.raises(BadInput, match="^symmetry: no such entry, set to 'half'"):
         read_scene({"symmetry": "half", "body": [{"shape": "disc", "radius": 1, "position": [0, 0]}]}, SCENES, "scene")

@@ -1,4 +1,4 @@
-"""Scenes of bodies of revolution: sections, their meshes and places, what is refused, and two balls against Hertz."""
+"""Scenes of bodies of revolution: sections, meshes and positions, and refused input."""
 
 import math
 
@@ -10,16 +10,22 @@ from tests.support.bodies_axisymmetric import BALL, FLOOR, SHAPES, read
 
 
 def test_a_cone_is_about_its_centre_of_volume():
-    """A quarter of its height from the base, not a third as the centre of its section."""
+    """The centre of a cone is a quarter of its height above the base, not a third as the centre of
+    its section."""
     cone, = read(SHAPES["cone"][0]).bodies
     assert cone.outline.points[:, 1].max() == pytest.approx(0.25) and cone.outline.points[:, 1].min() == pytest.approx(-0.75)
 
 
 def test_a_rigid_profile_is_a_surface_of_revolution():
-    """A polyline from the axis outwards and its mirror image: distances from a cone's tip and from its flank; from axis to axis it closes."""
+    """A polyline from the axis outwards with its mirror image: distances from the apex and the
+    flank of a cone.
+
+    A polyline from axis to axis is closed.
+    """
     with pytest.raises(BadInput, match="is no section of a surface of revolution"):
         read(BALL, obstacles=[{"kind": "polyline", "vertices": [[1, -1], [2, 0]]}])
-    with pytest.raises(BadInput, match="overlaps"):                       # travelled inwards all but the cone is solid
+    # In the inward direction everything but the cone is solid.
+    with pytest.raises(BadInput, match="overlaps"):
         read(BALL | {"position": 5}, obstacles=[{"kind": "polyline", "vertices": [[1, -1], [0, 0]]}])
     cone = read(BALL | {"position": 5}, obstacles=[{"kind": "polyline", "vertices": [[0, 0], [1, -1]]}]).obstacles[0]
     assert cone.gap(np.array([[0, 1.0], [1, 0], [-1, 0], [0, -1]])) == pytest.approx([1, math.sqrt(0.5), math.sqrt(0.5), -math.sqrt(0.5)])
@@ -47,7 +53,7 @@ BAD = [
 
 @pytest.mark.parametrize("entries, top, words", BAD, ids=[words.split(" (")[0] for *_, words in BAD])
 def test_what_is_wrong_is_named(entries, top, words):
-    """One line with the entry, the value and what is accepted, exit code 10."""
+    """The message is one line with the entry, the value and what is accepted; exit code 10."""
     table = {key: value for key, value in BALL.items() if key != "radius" or entries.get("shape", "ball") == "ball"}
     with pytest.raises(BadInput) as caught:
         read(table | entries, **top)
@@ -59,7 +65,7 @@ def test_what_is_wrong_is_named(entries, top, words):
     ({"velocity": [1, 0]}, "obstacle.1.velocity: x is 1, off the axis"),
     ({"kind": "circle"}, "obstacle.1.kind: 'circle' is not known (accepted: plane|sphere|bowl|polyline|implicit)")])
 def test_obstacles_off_the_axis_are_refused(obstacle, words):
-    """Planes across the axis, everything else on it."""
+    """Planes must be perpendicular to the axis, other obstacles must be on it."""
     with pytest.raises(BadInput) as caught:
         read(BALL, obstacles=[FLOOR | obstacle])
     assert words in str(caught.value)

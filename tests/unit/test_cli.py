@@ -1,4 +1,5 @@
-"""The command line: exit codes, one-line errors, interruption, and that `make` lists its targets."""
+"""The command line: exit codes, one-line errors, interruption, and the list of targets of `make`.
+"""
 
 import errno
 import importlib
@@ -16,7 +17,7 @@ from tests.support.cli import ROOT
 
 
 def test_lists(capsys):
-    """Scenes and parameters are listed, every one."""
+    """All scenes and parameters are listed."""
     assert main(["list"]) == 0 and "disc-normal" in capsys.readouterr().out
     assert main(["parameters"]) == 0
     out = capsys.readouterr().out
@@ -24,7 +25,7 @@ def test_lists(capsys):
 
 
 def test_make_lists_every_target():
-    """`make` alone lists every target with one line each."""
+    """`make` without a target prints one line for each target."""
     out = subprocess.run(["make", "-s"], cwd=ROOT, capture_output=True, text=True).stdout
     text = (ROOT / "Makefile").read_text()
     targets, sweeps = (re.search(rf"^{name} (.*)$", text, re.MULTILINE)[1] for name in (r"\.PHONY:", "SWEEPS :="))
@@ -33,7 +34,7 @@ def test_make_lists_every_target():
 
 
 def test_a_full_disk_is_one_line(tmp_path, monkeypatch, capsys):
-    """Where the results cannot be written for want of room, one line says so with exit code 14."""
+    """If the disk is full, one line reports it with exit code 14."""
     def full(*_, **__):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(tmp_path / "out"))
     monkeypatch.setattr(run, "run", full)
@@ -44,7 +45,7 @@ def test_a_full_disk_is_one_line(tmp_path, monkeypatch, capsys):
 @pytest.mark.parametrize("module", ["verification.verify", "examples.paper.stick_slip", *(f"benchmarks.{name}" for name in (
     "promise", "bench", "stress", "oblique_angles", "disc_block_errors", "equal_errors", "scaling", "rubber"))])
 def test_a_loop_of_links_is_no_folder(tmp_path, module):
-    """A result folder behind a loop of links is exit code 14 in one line, for every study."""
+    """A result folder behind a loop of links gives exit code 14 and one line, for every study."""
     (tmp_path / "loop").symlink_to(tmp_path / "pool")
     (tmp_path / "pool").symlink_to(tmp_path / "loop")
     with pytest.raises(Unreadable, match="cannot be made") as error:

@@ -1,4 +1,4 @@
-"""The preloaded clock(): the same bytes, half the time; without it nothing changes."""
+"""The preloaded clock(): equal output in half the time. Without it nothing changes."""
 
 import os
 
@@ -9,7 +9,7 @@ from ffimpact.freefem import freefem
 
 @pytest.fixture
 def cache(tmp_path, monkeypatch):
-    """A cache folder of its own."""
+    """An empty cache folder."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     return tmp_path / "cache"
 

@@ -1,4 +1,5 @@
-"""The disc on the free block with error bars: answers of a summary, bars, checks and comparisons that can fail, the page's text, a coarse real run."""
+"""The disc on the free block with error bars: results, error bars, checks and comparisons that can
+fail, text of the page."""
 
 import pandas as pd
 import pytest
@@ -19,14 +20,15 @@ def theirs(monkeypatch, *changes: dict) -> pd.DataFrame:
 
 
 def test_answers_are_the_shares_of_the_energy(monkeypatch, tmp_path):
-    """Motion of both centres and vibration about them in % of the energy at the start, which they add up to; times in ms."""
+    """Motion of the centres and vibration add up to the initial energy [%]; times are in ms."""
     first = tables(monkeypatch, tmp_path).iloc[0]
     assert [first[name] for name in block.SHARES] == pytest.approx([4.0, 7.2, 10.0, 78.8]) and sum(first[name] for name in block.SHARES) == pytest.approx(100)
     assert (first["contact >1% ms"], first["contact ms"], first["v disc m/s"]) == pytest.approx((50, 55, 2))
 
 
 def test_reference_has_smaller_elements_and_steps(monkeypatch, tmp_path):
-    """The reference is made from the most accurate run: sizes over FINER, the step's accuracy over its square, the same law and stiffness."""
+    """The reference has the sizes of the most accurate run over FINER, the accuracy of the step
+    over FINER squared, and the same law and stiffness."""
     asked = []
     tables(monkeypatch, tmp_path)
     simulated = study.study
@@ -38,7 +40,8 @@ def test_reference_has_smaller_elements_and_steps(monkeypatch, tmp_path):
 
 
 def test_bars_are_the_difference_from_the_reference(monkeypatch, tmp_path):
-    """Errors of every run against the reference of its case; the bar is that of the most accurate one; shown to two digits of it."""
+    """Errors are relative to the reference of the case. The error bar is that of the most accurate
+    run and is printed to two digits."""
     table = tables(monkeypatch, tmp_path, {"rebound_vy_1": 2.5}, {"rebound_vy_1": 2.012})
     assert block.differences(table)["v disc m/s"].tolist() == pytest.approx([0.5, 0.012])
     ours = block.with_bars(table).iloc[0]
@@ -46,7 +49,8 @@ def test_bars_are_the_difference_from_the_reference(monkeypatch, tmp_path):
 
 
 def test_disagreement_needs_more_than_both_bars(monkeypatch, tmp_path):
-    """Ours 2 +- 0.01 and NGSolve's 2.05 +- 0.03 disagree, with 0.05 they do not; the page names answer and both values."""
+    """2 +- 0.01 and 2.05 +- 0.03 disagree; with 0.05 in place of 0.03 they agree. The page has the
+    result and both values."""
     table = tables(monkeypatch, tmp_path, {}, {"rebound_vy_1": 2.01})
     for coarse, apart in ((2.08, True), (2.10, False)):
         others = theirs(monkeypatch, {"velocity_upper": coarse}, {"velocity_upper": 2.05})
@@ -57,7 +61,7 @@ def test_disagreement_needs_more_than_both_bars(monkeypatch, tmp_path):
 
 
 def test_peer_that_fails_is_said(monkeypatch):
-    """Its reason is on the page; nothing is made up in its place."""
+    """The page has the reason of the failure and no other values in place of the results."""
     monkeypatch.setattr(peers, "two_bodies", lambda *_, **__: (None, "exit code 1: no answer"))
     others, reason = block.ask_peer([CASE])
     assert others.empty and reason == "exit code 1: no answer"
@@ -65,6 +69,6 @@ def test_peer_that_fails_is_said(monkeypatch):
 
 
 def test_peer_is_not_run_where_it_is_not_installed(monkeypatch):
-    """The reason says how to install it."""
+    """The reason contains the command that installs it."""
     monkeypatch.setattr(peers, "find", lambda _: None)
     assert peers.two_bodies(1.0, refine=0.5) == (None, "ngsolve is not installed (pip install ngsolve==6.2.2608)")

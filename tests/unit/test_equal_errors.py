@@ -1,4 +1,5 @@
-"""Who takes how long at equal errors: what counts as reaching a level, references that must agree, the verdict, the page. No other program is needed."""
+"""Run times at equal errors: safe settings, references that must agree, the verdict, the page. No
+other program is needed."""
 
 import math
 
@@ -13,13 +14,15 @@ FINE = {equal.OURS: [{"impulse": 208.1, "vy": 7.39}, {"impulse": 208.22, "vy": 7
 
 
 def rows(program: str, *settings: tuple[float, float]) -> pd.DataFrame:
-    """Settings of a program from coarse to fine: error [%] and processor seconds of the process; the march takes half of it."""
+    """Settings of a program from coarse to fine: error [%] and processor seconds of the process.
+    The time integration takes half of them."""
     return pd.DataFrame([{"program": program, "setting": f"{n}", "exit": 0, "message": "", "error": error, "cpu_seconds": seconds / 2, "process_seconds": seconds}
                          for n, (error, seconds) in enumerate(settings)])
 
 
 def test_luck_is_no_accuracy():
-    """A setting counts from which on all finer ones keep the level: one that is below it by chance, or before a failed one, does not; the quickest of those that count."""
+    """A setting is safe if all finer ones satisfy the level and finish. The fastest of the safe
+    settings is reported."""
     table = rows(equal.OURS, (0.05, 1.0), (0.3, 2.0), (0.08, 5.0), (0.02, 4.0))
     assert equal.safe(table, equal.OURS, 0.1).setting == "3" and equal.safe(table, equal.OURS, 0.5).setting == "0"
     assert equal.safe(table, equal.OURS, 0.01) is None
@@ -29,7 +32,8 @@ def test_luck_is_no_accuracy():
 
 
 def test_errors_are_relative_to_what_the_page_says():
-    """The impulse relative to itself, velocities to that of the impact, the spin to it as the rim's; the largest of them is the error."""
+    """The impulse is relative to itself, velocities to the impact speed, the spin to this speed at
+    the rim. The error is the largest."""
     found = equal.errors(CASE, {"impulse": 206.0, "vy": 7.4}, {"impulse": 200.0, "vy": 7.0})
     assert found == pytest.approx({"impulse %": 3.0, "vy %": 5.0, "error": 5.0})
     oblique = equal.CASES["oblique"]
@@ -39,7 +43,10 @@ def test_errors_are_relative_to_what_the_page_says():
 
 
 def test_references_agree_within_their_bars():
-    """The bar is the largest difference of a program's finest run from the two next; references farther apart than both bars do not agree, whichever is off."""
+    """The error bar is the largest difference of a program's finest run from the two next.
+
+    References that differ by more than both error bars do not agree, whichever program is wrong.
+    """
     table = equal.compare(CASE, FINE)
     assert table.agree.all() and table["its bar %"][0] == pytest.approx(0.05) and table["bar %"][0] == pytest.approx(100 * 0.013 / 8)
     for program in FINE:
@@ -49,8 +56,11 @@ def test_references_agree_within_their_bars():
 
 
 def test_bars_see_mesh_and_step():
-    """The finest run of a reference has elements and steps at most three quarters of those of the two next, each program and case: of two runs alike in one of them the
-    bar would miss its error."""
+    """The finest run of a reference has elements and steps of at most three quarters of those of
+    the two next, for each program and case.
+
+    If two runs had equal elements or steps, the error bar would miss this error.
+    """
     for case in equal.CASES.values():
         for program, points in case.finest.items():
             *others, finest = [case.settings[program][-1], *points]
@@ -59,7 +69,8 @@ def test_bars_see_mesh_and_step():
 
 
 def test_verdict_says_who_is_quicker():
-    """Ratios are the quickest other over ours at the same level; below 1 it is not ours that is quicker, and a level that one side misses is no comparison."""
+    """The ratios are the fastest other program over ours at equal levels. A ratio below 1 means
+    that ours is not the fastest; a level that one side misses is not compared."""
     table = pd.concat([rows(equal.OURS, (0.9, 1.0), (0.4, 2.0)), rows(equal.TUNED, (0.8, 0.5), (0.4, 6.0), (0.05, 9.0))], ignore_index=True)
     ratios = equal.beside(table)
     assert ratios[1.0] == pytest.approx((0.5, 0.5)) and ratios[0.5] == pytest.approx((3.0, 3.0)) and all(map(math.isnan, ratios[0.1]))

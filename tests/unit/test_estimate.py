@@ -1,4 +1,5 @@
-"""The error that a run estimates of itself: differences of a pair, estimates from them, and finer runs until they are small enough."""
+"""The error estimate of a run: differences of a pair of runs, estimates from them, and finer runs
+until the estimate is small enough."""
 
 import json
 import re
@@ -15,10 +16,11 @@ from ffimpact.output.results import Answers
 ANSWERS = {"impulse": 2.0, "rebound_vx": 1.0, "rebound_vy": 3.0, "rebound_spin": -8.0, "energy_initial": 5.0, "energy_final": 4.5, "vibration_energy": 1.0,
            "friction_work": 0.5, "thresholded_contact_time": 3.9e-3, "contact_time": 4e-3, "peak_force": 7e4}
 ROOT2 = estimate.COARSER
-START = {"mesh_size": 0.016, "contact_mesh_size": 0.003, "dt": 0.0}    # of the first run of the fake disc
+# Of the first run of the fake disc.
+START = {"mesh_size": 0.016, "contact_mesh_size": 0.003, "dt": 0.0}
 
 
-# ---- what two runs differ by
+# ---- differences of two runs
 
 @pytest.mark.parametrize("change, found", [
     ({"impulse": 2.1}, {"impulse": 0.05}), ({"rebound_vx": 1.3, "rebound_vy": 2.6}, {"rebound": 0.05}), ({"rebound_spin": -10.0}, {"rebound_spin": 0.1}),
@@ -26,19 +28,24 @@ START = {"mesh_size": 0.016, "contact_mesh_size": 0.003, "dt": 0.0}    # of the 
     ({"friction_work": 0.75}, {"friction_work": 0.05, estimate.OF_ITSELF: 0.5}), ({"contact_time": 5e-3}, {"contact_time": 0.25}),
     ({"thresholded_contact_time": 3.51e-3}, {"thresholded_contact_time": 0.1}), ({"peak_force": 7.7e4}, {"peak_force": 0.1}), ({}, {})])
 def test_each_answer_differs_over_its_scale(change, found):
-    """Velocities over 10 m/s, spin times a radius of 0.5 m over that, energies over that at the start, the rest over itself; nothing else moves."""
+    """Velocities are relative to 10 m/s, spin times a radius of 0.5 m to the same, energies to the
+    initial energy, others to themselves.
+
+    No other difference changes.
+    """
     apart = estimate.difference(ANSWERS, ANSWERS | change, 10.0, 0.5)
     assert apart == pytest.approx(dict.fromkeys(apart, 0.0) | found) and set(found) <= set(apart)
 
 
 def test_answers_that_are_not_there_do_not_differ():
-    """A flight has neither contact times nor a force; a table has nan for them."""
+    """In a flight there are neither contact times nor a force; tables have nan for them."""
     flight = ANSWERS | {"contact_time": None, "thresholded_contact_time": float("nan"), "peak_force": 0.0, "impulse": 0.0}
     assert not any(estimate.difference(flight, flight, 10.0, 0.5).values())
 
 
 def on_its_way(impulse: float = 0.0, speed: float = 0.0, spin: float = 0.0, elastic: float = 0.0, work: float = 0.0, steps: int = 41) -> Answers:
-    """A run that is off by these shares of the scales in the middle of its contact, and by nothing at its end."""
+    """A run with these deviations, as shares of the scales, in the middle of its contact, and
+    without deviation at its end."""
     t = np.linspace(0, 4e-3, steps)
     hump = np.sin(np.pi * t / 4e-3)
     history = {"t": t, "dt": np.diff(t, prepend=0.0), "vx": 10 * speed * hump, "vy": 10 * t / 4e-3, "spin": spin * 10 / 0.5 * hump, "elastic": 5 * elastic * hump,
@@ -53,8 +60,12 @@ def on_its_way(impulse: float = 0.0, speed: float = 0.0, spin: float = 0.0, elas
     ({"work": 0.05}, {"friction_work": 0.05 / ROOT2, estimate.OF_ITSELF: 0.5 / ROOT2, "rebound": 0.1, "energy": 0.1}),
     ({"work": 0.05, "spin": 0.3}, {"friction_work": 0.05 / ROOT2, estimate.OF_ITSELF: 0.5 / ROOT2, "rebound": 0.1, "energy": 0.1, "rebound_spin": 0.4})])
 def test_two_runs_that_end_alike_are_apart_on_their_way(off, found):
-    """What cannot be small by chance: the largest difference of impulse, velocity, spin and elastic energy during the contact, over its scale, whatever the
-    steps of the two runs; friction work, in proportion to the impulse, at equal impulse (rms of the hump); that over time counts in speed, energy and the spin of what turns."""
+    """The largest differences of impulse, velocity, spin and elastic energy during contact, over
+    their scales, cannot be small by chance.
+
+    They do not depend on the steps of the two runs. The friction work is compared at equal impulse
+    (rms of the hump). Its difference counts in speed, energy and spin.
+    """
     apart = estimate.course(on_its_way(**off), on_its_way())
     assert apart == pytest.approx(dict.fromkeys([*estimate.USUAL, estimate.OF_ITSELF], 0.0) | found, rel=5e-3, abs=1e-12)
     assert estimate.course(on_its_way(**off), on_its_way(steps=81)) == pytest.approx(apart, rel=0.01, abs=2e-3)
@@ -64,11 +75,12 @@ def usual(times: float) -> dict[str, float]:
     return {name: times * value for name, value in estimate.USUAL.items()} | {estimate.OF_ITSELF: times}
 
 
-STEPS = 1e-3    # 32 steps at the height of the force, squared
+STEPS = 1e-3  # 32 steps while the force is high, squared
 
 
 def test_an_estimate_is_no_less_than_the_difference_nor_fooled_by_chance():
-    """Impulse, rebound and energy that are small by chance all at once are stated by their course; what does not differ at all has no error."""
+    """If the differences of impulse, rebound and energy are all small by chance, the time histories
+    give the estimate. Without any difference there is no error."""
     way = usual(0.1)
     by_chance = usual(1e-3) | {name: 1e-9 for name in ("impulse", "rebound", "energy")}
     found = estimate.errors(by_chance, way, STEPS)
@@ -82,9 +94,14 @@ def test_an_estimate_is_no_less_than_the_difference_nor_fooled_by_chance():
 @pytest.mark.parametrize("others, own, steps, raised", [
     (8, 1, 1, ("impulse", "rebound", "energy", "rebound_spin", "peak_force")), (1, 1, 8, ("impulse", "rebound", "energy", "friction_work"))])
 def test_an_estimate_is_the_geometric_mean_of_three_measures(others, own, steps, raised):
-    """Eight times the differences of all answers, or steps sqrt(8) times as large, state twice the error, of times the fourth root of it; where that
-    says nothing (steps of spin and peak force, other answers of friction work) the course alone does. All three eight times are eight times the error."""
-    small, way = usual(1e-6), usual(1.0) | {"rebound_spin": 1e-4}     # little spin: its share in the rebound is another test
+    """Eight times the differences of all results, or steps sqrt(8) times larger, double the
+    estimate; estimates of times grow by the fourth root.
+
+    Where this has no information (steps for spin and peak force, other results for friction work)
+    only the time histories count. All three times eight give eight times the error.
+    """
+    # The spin is small, as its share in the rebound has another test.
+    small, way = usual(1e-6), usual(1.0) | {"rebound_spin": 1e-4}
     times = ("thresholded_contact_time", "contact_time")
     found, before = estimate.errors(usual(others * 1e-6), way, steps * STEPS), estimate.errors(small, way, STEPS)
     for name in estimate.BOUND:
@@ -95,8 +112,12 @@ def test_an_estimate_is_the_geometric_mean_of_three_measures(others, own, steps,
 
 
 def test_what_friction_ties_together_is_stated_together():
-    """What turns is stated a rebound of LEVER times its spin; where nothing turns friction's work, larger there, is no more than the energy
-    that is stated, nor a quarter of it more than the impulse, half of it than the rebound; without friction none of it counts."""
+    """For bodies that rotate, the estimate of the rebound is at least LEVER times that of the spin.
+
+    Without rotation the larger estimate of the friction work does not exceed that of the energy,
+    and raises that of the impulse by at most a quarter of it, that of the rebound by half of it.
+    Without friction it does not count.
+    """
     small, way = usual(1e-6), usual(1e-3)
     turns = estimate.errors(small, way | {"rebound_spin": 1.0}, STEPS)
     assert turns["rebound"] == pytest.approx(estimate.LEVER * turns["rebound_spin"])
@@ -111,8 +132,11 @@ def test_what_friction_ties_together_is_stated_together():
 
 @pytest.mark.parametrize("name", estimate.HIGHEST)
 def test_largest_values_are_stated_by_their_histories(name):
-    """Two runs whose largest values agree by chance, while their histories differ by a swing of 10 %, state INSTANT times
-    its root mean square; a run whose largest value is 30 % more states that; the same runs nothing."""
+    """If two runs have equal largest values by chance but histories that differ by 10 %, the
+    estimate is INSTANT times the rms difference.
+
+    If the largest values differ by 30 %, the estimate is this difference. Equal runs have no error.
+    """
     fine = on_its_way()
     t, column = fine.history["t"], fine.history[name]
     def other(values: np.ndarray) -> Answers:
@@ -127,7 +151,7 @@ def test_largest_values_are_stated_by_their_histories(name):
 
 
 def test_steps_count_where_the_force_is_high():
-    """Those above half its peak; in a flight all of them."""
+    """These are the steps with a force above half of its peak; in a flight all steps."""
     run = on_its_way()
     force = np.array([0.0, 1.0, 3.0, 4.0, 2.0, 0.5])
     assert estimate.resolved(run._replace(history={"normal_force": force})) == 1 / 9
@@ -136,14 +160,19 @@ def test_steps_count_where_the_force_is_high():
 
 @pytest.mark.parametrize("coarser, share", [(1.0, 1.0), (1.2, 0.56), (ROOT2, 0.0), (2.0, 0.0)])
 def test_steps_that_a_pair_has_alike_do_not_show_in_it(coarser, share):
-    """Of an error quadratic in the step: all of it where the coarser run takes the same steps in the height of the force, none of it from 1.4 times larger ones on."""
+    """For an error quadratic in the step: all of it is hidden if both runs have equal steps while
+    the force is high, none for a ratio of 1.4 or more."""
     fine = on_its_way(steps=81)
     coarse = fine._replace(history=fine.history | {"dt": coarser * fine.history["dt"]})
     assert estimate.alike(fine, coarse) == pytest.approx(share, abs=1e-12)
 
 
 def test_what_does_not_show_is_stated():
-    """A pair whose elements alone differ, by nearly nothing, is stated what its steps make; one whose steps differ states what it did; half of it lies between."""
+    """If a pair differs in its elements only, and hardly in its results, the estimate contains the
+    error of the steps.
+
+    A pair with different steps keeps its estimate. Half hidden lies between.
+    """
     small, way = usual(1e-3), usual(1e-3)
     stated = [estimate.errors(small, way, 1e-2, hidden) for hidden in (0.0, 0.5, 1.0)]
     assert stated[0] == estimate.errors(small, way, 1e-2)
@@ -152,12 +181,13 @@ def test_what_does_not_show_is_stated():
         assert none < half < whole and whole > 2 * none, name
     none = dict.fromkeys(way, 0.0)
     assert estimate.errors(none, none, 1e-2, 1.0) == none
-    smooth = way | {"friction_work": 0.0}       # spin without friction is the mesh's: steps say nothing of it but through the other answers
+    # Without friction the mesh causes spin. Steps affect its estimate through other results only.
+    smooth = way | {"friction_work": 0.0}
     assert estimate.errors(small, smooth, 1e-2, 1.0)["rebound_spin"] < 0.3 * stated[2]["rebound_spin"]
 
 
 def test_friction_work_of_itself_is_stated_as_friction_work_is():
-    """Both are one error over two scales."""
+    """Both are one error on two scales."""
     found = estimate.errors(usual(1.0), usual(1.0) | {"friction_work": 0.01, estimate.OF_ITSELF: 0.03}, STEPS)
     assert found[estimate.OF_ITSELF] == pytest.approx(3 * found["friction_work"]) and found["friction_work"] > 0
 
@@ -167,7 +197,8 @@ def test_friction_work_of_itself_is_stated_as_friction_work_is():
     ("peak_force", 1.9, "promised", False), ("peak_force", 2.1, "promised", True), ("peak_force", 1.1, "peak_force", True),
     ("contact_time", 2.1, "peak_force", True), (estimate.OF_ITSELF, 9.0, "promised", False), (estimate.OF_ITSELF, 1.1, "friction_work", True)])
 def test_answers_above_what_is_asked_are_named(name, times, also, named):
-    """One sentence with name and per cent: promised answers and the one asked for above the accuracy, others above twice that."""
+    """One sentence with name and per cent for promised results and the requested one above the
+    accuracy, and for others above twice the accuracy."""
     estimated = dict.fromkeys([*estimate.USUAL, estimate.OF_ITSELF], 0.0) | {name: times * 0.01}
     sentences = estimate.excess(estimated, 0.01, also)
     assert len(sentences) == named and all(f"{name.replace('_', ' ')} {times:.2g} %" in sentence and ", requested 1 %: all above it: " in sentence for sentence in sentences)
@@ -176,16 +207,21 @@ def test_answers_above_what_is_asked_are_named(name, times, also, named):
 # ---- the runs
 
 def told(folder: Path) -> Answers:
-    """What the fake disc left in a folder: a run that is nowhere off on its way."""
+    """The results of the fake disc in a folder. Its time history has no deviation."""
     summary, used, speed = json.loads((folder / "result.json").read_text())
     return Answers(summary | {"largest_energy": 5.0}, used | {"radius": 0.5}, speed, on_its_way().history)
 
 
-REQUESTS = {"fields": 5, "modes": 4, "checkpoint_every": 7}      # what a user asks for beside the answer
+# Requests of a user besides the accuracy.
+REQUESTS = {"fields": 5, "modes": 4, "checkpoint_every": 7}
 
 
 class Disc:
-    """A disc whose impulse is off by `error` at the sizes START, quadratic in them, with no course. It fails with `code` at the factors `fails` of them."""
+    """A disc whose impulse has the relative error `error` at the sizes START. The error is
+    quadratic in the sizes.
+
+    The time history has no deviation. A run fails with `code` at the factors `fails` of the sizes.
+    """
 
     def __init__(self, stage: Path, error: float, fails=(), code: int = 11, lost: float | None = None, **given):
         self.error, self.fails, self.code, self.lost, self.asked = error, fails, code, lost, []
@@ -197,7 +233,8 @@ class Disc:
     def solve(self, values: dict, folder: Path) -> None:
         self.asked.append(values)
         used = values | {name: values[name] or START[name] for name in START} | {"penalty": 1e10, "slip_velocity": 0.1, "friction_dynamic": 0.0}
-        factor = (values["accuracy"] / self.values["accuracy"])**0.5      # on a mesh file the step alone
+        # With a mesh file only the step changes.
+        factor = (values["accuracy"] / self.values["accuracy"])**0.5
         if any(factor == pytest.approx(each) for each in self.fails):
             raise Failure(f"no step at {factor:.2f}", code=self.code)
         folder.mkdir(exist_ok=True)
@@ -209,12 +246,13 @@ class Disc:
         return estimate.settle(self.stage, self.values, own_mesh, self.solve, told)
 
     def factors(self) -> list[float]:
-        """Sizes of the runs, over START."""
+        """The sizes of the runs over START."""
         return [(values["mesh_size"] or START["mesh_size"]) / START["mesh_size"] for values in self.asked]
 
 
 def test_an_estimate_below_the_accuracy_is_one_coarser_run(tmp_path):
-    """Elements and steps are 1.4 times as large, the error double, so that the difference is the error; nothing else stays in the folder."""
+    """Elements and steps are 1.4 times larger and the error doubles, so that the difference is the
+    error. No other files stay in the folder."""
     disc = Disc(tmp_path, 0.006)
     found = disc.settle()
     assert disc.factors() == pytest.approx([1, ROOT2]) and disc.asked[1]["fields"] == 0
@@ -223,7 +261,8 @@ def test_an_estimate_below_the_accuracy_is_one_coarser_run(tmp_path):
 
 
 def test_finer_runs_follow_until_it_is(tmp_path):
-    """3.6 % halves twice; the finest run takes the folder, each former one is the coarser of the next pair."""
+    """3.6 % is halved twice. The finest run becomes the result; each former run is the coarser one
+    of the next pair."""
     disc = Disc(tmp_path, 0.036)
     found = disc.settle()
     assert disc.factors() == pytest.approx([1, ROOT2, 1 / ROOT2, 1 / 2])
@@ -235,21 +274,26 @@ def test_finer_runs_follow_until_it_is(tmp_path):
 
 @pytest.mark.parametrize("name, asked", [("fields", [5, 0, 5, 5]), ("modes", [4, 0, 4, 4]), ("checkpoint_every", [7] * 4)])
 def test_what_was_asked_for_is_asked_of_every_run_that_may_stay(tmp_path, name, asked):
-    """A finer run takes the place of the first one and has all its requests. The coarser run writes no output."""
+    """A finer run replaces the first one and has all its requests. The coarser run writes no
+    output."""
     disc = Disc(tmp_path, 0.036)
     disc.settle()
     assert [values[name] for values in disc.asked] == asked
 
 
 def test_what_asks_for_output_is_off_by_default():
-    """The values that ask for no output are the defaults of the table, of every script."""
+    """The values that request no output are the defaults of the table for every script."""
     assert {name: parameters.PARAMETERS[name].default for name in parameters.OUTPUT} == parameters.OUTPUT
 
 
 @pytest.mark.parametrize("off, runs", [(0.009, 2), (0.0149, 2), (0.0151, 3), (0.03, 3)])
 def test_scatter_is_a_reason_for_no_more_than_one_finer_run(tmp_path, off, runs):
-    """The contact time above 1 % of the peak scatters: where a finer run does not lower its error enough no other follows; up to WORTH times the accuracy (1 %)
-    none follows at all. What is above the accuracy is a note in both cases, no warning."""
+    """The contact time above 1 % of the peak scatters. If a finer run does not reduce its error
+    enough, no other run follows.
+
+    Up to WORTH times the accuracy (1 %) no finer run follows at all. In both cases an excess over
+    the accuracy is a note, not a warning.
+    """
     disc = Disc(tmp_path, 1e-9)
     def read(folder):
         longer = 1 + off if folder == tmp_path / "coarser" else 1
@@ -262,8 +306,8 @@ def test_scatter_is_a_reason_for_no_more_than_one_finer_run(tmp_path, off, runs)
 @pytest.mark.parametrize("offs, runs", [((0.035, 0.021, 0.0126), 4), ((0.03, 0.025, 0.02), 3),
                                         ((0.029, 0.0207, 0.014), 4), ((0.029, 0.0211, 0.014), 3)])
 def test_a_second_finer_run_follows_where_it_brings_the_contact_time_there(tmp_path, offs, runs):
-    """Off by offs[k] after k finer runs, of 1 % asked for: a second one follows where offs[1]^2/offs[0] is at most
-    WORTH times that."""
+    """Errors are offs[k] after k finer runs, for an accuracy of 1 %. A second finer run follows if
+    offs[1]^2/offs[0] is at most WORTH times 1 %."""
     disc = Disc(tmp_path, 1e-9)
     def read(folder):
         longer = 1 + offs[len(disc.asked) - 2] if folder == tmp_path / "coarser" else 1
@@ -274,21 +318,24 @@ def test_a_second_finer_run_follows_where_it_brings_the_contact_time_there(tmp_p
 
 @pytest.mark.parametrize("given", [{"mesh_size": 0.016}, {"contact_mesh_size": 0.003}, {"dt": 1e-5}, {"mesh": "own"}, {"lost": 1e-3}, {"error": 3.0}])
 def test_what_stays_above_is_said(tmp_path, given):
-    """Sizes or steps that are given, a mesh file, a material that lost its ellipticity are not refined; nothing is more than MOST times."""
+    """Prescribed sizes or steps, a mesh file or lost ellipticity prevent refinement. There are at
+    most MOST refinements."""
     own_mesh = not given.pop("mesh", None)
     disc = Disc(tmp_path, given.pop("error", 0.03), **given)
     found = disc.settle(own_mesh)
     assert found["refinements"] == (estimate.MOST if disc.error > 1 else 0) == len(disc.asked) - 2
     warned, = found["warnings"]
     assert re.fullmatch(r"estimated errors: \S.* %, requested 1 %: all above it: impulse \S+ %.*: ask .*", warned)
-    assert [notes.name(each) for each in found["notes"]] == ([] if own_mesh else ["mesh of the file"])   # which is not varied
+    # Which is not varied.
+    assert [notes.name(each) for each in found["notes"]] == ([] if own_mesh else ["mesh of the file"])
     assert found["estimated_error"]["impulse"] > 0.01
     assert found["estimated_error_excludes"] == ["penalty", "slip_velocity", *([] if own_mesh else ["mesh"])]
 
 
 @pytest.mark.parametrize("code", [11, 12])
 def test_a_coarser_run_that_fails_is_no_estimate(tmp_path, code):
-    """The run stays, its error is not known, and a sentence says why; other failures are failures of the run."""
+    """The result stays without an error estimate, and a sentence has the reason. Other failures are
+    failures of the run."""
     found = Disc(tmp_path / "a", 0.03, fails=[ROOT2], code=code).settle()
     assert found["estimated_error"] is None and found["refinements"] == 0 and "no step at 1.41" in found["warnings"][0]
     with pytest.raises(Failure, match="no step"):
@@ -296,7 +343,8 @@ def test_a_coarser_run_that_fails_is_no_estimate(tmp_path, code):
 
 
 def test_a_finer_run_that_fails_leaves_the_run(tmp_path):
-    """What is known stays, with its estimate; the sentences say that it is above what was asked, and what became of the finer one."""
+    """The existing result stays with its estimate. Sentences report that it exceeds the accuracy,
+    and why the finer run failed."""
     found = Disc(tmp_path, 0.036, fails=[1 / 2]).settle()
     assert found["refinements"] == 1 and found["estimated_error"]["impulse"] == pytest.approx(0.018, rel=0.02)
     assert len(found["warnings"]) == 2 and "impulse 1.8 %" in found["warnings"][0] and "no step at 0.50" in found["warnings"][1]
@@ -304,8 +352,11 @@ def test_a_finer_run_that_fails_leaves_the_run(tmp_path):
 
 
 def test_another_run_is_the_same_body_on_the_same_plane():
-    """Sizes and steps change, and the accuracy with their square; what the contact is made of stays as it was used. On a mesh file only
-    the step changes; no element is larger than the radius."""
+    """Sizes and steps change, and the accuracy with their square. Contact parameters keep their
+    used values.
+
+    With a mesh file only the step changes. No element is larger than the radius.
+    """
     values = parameters.defaults() | {"dt": 1e-5}
     used = values | {"mesh_size": 0.04, "contact_mesh_size": 0.003, "penalty": 1e10, "slip_velocity": 0.1, "friction_dynamic": 0.3}
     twice = estimate.other(values, used, 2.0)
@@ -317,7 +368,8 @@ def test_another_run_is_the_same_body_on_the_same_plane():
 
 
 def test_the_same_steps_are_no_estimate(tmp_path):
-    """Where the coarser run comes to the same unknowns and steps its answers are the same, and say nothing of the error."""
+    """If the coarser run has equal unknowns and steps, its results are the same and give no
+    estimate."""
     disc = Disc(tmp_path, 0.03)
     def read(folder):
         return told(folder)._replace(summary=told(folder).summary | {"dofs": 260, "steps": 4})
@@ -329,8 +381,9 @@ def test_the_same_steps_are_no_estimate(tmp_path):
     ("rebound", 1.1, "notes"), ("rebound", 1.6, "warnings"), ("thresholded_contact_time", 1.6, "warnings"), ("contact_time", 1.9, None),
     ("contact_time", 9.0, "notes"), ("peak_force", 9.0, "notes")])
 def test_a_promised_answer_far_above_the_accuracy_is_a_warning(tmp_path, monkeypatch, name, times, kind):
-    """From 1.5 times the accuracy (1 %) on; below that, and of what is not promised from twice the accuracy on, it is a note."""
-    disc = Disc(tmp_path, 1e-9, mesh_size=0.016)                     # sizes that are given: no finer run
+    """An excess above 1.5 times the accuracy (1 %) is a warning. Below that, and for results that
+    are not promised above twice the accuracy, it is a note."""
+    disc = Disc(tmp_path, 1e-9, mesh_size=0.016)  # prescribed sizes prevent finer runs
     monkeypatch.setattr(estimate, "errors", lambda *_: dict.fromkeys([*estimate.BOUND, estimate.OF_ITSELF], 0.0) | {name: 0.01 * times})
     found = disc.settle()
     for each in ("warnings", "notes"):
@@ -340,7 +393,8 @@ def test_a_promised_answer_far_above_the_accuracy_is_a_warning(tmp_path, monkeyp
 
 @pytest.mark.parametrize("transit, kind", [(None, "notes"), (1e-5, "warnings")])
 def test_a_contact_time_that_is_far_off_is_a_note_only_where_it_scatters(tmp_path, monkeypatch, transit, kind):
-    """Alone above what was asked, and not halved by a finer run: that of a round impact scatters, that of a flat strike is late."""
+    """Only the contact time exceeds the accuracy, and a finer run does not halve its error: after a
+    round impact it scatters, after a flat strike it is late."""
     disc, far = Disc(tmp_path, 1e-9), {"thresholded_contact_time": 0.03}
     monkeypatch.setattr(estimate, "error_estimates", lambda *_: dict.fromkeys([*estimate.BOUND, estimate.OF_ITSELF], 0.0) | far)
     found = estimate.settle(tmp_path, disc.values, True, disc.solve, lambda folder: told(folder)._replace(summary=told(folder).summary | {"front_transit": transit}))
@@ -348,7 +402,8 @@ def test_a_contact_time_that_is_far_off_is_a_note_only_where_it_scatters(tmp_pat
 
 
 def test_runs_that_saw_different_touches_say_so():
-    """Where the runs of a pair have different numbers of intervals of contact a warning says that, and how many; where they have the same nothing does."""
+    """If the runs of a pair have different numbers of contact intervals, a warning reports both
+    numbers; else there is none."""
     told, = estimate.touches({"contact_intervals": 3}, {"contact_intervals": 2})
     assert told.startswith("touches: contact intervals 3, with 1.4 times larger elements and steps 2: ")
     assert not estimate.touches({"contact_intervals": 3}, {"contact_intervals": 3})
@@ -357,8 +412,11 @@ def test_runs_that_saw_different_touches_say_so():
 # ---- flat strikes
 
 def test_errors_of_a_flat_strike_fall_with_their_measures():
-    """Twice the differences of a pair are twice the errors of impulse and rebound; the rise of the front enters contact times; a front
-    that the elements do not resolve leaves an error that no pair shows."""
+    """Doubling the differences of a pair doubles the errors of impulse and rebound. The rise time
+    of the front enters contact times.
+
+    A front that the elements do not resolve leaves an error that no pair shows.
+    """
     names = {name: 1e-2 for name in [*estimate.BOUND, estimate.OF_ITSELF]}
     resolved = estimate.front_errors(names, names, 0.01, 1e-3)
     twice = estimate.front_errors({name: 2e-2 for name in names}, {name: 2e-2 for name in names}, 0.01, 1e-3)
@@ -371,7 +429,8 @@ def test_errors_of_a_flat_strike_fall_with_their_measures():
 
 
 def test_errors_of_several_impacts_fall_no_faster_than_second_order():
-    """Runs that agree at the end by chance state what their histories differ by, and half of what was stated before."""
+    """If runs agree at the end by chance, the estimate contains the difference of their histories
+    and half of the former estimate."""
     small, way = {name: 1e-6 for name in estimate.BOUND}, {name: 1e-3 for name in estimate.BOUND}
     assert estimate.strikes_again(small, way, None)["rebound"] == 1e-3
     again = estimate.strikes_again(small, way, {name: 1e-2 for name in estimate.BOUND})
@@ -383,7 +442,8 @@ def test_errors_of_several_impacts_fall_no_faster_than_second_order():
     ({"body": [{"load": [{"where": "inner"}]}]}, 1, 0.7), ({"body": [{}], "obstacle": [{"motion": [0, 1]}]}, 1, 0.1),
     ({"body": [{}], "obstacle": [{"kind": "plane"}]}, 2, 0.0), ({}, 1, 0.0)])
 def test_what_is_held_or_rigid_is_stated_with_a_share_of_the_accuracy(used, intervals, least):
-    """No less than that, whatever the pair says; a larger estimate stays, and an answer that is exactly 0 too."""
+    """The estimate is at least this share of the accuracy. A larger estimate does not change, nor
+    does a result that is exactly 0."""
     run = Answers({"contact_intervals": intervals}, used | {"accuracy": 0.02}, 1.0, {})
     small = dict.fromkeys(estimate.BOUND, 1e-6)
     assert estimate.held_errors(small, run, run)["impulse"] == pytest.approx(max(1e-6, least * 0.02))

@@ -1,4 +1,4 @@
-"""Figures and the snapshots they are drawn from."""
+"""Figures and the snapshots from which they are drawn."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,8 @@ from ffimpact.report import bodies, drawing, figures
 
 
 def test_a_title_is_shown_as_written(tmp_path):
-    """Dollars are no formula, control characters are blanks, what is too long is wrapped and cut."""
+    """Dollar signs are not formulas, control characters become blanks, long titles are wrapped and
+    cut."""
     body = dict(law="svk", young=7e6, nu=0.4, density=1722)
     scene = dict(title="from $5 to $\\frac{$ \0", body=[body | dict(name=f"body{k}") for k in range(1000)])
     text = drawing.wrapped(bodies.title(scene), 8)
@@ -20,7 +21,8 @@ def test_a_title_is_shown_as_written(tmp_path):
 
 
 def test_balance_of_bodies_at_rest():
-    """Under gravity from rest kinetic and elastic energy are the work of the weight: their sum less that work is 0, no scale for the balance."""
+    """Under gravity from rest, kinetic and elastic energy equal the work of the weight. Their
+    difference is 0 and cannot scale the balance."""
     t = np.linspace(0, 1e-2, 5)
     rest = np.zeros_like(t)
     history = dict(t=t, kinetic=1e3 * t, elastic=2e3 * t, contact=rest, friction_work=rest, external_work=3e3 * t, balance=np.full_like(t, 3e-12), normal_force=rest)
@@ -31,7 +33,8 @@ def test_balance_of_bodies_at_rest():
 
 
 def test_fifty_bodies_and_no_force(recwarn):
-    """Of many bodies legends and titles name the first and the last; where nothing touched there is no legend of forces, and no warning."""
+    """With many bodies, legends and titles contain the first and the last. Without contact forces
+    there is no legend and no warning."""
     t = np.linspace(0, 1e-2, 5)
     many, scene = {f"body{k}": f"_{k}" for k in range(1, 51)}, {"script": "bodies", "body": [{"name": f"body{k}"} for k in range(1, 51)]}
     history = dict(t=t, dt=0 * t + t[1], normal_force=0 * t, friction_force=0 * t) | {f"{name}{of}": (name == "vx") + 0 * t

@@ -1,4 +1,5 @@
-"""Free flights of rigid bodies, whatever their length, to the first touch, and the end of a run: when they meet nothing any more."""
+"""Free flights of rigid bodies of any duration until contact, and the end of a run if no further
+contact follows."""
 
 import math
 
@@ -18,13 +19,15 @@ MISSES = {
 
 @pytest.mark.parametrize("case", MISSES)
 def test_what_misses_never_touches(case):
-    """Bodies that pass each other, be it by a millimetre, have no contact at any time."""
+    """Bodies that miss each other, be it by a millimetre, have no contact at any time."""
     """Bodies that pass each other by a millimetre are said to miss, those alone."""
-    assert all(one.never for one in approach.meetings(MISSES[case]))          # or not looked at, where the spheres around them stay apart
+    # Pairs are skipped if their bounding spheres stay apart.
+    assert all(one.never for one in approach.meetings(MISSES[case]))
 
 
 def test_a_body_set_down_is_refused_at_once():
-    """A square on the floor, also with a ceiling that touches it, never leaves: without end_time that is said before anything is computed."""
+    """A square on the floor, also with a ceiling in contact, never leaves. Without end_time this is
+    refused before the computation."""
     square = {"shape": "rectangle", "width": 0.1, "height": 0.1, "position": [0, 0.05]}
     for more in ((), ({"kind": "plane", "point": [0, 0.1], "normal": [0, -1]},)):
         given = read(square, obstacles=(FLOOR, *more), gravity=9.81)
@@ -33,7 +36,8 @@ def test_a_body_set_down_is_refused_at_once():
 
 
 def test_corners_that_follow_are_fine():
-    """A square that falls on a corner turns and strikes with the next one: both are meetings of the pair, the second with a corner lowest."""
+    """A square that falls on a corner rotates and strikes with the next one: the pair has two
+    contacts, the second with another lowest corner."""
     square = {"shape": "rectangle", "width": 0.1, "height": 0.1, "position": [0, 0.08], "angle": 20, "velocity": [0, -2]}
     first, second = approach.meetings(read(square, obstacles=(FLOOR,)))
     assert first.time < math.inf and second.closing < first.closing

@@ -1,4 +1,4 @@
-"""Flat strikes: which they are, and what elements, steps and penalty they get (front.py)."""
+"""Flat strikes: their recognition, and their elements, steps and penalty (front.py)."""
 
 import math
 from dataclasses import replace
@@ -37,7 +37,8 @@ def fronts(wanted: scene.Scene) -> list[front.Front]:
 
 
 def test_a_face_on_a_plane_is_a_flat_strike(tmp_path):
-    """Its elements are of the length along the normal, and it takes the front their transit."""
+    """Its element size is measured along the normal, and the rise time of the front is the transit
+    time of an element."""
     one, = fronts(given(BLOCK, tmp_path))
     assert one.crossed == (0,) and one.sizes[0] == pytest.approx(front.PER_ACCURACY * 0.02 * 0.1)
     assert one.tau == pytest.approx(one.sizes[0] / C) and one.transit == pytest.approx(0.1 / C)
@@ -47,35 +48,39 @@ def test_a_face_on_a_plane_is_a_flat_strike(tmp_path):
 @pytest.mark.parametrize("entries", [dict(body__1__angle=1.0, body__1__position=[0, 0.0518]), dict(end_time=1.0), dict(body__1__velocity=[0.3, 0], gravity=9.81,
                          end_time=0.01), dict(until="rest", gravity=9.81, viscosity=10.0)], ids=["tilted", "long", "set down", "to rest"])
 def test_what_is_no_flat_strike(entries, tmp_path):
-    """A face that lands corner first, one that is set down, and a run that goes on for long after the strike."""
+    """A face that lands on a corner first, a body that is set down, and a run that continues long
+    after the strike."""
     assert fronts(given(BLOCK, tmp_path, **entries)) == []
 
 
 def test_a_tilt_that_closes_before_the_front_has_passed_an_element_is_flat(tmp_path):
-    """At a hundred times the speed the corner that is late lands while the front is in the first element."""
+    """At a hundred times the speed the late corner lands while the front is in the first element.
+    """
     tilted = dict(body__1__angle=1.0, body__1__position=[0, 0.0518])
     assert fronts(given(BLOCK, tmp_path, body__1__velocity=[0, -0.5 * C], **tilted))
 
 
 @pytest.mark.parametrize("name", ["disc-normal", "disc-oblique", "two-discs", "three-in-a-row", "disc-corner", "block-corner", "balls-3d", "ball-cylinder"])
 def test_round_bodies_strike_no_face(name):
-    """No built-in scene of round bodies or corners has a front; its data say nothing of one."""
+    """No built-in scene of round bodies or corners has a front."""
     wanted = scene.load(name)
     if wanted.bodies:
         assert fronts(wanted) == []
 
 
 def test_two_bars_have_one_front(tmp_path):
-    """The shorter bar sets the elements of both."""
+    """The shorter bar determines the elements of both."""
     one, = fronts(given(BARS, tmp_path))
     assert one.crossed == (0, 1) and one.sizes[0] == one.sizes[1] == pytest.approx(front.PER_ACCURACY * 0.02 * 0.1)
     stiff, = fronts(given(BARS, tmp_path, body__2__young=1e8))
-    assert stiff.sizes[1] == pytest.approx(10 * stiff.sizes[0])          # in equal times ten times as far
+    # In equal times waves travel ten times as far.
+    assert stiff.sizes[1] == pytest.approx(10 * stiff.sizes[0])
 
 
 @pytest.mark.parametrize("exponent", [1.0, 1.5])
 def test_the_penalty_lets_the_front_rise_in_its_time(exponent, tmp_path):
-    """At the pressure rho c v of the strike a surface is pressed in by v times the rise; two bodies share it."""
+    """At the pressure rho c v of the strike the penetration is v times the rise time. Two bodies
+    share it."""
     wall, = fronts(given(BLOCK, tmp_path))
     bodies = given(BLOCK, tmp_path).bodies
     assert wall.penalty(bodies, exponent) * (0.3 * wall.rise)**exponent == pytest.approx(1e3 * C * 0.3)
@@ -85,7 +90,7 @@ def test_the_penalty_lets_the_front_rise_in_its_time(exponent, tmp_path):
 
 
 def test_the_unknowns_of_a_front_are_limited(tmp_path):
-    """A thin plate gets no more elements than a front is worth."""
+    """The number of elements of a thin plate is bounded."""
     plate = given(BLOCK, tmp_path, body__1__width=2.0, body__1__height=0.02, body__1__position=[0, 0.01], accuracy=0.001)
     one, = fronts(plate)
     assert 9.5 * 2.0 * 0.02 / one.sizes[0]**2 == pytest.approx(front.MOST_UNKNOWNS[2])

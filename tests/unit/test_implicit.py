@@ -1,4 +1,5 @@
-"""Obstacles by an expression of their signed distance: what is accepted, the program, the gap."""
+"""Obstacles given by an expression of their signed distance: accepted expressions, the program, the
+gap."""
 
 import numpy as np
 import pytest
@@ -18,7 +19,7 @@ def settled(text, centre=(0.0, 0.05), half=0.1):
     ("2^-1*(x - y)/(1 + x*x)", lambda x, y: 0.5 * (x - y) / (1 + x * x)), ("max(abs(x), min(y, 0.1)) - 1e-2", lambda x, y: np.maximum(abs(x), np.minimum(y, 0.1)) - 0.01),
     ("sqrt(x^2+y^2+1) - exp(cos(x))", lambda x, y: np.sqrt(x**2 + y**2 + 1) - np.exp(np.cos(x)))])
 def test_a_program_is_its_expression(text, value):
-    """Value and gradient, the latter against central differences."""
+    """Value and gradient; the gradient agrees with central differences."""
     code = implicit.program("obstacle.1.distance", text, "xy")
     found, slope = implicit.run(code, POINTS)
     assert found == pytest.approx(value(*POINTS.T), rel=1e-13, abs=1e-15)
@@ -32,7 +33,8 @@ def test_a_program_is_its_expression(text, value):
     ("y + True", "'True' in 'y + True' is not known"), ("y; x", "is no expression"), ("", "is no expression"), (3, "'3' is no expression"), (None, "is missing"),
     ("(" * 400 + "y" + ")" * 400, "is no expression"), ("y+" * 600 + "y", "1201 characters (accepted: up to 1000)"), ("x[0]", "is not known"), ("y := 1", "is no expression")])
 def test_other_text_is_refused_in_one_line(text, wrong):
-    """Nothing but numbers, coordinates, the four operations, powers by numbers and the named functions is taken."""
+    """Only numbers, coordinates, the four operations, powers with numbers and the listed functions
+    are accepted."""
     with pytest.raises(BadInput, match=r"^obstacle\.1\.distance: ") as error:
         implicit.program("obstacle.1.distance", text, "xy")
     assert wrong in str(error.value) and "(accepted: " in str(error.value) and "\n" not in str(error.value)
@@ -46,7 +48,11 @@ def test_expressions_without_a_surface_are_refused(text, wrong):
 
 @pytest.mark.parametrize("text", ["sqrt(x^2 + y^2) - 0.1", "x*x + y*y - 0.01", "5*(x^2 + y^2 - 0.01)"])
 def test_the_gap_is_the_distance(text):
-    """Of any expression with the same zeros; farther than `limit` it is no more than that. The limit is a third of the radius of curvature."""
+    """This holds for any expression with the same zeros. Beyond `limit` the gap is at most the
+    distance.
+
+    The limit is a third of the radius of curvature.
+    """
     numbers = settled(text)
     found, exact = implicit.gap(POINTS, numbers), np.linalg.norm(POINTS, axis=1) - 0.1
     near = abs(exact) < 0.02
@@ -60,16 +66,19 @@ def test_the_gap_is_the_distance(text):
                                           ("y - sqrt(x^2 + z^2 + 1e-10)", (0.0, 0.05, 0.0)),
                                           ("y - sqrt(x^2 + 1e-10)", (0.0, 0.05, 0.0))])
 def test_the_closest_point_is_not_the_bottom_of_a_groove(text, centre):
-    """Above the narrow bottom of a funnel or groove the walls are nearer than the bottom is, also exactly
-    above it, where the bottom is a stationary point of the distance."""
+    """Above the narrow bottom of a funnel or groove the walls are nearer than the bottom.
+
+    This also holds exactly above it, where the bottom is a stationary point of the distance.
+    """
     numbers, points = settled(text, centre), np.zeros((3, len(centre)))
-    points[:, 1] = numbers[1] * np.array([0.1, 0.5, 0.9])             # the walls are within `limit`
+    points[:, 1] = numbers[1] * np.array([0.1, 0.5, 0.9])  # the walls are within `limit`
     distance = points[:, 1] / np.sqrt(2)
     assert numbers[1] > 1e-3 and implicit.gap(points, numbers) == pytest.approx(distance, abs=1e-6)
 
 
 def test_an_expression_that_is_no_distance_far_away():
-    """exp(y/c) - 1 looks c away from everywhere above, and overflows: gaps are no more than the distance, and outside."""
+    """exp(y/c) - 1 gives a distance of about c everywhere above, and overflows. Gaps are at most
+    the distance and positive."""
     numbers = settled("exp(y/0.02) - 1")
     heights = np.array([1e-3, 0.09, 0.5, 3.0, 30.0, 1e5])
     found = implicit.gap(np.column_stack([0 * heights, heights]), numbers)

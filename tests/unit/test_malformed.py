@@ -1,4 +1,8 @@
-"""Malformed input over all three routes: each is one line on stderr that names what is wrong, exit code 10 or 14, nothing left behind, no hang."""
+"""Malformed input by all three interfaces.
+
+Each gives one line on stderr with the error and exit code 10 or 14, leaves no files and does not
+hang.
+"""
 
 import re
 import signal
@@ -22,7 +26,8 @@ from tests.support.malformed import (
 
 @pytest.fixture(autouse=True)
 def place(tmp_path, monkeypatch):
-    """An empty working folder; afterwards nothing is in it but what the test itself put there. Twenty seconds at most."""
+    """An empty working folder that must be clean after the test. The test ends after twenty seconds
+    at most."""
     def too_long(*_):
         raise AssertionError("no answer after 20 s")
     before = signal.signal(signal.SIGALRM, too_long)
@@ -33,20 +38,21 @@ def place(tmp_path, monkeypatch):
     signal.signal(signal.SIGALRM, before)
 
 
-# By flag all forms of numbers, and a third of ranges and words, of which one table says what is accepted; that the other routes lead to the same parser a fifth shows.
+# All forms of numbers run with flags, and a third of ranges and words, which come from one table. A
+# fifth shows that the other interfaces use the same parser.
 SOME = [value if k % 5 == 0 else pytest.param(*value, marks=pytest.mark.robustness) for k, value in enumerate(VALUES)]
 
 
 @pytest.mark.parametrize("name, value", SOME)
 def test_value_given_to_python(capsys, name, value):
-    """A value that is not accepted, by --set."""
+    """A value that --set does not accept."""
     by_python(capsys, f"{name}: ", "run", "disc-normal", "--set", f"{name}={value}", "--out", "a/out") if value.strip() == value else \
         by_python(capsys, f"{name}: |--set: ", "run", "disc-normal", "--set", f"{name}=?{value}", "--out", "a/out")
 
 
 @pytest.mark.parametrize("name, value", SOME)
 def test_value_in_a_scene(capsys, name, value):
-    """A value that is not accepted, in a scene file, as text and, where TOML takes it so, as it is."""
+    """A value that is not accepted in a scene file, as text and, if TOML permits, as it is."""
     in_a_scene(capsys, f"scene.toml: {name}: ", f"{name} = {toml(value)}\n")
     if re.fullmatch(r"-?[0-9.]+(e-?[0-9]+)?|-?inf|nan|true|\[8\]", value) and value not in (".", "-", "8.") and len(value) < 4000:
         in_a_scene(capsys, f"scene.toml: {name}: ", f"{name} = {value}\n")
@@ -66,13 +72,13 @@ SCENES = {
 
 @pytest.mark.parametrize("name", SCENES)
 def test_scene_file(capsys, name):
-    """A scene file that is none, in form, encoding or content."""
+    """An invalid scene file: form, encoding or content."""
     in_a_scene(capsys, r"scene\.toml: ", SCENES[name])
 
 
 @pytest.mark.parametrize("kind", INPUTS)
 def test_path_of_a_scene(capsys, kind):
-    """A scene that cannot be a file; none of these is waited for."""
+    """A path that cannot be a scene file. The program does not wait for any of them."""
     path = special(kind)
     by_python(capsys, re.escape(path), "run", path, "--out", "a/out")
     by_python(capsys, re.escape(path), "sweep", path, "--out", "a/out")
@@ -80,7 +86,8 @@ def test_path_of_a_scene(capsys, kind):
 
 # ---- sweeps
 
-SWEEPS = {   # others are in test_sweep.py
+# test_sweep.py has further files.
+SWEEPS = {
     "nothing varies": ('scene = "disc-normal"\n', "product: "), "a range without end": ("[product]\nspeed = { from = 1, points = 3 }\n", "speed: "),
     "an empty zip": ("[[zip]]\n", "zip: "), "a scene that is not there": ('scene = "x.toml"\n[product]\nspeed = [1]\n', "x.toml: "),
     "coarser": ("[product]\naccuracy = [0.1]\nspeed=[1]\n[refine]\naccuracy = 0.2\n", "refine: "), "deep": ("product = " + "[" * 100_000, "nested too deep"),
@@ -89,12 +96,12 @@ SWEEPS = {   # others are in test_sweep.py
 
 @pytest.mark.parametrize("name", SWEEPS)
 def test_sweep_file(capsys, name):
-    """A sweep file that is none, or does not make sense."""
+    """An invalid or meaningless sweep file."""
     text, words = SWEEPS[name]
     Path("sweep.toml").write_text(text)
     by_python(capsys, words, "sweep", "sweep.toml", "--out", "a/out")
 
 
 def test_there_are_enough():
-    """At least 150 of them, over all three routes."""
+    """There are at least 150 inputs over all three interfaces."""
     assert 3 * len(VALUES) + 3 * len(NAMES) + 3 * len(SENSELESS) + len(SCENES) + len(FLAGS) + len(COMMANDS) + len(SWEEPS) >= 150

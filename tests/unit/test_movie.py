@@ -1,4 +1,5 @@
-"""The film of a scene: its frames, its file, and what happens without ffmpeg or when the drawing is stopped."""
+"""The film of a scene: its frames, its file, and the cases without ffmpeg and with interrupted
+drawing."""
 
 import numpy as np
 import pytest
@@ -8,7 +9,8 @@ from ffimpact.report import figures
 
 
 def test_diameter_turns_with_the_body():
-    """A whole disc turned by 90 degrees to the left: its upright diameter lies, the top on the left."""
+    """A whole disc rotated by 90 degrees to the left: its vertical diameter is horizontal, with the
+    top on the left."""
     ring = np.linspace(0, 2 * np.pi, 24, endpoint=False)
     points = np.vstack([[0, 0.05], np.column_stack([0.05 * np.sin(ring), 0.05 + 0.05 * np.cos(ring)])])
     triangles = np.array([[0, k + 1, (k + 1) % 24 + 1] for k in range(24)])

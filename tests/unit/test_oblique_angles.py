@@ -1,4 +1,5 @@
-"""make oblique-angles: what theory says in its limits, verdicts that can fail, bad input, and real impacts of a disc."""
+"""make oblique-angles: limits of the theories, verdicts that can fail, wrong input, and impacts of
+a disc."""
 
 import numpy as np
 import pytest
@@ -11,8 +12,12 @@ from verification.oblique_ball import NU
 
 @pytest.mark.parametrize("body, inertia", [("disc", 2), ("ball", 2.5)])
 def test_rigid_theory(body, inertia):
-    """Steeply a rigid body leaves rolling, psi_2 = 0; beyond v_t/v_n = (1 + R^2/k^2) mu (1 + e), 3 or 7/2 times, it slides: beta = -1 + (6 or 7)(1 + e)(1 - nu)/((2 - nu) psi_1);
-    the centre then keeps 2/3 or 5/7 of its speed, or all but mu (1 + e) v_n."""
+    """At steep incidence a rigid body leaves rolling, psi_2 = 0. For v_t/v_n > (1 + R^2/k^2) mu (1
+    + e), a factor of 3 or 7/2, it slides.
+
+    Then beta = -1 + (6 or 7)(1 + e)(1 - nu)/((2 - nu) psi_1). A rolling centre keeps 2/3 or 5/7 of
+    its speed, a sliding one all but mu (1 + e) v_n.
+    """
     e, friction = 0.8, 0.3
     border = (1 + inertia) * friction * (1 + e)
     steep, flat = (float(angles.number(border * share, friction)) for share in (0.99, 1.5))
@@ -24,7 +29,7 @@ def test_rigid_theory(body, inertia):
 
 
 def test_a_failed_run_is_no_agreement():
-    """It has no numbers, is named with its reason, and the requirement fails."""
+    """A failed run has no numbers, is reported with its reason, and the requirement fails."""
     table = rows()
     table.loc[0, ["e", "along", "psi_2", "psi_2_error"]] = np.nan
     table.loc[0, ["exit", "message"]] = 11, "step: no convergence"
@@ -40,7 +45,8 @@ def test_a_failed_run_is_no_agreement():
     (["--friction", "smooth"], "'smooth' is not accepted"), (["--bodies", "disc,cube"], "--bodies: 'cube' is not known (accepted: disc, ball"),
     (["--kinds", "soft"], "--kinds: 'soft' is not known (accepted: stiff, paper, slow")])
 def test_bad_input(tmp_path, capsys, words, said):
-    """Exit code 10, one line that names the option, the value and what is accepted; nothing is run or made."""
+    """Exit code 10, one line with the option, the value and what is accepted. Nothing runs and no
+    folder is made."""
     assert guarded(measurements.main, ["oblique-angles", *words, "--out", str(tmp_path / "out")]) == 10
     error = capsys.readouterr().err
     assert error.count("\n") == 1 and said in error and not (tmp_path / "out").exists()

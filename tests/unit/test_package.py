@@ -1,4 +1,5 @@
-"""The installed package: what is in it, that it runs from any folder, and what it says where something is missing."""
+"""The installed package: its files, its use from any folder, and its messages if something is
+missing."""
 
 import re
 
@@ -7,14 +8,16 @@ from tests.support.package import PROJECT, packed
 
 
 def test_the_package_holds_every_file_of_the_program():
-    """Nothing of orchestrate/ffimpact/ and edp/ is forgotten, nothing else comes along, and no other name lands in site-packages."""
+    """All files of orchestrate/ffimpact/ and edp/ are installed, no others, and there is no other
+    name in site-packages."""
     there = {path for place in ("orchestrate/ffimpact", "edp") for path in (ROOT / place).rglob("*") if path.is_file() and path.suffix != ".pyc"}
     assert {str(path.relative_to(ROOT)) for path in there - set(packed().values())} == set()
     assert set(packed().values()) <= there and {name.split("/")[0] for name in packed()} == {"ffimpact"}
 
 
 def test_the_lock_is_within_the_ranges():
-    """requirements.lock pins every dependency, and what the tests and checks need, at a version that pyproject.toml accepts."""
+    """requirements.lock pins every dependency, also of tests and checks, at a version that
+    pyproject.toml accepts."""
     def numbers(version: str) -> tuple[int, ...]:
         return tuple(map(int, version.split(".")))
     pins = dict(re.findall(r"^([\w-]+)==([\d.]+)", (ROOT / "requirements.lock").read_text(), re.MULTILINE))

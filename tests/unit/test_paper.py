@@ -1,4 +1,5 @@
-"""The report of the paper: each verdict flips when its numbers do, the page is self-contained, a missing case stops it."""
+"""The report of the paper: verdicts change with their numbers, the page is self-contained, a
+missing case stops it."""
 
 import re
 
@@ -19,18 +20,20 @@ from tests.support.paper import (
 
 @pytest.mark.parametrize("name", FIND)
 def test_every_verdict_can_fail(name):
-    """For each statement some change of the results makes another verdict of it, and the paper's words can be refused."""
+    """For each statement some change of the results changes the verdict, and some change gives
+    "does not agree"."""
     verdicts = {verdict for _, verdict, _ in CASES[name]}
     assert DIFFERS in verdicts and len(verdicts) > 1 and CASES[name][0][0] is SAME
 
 
 def test_only_statements_have_cases():
-    """No case is left behind by a statement that is gone, and no two statements share a name."""
+    """Every case belongs to a statement, and the names of the statements differ."""
     assert set(CASES) == set(FIND) and len(FIND) == len(STATEMENTS)
 
 
 def test_rigid_disc_stops_to_slide():
-    """The share of the impulse by steps of a rigid disc's own balance: friction takes 3/m of the slip per unit of impulse."""
+    """The share of the impulse from steps of the balance of a rigid disc: friction reduces the slip
+    by 3/m per unit of impulse."""
     e, v_n, v_t, mu = 0.8355, 12 * np.sin(np.pi / 3), 6.0, 0.5
     pushes = np.linspace(0, (1 + e) * v_n, 100001)[1:]
     slip = v_t - 3 * mu * pushes
@@ -38,20 +41,22 @@ def test_rigid_disc_stops_to_slide():
 
 
 def test_load_changes_are_weighted_with_the_load():
-    """A change under no load is none; the whole of a constant load that goes over and back counts two."""
+    """A change without load does not count. A constant load that changes to sliding and back counts
+    two."""
     history = lambda force: {"normal_force": np.array(force), "sliding_fraction": np.array([0, 0, 1, 1, 0, 0.0])}   # noqa: E731
     assert paper_friction.load_changes(history([1, 1, 1, 1, 1, 1.0])) == pytest.approx(2)
     assert paper_friction.load_changes(history([4, 1e-9, 1e-9, 1e-9, 1e-9, 4])) < 1e-6
 
 
 def test_no_statement_says_how_the_paper_ran_it():
-    """It states neither mesh nor step: only how it may have been run."""
+    """The paper gives neither mesh nor step, so texts may only assume how it was run."""
     files = [ROOT / name for name in ("README.md", "Makefile")] + [*(ROOT / "orchestrate/ffimpact").rglob("*.py"), *(ROOT / "orchestrate").rglob("*.toml")]
     assert not [path for path in files if "as the paper ran it" in path.read_text()]
 
 
 def test_the_block_is_the_papers_with_either_law():
-    """Section 3.2: radius 0.5 m, 10 m x 2 m, 10 m/s straight down, E = 7 MPa, 1722 kg/m3, no friction, no gravity; only the law differs."""
+    """Section 3.2: radius 0.5 m, 10 m x 2 m, 10 m/s vertically, E = 7 MPa, 1722 kg/m3, no friction,
+    no gravity. Only the law differs."""
     svk, other = (scene.load(name).values for name in paper_bodies.BLOCK.values())
     assert {name for name in svk if svk[name] != other[name]} == {"law"} and (svk["law"], other["law"]) == ("svk", "neohookean")
     assert [svk[name] for name in ("radius", "block_width", "block_height", "speed", "angle", "young", "density", "friction_static", "gravity")] == [
@@ -59,13 +64,13 @@ def test_the_block_is_the_papers_with_either_law():
 
 
 def test_every_statement_of_the_paper_is_there():
-    """Every item of the paper that has a number or a claim."""
+    """Every item of the paper with a number or a claim has a statement."""
     items = " ".join(item for item, _, _ in STATEMENTS)
     assert all(word in items for word in ("4b", "5a", "5b", "6a", "6b", "7a", "7b", "Figure 8", "figure 9", "figure 10", "figure 11"))
 
 
 def test_maxima_must_stand_out():
-    """Wiggles below the threshold are none."""
+    """Oscillations below the threshold do not count."""
     t = np.linspace(0, 1, 400)
     assert maxima(np.sin(np.pi * t), 0.01) == 1
     assert maxima(np.sin(np.pi * t) + 0.2 * np.sin(20 * np.pi * t), 0.02) > 3
@@ -74,7 +79,7 @@ def test_maxima_must_stand_out():
 
 
 def test_text_of_all_pictures_has_one_size(tmp_path):
-    """Each is as wide on the page as it was drawn, 5 inches twice as wide as 2.5."""
+    """Figures have their drawn width on the page: 5 inches are twice as wide as 2.5."""
     for inches in (2.5, 5.0):
         figure = figures.plt.figure(figsize=(inches, 1), dpi=figures.STYLE["savefig.dpi"])
         figure.savefig(tmp_path / f"{inches}.png")

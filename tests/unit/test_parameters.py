@@ -1,4 +1,4 @@
-"""The parameter table and the scenes that are made of it."""
+"""The table of parameters, and scenes made of it."""
 
 import pytest
 
@@ -8,18 +8,19 @@ from ffimpact.input import flags, parameters
 
 
 def test_the_flags_of_the_scripts_are_those_of_the_table():
-    """edp/core/input/parameters.idp is as the table makes it: python -m ffimpact.input.flags writes it."""
+    """edp/core/input/parameters.idp equals the text generated from the table by python -m
+    ffimpact.input.flags."""
     assert flags.FILE.read_text() == flags.written()
 
 
 def test_every_row_has_its_words():
-    """Each has a unit, a meaning and a default that is accepted."""
+    """Each parameter has a unit, a meaning and an accepted default."""
     for row in parameters.PARAMETERS.values():
         assert row.unit and row.help and row.check(row.default) == row.default, row.name
 
 
 def test_known_rows():
-    """Values of the table arrive with their types."""
+    """Values of the table have their types."""
     table = parameters.PARAMETERS
     assert (table["young"].default, table["young"].unit, table["young"].low) == (7e6, "Pa", 1e-6)
     assert table["law"].words[:2] == ("svk", "neohookean")
@@ -41,14 +42,14 @@ def test_numbers_that_are_accepted(given, value):
     ("law", "hooke", "law: 'hooke' is not known; did you mean neohookean? (accepted: " + "|".join(parameters.PARAMETERS["law"].words) + ")"),
 ])
 def test_bad_values_are_named_with_what_is_accepted(name, given, message):
-    """The message for a bad value names the parameter, the value and the range or the words, as the scripts do."""
+    """The message has the parameter, the value and the range or the words, as in the scripts."""
     with pytest.raises(BadInput) as error:
         parameters.check({name: given})
     assert str(error.value) == message and error.value.code == 10
 
 
 def test_unknown_parameter_gets_a_suggestion():
-    """A misspelt parameter is named, with the closest match and the list of all."""
+    """The message has the misspelt parameter, the closest match and the list of all parameters."""
     with pytest.raises(BadInput, match="sped: no such parameter; did you mean speed.*accepted: law, young"):
         parameters.check({"sped": 8})
     with pytest.raises(BadInput, match="^mesh: no such parameter"):
@@ -56,7 +57,8 @@ def test_unknown_parameter_gets_a_suggestion():
 
 
 def test_scene_file(tmp_path):
-    """A TOML file sets what differs from the defaults; overriding leaves the original alone."""
+    """A TOML file sets entries that differ from the defaults. Overriding does not change the
+    original."""
     path = tmp_path / "fast.toml"
     path.write_text('title = "fast"\nscript = "disc-plane"\nspeed = 11\n')
     loaded = scene.load(str(path))
@@ -71,7 +73,7 @@ def test_scene_file(tmp_path):
     ("script = ['nothing']", "bad.toml: script: .* is not known"),
 ])
 def test_bad_scene_files_are_named(tmp_path, text, words):
-    """A broken scene file is bad input that names the file and the key."""
+    """A broken scene file raises BadInput with the file and the key."""
     (tmp_path / "bad.toml").write_text(text)
     with pytest.raises(BadInput, match=words):
         scene.load(str(tmp_path / "bad.toml"))
@@ -80,7 +82,8 @@ def test_bad_scene_files_are_named(tmp_path, text, words):
 @pytest.mark.parametrize("text, said", [("", "says nothing .accepted: a scene"), ('[[obstacle]]\nkind = "plane"\n', "body: is missing .accepted: one table"),
                                         ("[contact]\nfriction_static = 0.3\n", "body: is missing")])
 def test_a_file_without_bodies_is_no_scene(tmp_path, text, said):
-    """An empty file is not a run at the defaults; obstacles or contact without bodies say what is missing."""
+    """An empty file is not a run with defaults. Obstacles or contact without bodies are reported as
+    incomplete."""
     path = tmp_path / "mine.toml"
     path.write_text(text)
     with pytest.raises(BadInput, match=said):

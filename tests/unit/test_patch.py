@@ -1,5 +1,5 @@
-"""The contact as a whole: its half-width and largest pressure in the history, where and when in the summary, against fields/contact.csv; its points as
-files for ParaView; its figure."""
+"""The contact area: half-width and largest pressure in the history and the summary against
+fields/contact.csv, ParaView files, the figure."""
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -10,7 +10,11 @@ from ffimpact.report import contact
 
 
 def cloud(bodies: int, turn: float) -> np.recarray:
-    """Points under load of whole bodies in three dimensions, in a disc of radius 1 mm whose normal is turned by an angle about z: pressure p0 sqrt(1 - r^2)."""
+    """Loaded contact points of whole bodies in three dimensions, with the pressure p0 sqrt(1 -
+    r^2).
+
+    They lie in a disc of radius 1 mm whose normal is rotated by the angle `turn` about z.
+    """
     rng = np.random.default_rng(1)
     radius, angle = np.sqrt(rng.uniform(0, 1, 400)), rng.uniform(0, 2 * np.pi, 400)
     across, up = 1e-3 * radius * np.cos(angle), 1e-3 * radius * np.sin(angle)
@@ -21,7 +25,11 @@ def cloud(bodies: int, turn: float) -> np.recarray:
 
 
 def test_rings_are_means_over_the_surface():
-    """Over the distance from the first touch: the pressure of a ring is that of its radius, it slides beyond 0.7 mm and sticks within; their load is that of all."""
+    """Means over rings as functions of the distance from the first contact point.
+
+    The pressure of a ring is that of its radius. A ring slides beyond 0.7 mm and sticks within. The
+    loads of the rings add up.
+    """
     table = cloud(1, 0.0)
     own, words, states = contact.radial(table, None)
     now = own[own.t == 1e-3]
@@ -32,7 +40,8 @@ def test_rings_are_means_over_the_surface():
 
 @pytest.mark.parametrize("count, turn", [(1, 0.0), (2, 0.7)])
 def test_whole_bodies_in_three_dimensions_are_drawn(count, turn):
-    """Of several the patch lies in its own plane, however that is turned: its map is as wide as it is."""
+    """With several bodies the contact area is drawn in its own plane, in any orientation, and the
+    map has its width."""
     table = cloud(count, turn)
     figure = contact.draw(table, ["a", "b"][:count], False, np.array([]), None, "full", None)
     maps = [axes for axes in figure.axes if axes.get_aspect() == 1]

@@ -1,4 +1,4 @@
-"""Polylines as obstacles: which chains are accepted, and their signed distance."""
+"""Polylines as obstacles: accepted chains, and their signed distance."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ import pytest
 from ffimpact.failure import BadInput
 from ffimpact.geometry import polyline
 
-SQUARE = [[0, 0], [0, 1], [1, 1], [1, 0]]        # clockwise
+SQUARE = [[0, 0], [0, 1], [1, 1], [1, 0]]  # clockwise
 POINTS = np.random.default_rng(1).uniform(-2, 3, (2000, 2))
 
 
@@ -15,19 +15,21 @@ def distance(vertices, closed, rounding=0.0, points=POINTS):
 
 
 def square(points, rounding=0.0):
-    """Closed form of the block [0, 1] x [0, 1]."""
+    """The closed form for the block [0, 1] x [0, 1]."""
     q = abs(points - 0.5) - 0.5
     return np.hypot(*np.maximum(q, 0).T) + np.minimum(q.max(axis=1), 0) - rounding
 
 
 def test_clockwise_is_a_block_and_counter_clockwise_a_container():
-    """The free side is to the left of the direction of travel; rounding takes from it in both."""
+    """The free side is to the left of the direction of travel. Rounding reduces the gap in both
+    directions."""
     assert distance(SQUARE, True, 0.1) == pytest.approx(square(POINTS, 0.1), abs=1e-14)
     assert distance(SQUARE[::-1], True, 0.1) == pytest.approx(-square(POINTS) - 0.1, abs=1e-14)
 
 
 def test_open_chains_go_straight_on_beyond_their_ends():
-    """Two vertices are a plane, whatever their distance; three are a quadrant, with its corner in or out."""
+    """Two vertices are a plane, whatever their distance. Three are a quadrant with a convex or
+    concave corner."""
     x, y = POINTS.T
     assert distance([[0, 0.5], [1e-3, 0.5]], False) == pytest.approx(y - 0.5, abs=1e-12)
     corner = np.where((x < 0) & (y < 0), -np.hypot(x, y), np.minimum(x, y))
@@ -41,8 +43,9 @@ def test_numbers_are_those_of_the_scripts():
 
 @pytest.mark.parametrize("vertices, closed", [
     (SQUARE, True), (SQUARE[::-1], True), ([[0, 0], [1, 0]], False), ([[0, 0], [1, 0], [2, 0], [2, 1]], False),
-    ([[0, 1], [0, 0], [1, 0], [1, 1]], False),                           # a bucket with parallel walls
-    ([[0, 0], [1, 0], [1, 1], [2, 1], [2, 0], [3, 0]], False)])          # a bump on a floor: both ends on one line
+    ([[0, 1], [0, 0], [1, 0], [1, 1]], False),  # a container with parallel walls
+    # A step on a floor: both ends are on one line.
+    ([[0, 0], [1, 0], [1, 1], [2, 1], [2, 0], [3, 0]], False)])
 def test_chains_that_are_accepted(vertices, closed):
     polyline.check("obstacle.1", np.array(vertices, float), closed)
 
@@ -63,7 +66,7 @@ def test_chains_that_are_accepted(vertices, closed):
      "obstacle.1.vertices: side 1 and side 4 meet at [0.5, 0] (accepted: a chain that does not cross or touch itself; "
      "an open one goes straight on beyond its ends)")])
 def test_chains_that_are_not_accepted(vertices, closed, message):
-    """One line that names the table and the key, the value and what is accepted."""
+    """One line with the table and the key, the value and what is accepted."""
     with pytest.raises(BadInput) as error:
         polyline.check("obstacle.1", np.array(vertices, float), closed)
     assert str(error.value) == message

@@ -1,4 +1,4 @@
-"""What is shown while the program works: one line, nested parts in it, a sentence about a run that will take long."""
+"""The display of progress: one line with nested parts, and a sentence about long runs."""
 
 import re
 
@@ -11,7 +11,7 @@ from ffimpact.running import solver
 
 
 def told_of(name: str, monkeypatch, seen: list[tuple[float, freefem.At]], given: dict | None = None, mesh_file=None) -> list[str]:
-    """What is said of a run that reports these, each so many seconds after it began."""
+    """The sentences about a run with these reports (seconds since its start, state)."""
     said, clock = [], iter(seconds for seconds, _ in seen)
     monkeypatch.setattr(solver.time, "monotonic", lambda: next(clock))
     line = progress.Line(name, {"main run": 1.0})
@@ -23,7 +23,8 @@ def told_of(name: str, monkeypatch, seen: list[tuple[float, freefem.At]], given:
 
 
 def steadily(seconds: float, at: freefem.At) -> list[tuple[float, freefem.At]]:
-    """Reports of a run that has come `at` there in so many seconds, one step before them, and goes on at that pace."""
+    """Reports of a run with the state `at` after `seconds`, one step before it, and the same pace
+    afterwards."""
     return [(0.0, at._replace(share=at.share / at.steps, steps=1)), (seconds, at), (2 * seconds, at._replace(share=2 * at.share, steps=2 * at.steps))]
 
 
@@ -36,19 +37,20 @@ def steadily(seconds: float, at: freefem.At) -> list[tuple[float, freefem.At]]:
     ("two-discs", {"body.2.young": 1e12}, freefem.At(0.05, 1e-4, 500, 900, 300.0), "a stiff body beside a soft one, whose waves take 300 times as long"),
 ])
 def test_a_long_run_says_so_and_why(monkeypatch, name, given, at, words):
-    """A run that will take longer than a minute says so once, after its first seconds, with the entry that makes it long."""
+    """If a run will take longer than a minute, one sentence reports it after the first seconds,
+    with the entry that causes it."""
     sentence, = told_of(name, monkeypatch, steadily(6.0, at), given)
     assert sentence.startswith(f"{name}: about 2 min, for about {at.steps / at.share:.0f} steps of {at.unknowns} unknowns: {words}")
     assert not told_of(name, monkeypatch, steadily(2.5, at), given)
 
 
 def reports(shares: list[float], steps: list[int]) -> list[tuple[float, freefem.At]]:
-    """Reports every second: the share that seemed done, and the steps so far."""
+    """A report every second: the share that seems to be done, and the number of steps."""
     return [(float(k), freefem.At(share, 1e-4, count, 5000)) for k, (share, count) in enumerate(zip(shares, steps))]
 
 
 def ranges(sentence: str) -> list[tuple[float, float]]:
-    """The minutes and the steps of a forecast, at least and at most."""
+    """The minutes and the steps of a forecast, as lower and upper bounds."""
     words = re.search(r": (.*) min, for (.*) steps of 5000 unknowns", sentence).groups()
     numbers = [[float(number) for number in re.findall(r"[0-9.]+", each)] for each in words]
     return [(each[0], np.inf if "at least" in text else each[-1]) for each, text in zip(numbers, words)]
@@ -56,8 +58,12 @@ def ranges(sentence: str) -> list[tuple[float, float]]:
 
 @pytest.mark.parametrize("pace", ["steady", "slower", "recedes"])
 def test_a_forecast_is_renewed_by_the_pace_of_the_run(monkeypatch, pace):
-    """A run of 5 min that seems to take 2 at first: the sentences are few, each of a range beyond the one before, and the last contains, to a fifth, what
-    it takes in the end; one that goes on as it began has one sentence. Where the end recedes no upper bound is claimed."""
+    """A run of 5 min that seems to take 2 min at first gives few sentences. The last one contains
+    the final duration, to a fifth.
+
+    Each range exceeds the former one. A steady run gives one sentence. If the end recedes, there is
+    no upper bound.
+    """
     seconds = np.arange(300)
     first = 0.4 / 48 * seconds[:48]
     later = {"steady": 0.4 / 48 * seconds[48:120], "slower": 0.4 + 0.6 * (seconds[48:] - 47) / 253, "recedes": np.full(252, 0.4)}[pace]
@@ -66,7 +72,8 @@ def test_a_forecast_is_renewed_by_the_pace_of_the_run(monkeypatch, pace):
     found = [ranges(sentence) for sentence in said]
     assert len(said) == 1 if pace == "steady" else 2 <= len(said) <= 4
     assert all(later[0][0] > 0.9 * before[0][0] for before, later in zip(found, found[1:]))
-    assert not told_of("disc-normal", monkeypatch, reports((1 - shares).tolist(), range(1, len(shares) + 1)))    # the end only recedes
+    # The end only recedes.
+    assert not told_of("disc-normal", monkeypatch, reports((1 - shares).tolist(), range(1, len(shares) + 1)))
     minutes, steps = len(shares) / 60, 10 * len(shares)
     if pace == "recedes":
         assert any(high == np.inf for (_, high), _ in found)

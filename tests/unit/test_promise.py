@@ -1,4 +1,4 @@
-"""What is promised and how it is checked: scenes drawn at random, the promise; verdicts that can fail."""
+"""Tests of the accuracy and of the error estimates: random scenes, and verdicts that can fail."""
 
 import pandas as pd
 import pytest
@@ -6,18 +6,19 @@ import pytest
 from benchmarks import draws, promise
 from ffimpact.output import estimate
 
-# ---- scenes
+# ---- random scenes
 
 @pytest.mark.parametrize("hard", [False, True])
 def test_drawn_scenes_are_the_same_for_the_same_seed(hard):
-    """Fewer are the first of them; another seed gives others; none twice."""
+    """Fewer scenes are the first of them. Another seed gives other scenes; all scenes differ."""
     points = draws.draw(3, 60, hard)
     assert points == draws.draw(3, 60, hard) and points[:7] == draws.draw(3, 7, hard)
     assert not any(point in points for point in draws.draw(4, 60, hard)) and len({str(point) for point in points}) == 60
 
 
 def test_coarse_scenes_are_discs_and_balls_at_each_accuracy():
-    """As many of each kind at each accuracy, a fifth nearly incompressible, the same for the same seed; all are accepted."""
+    """Each kind is equally frequent at each accuracy, a fifth is nearly incompressible, equal seeds
+    give equal scenes. All are accepted."""
     drawn = draws.coarse(3, 120)
     assert drawn == draws.coarse(3, 120) and drawn[:7] == draws.coarse(3, 7) and not any(one in drawn for one in draws.coarse(4, 120))
     kinds = [(name, point["accuracy"]) for name, point in drawn]
@@ -26,10 +27,11 @@ def test_coarse_scenes_are_discs_and_balls_at_each_accuracy():
     assert all(promise.open_scene(name, point) and draws.words(point) for name, point in drawn)
 
 
-# ---- the promise
+# ---- requested accuracy and error estimates
 
 def errors(*values: float, stated: float = 2.0, warnings: str = "") -> pd.DataFrame:
-    """A table of the promise with these errors of every answer, over the accuracy, and `stated` of every answer."""
+    """A table with these errors of every result, over the accuracy, and the estimate `stated` of
+    every result."""
     return pd.DataFrame({"scene": "a", "error": values, "estimated": stated, "seconds": 1.0, "finer seconds": 9.0, "warnings": warnings, "message": ""}
                         | {name: values for name in estimate.PROMISED} | {f"{name} stated": stated for name in estimate.PROMISED})
 
@@ -41,7 +43,8 @@ GOOD = [0.5] * 38 + [1.5] * 2
     (GOOD, True), ([0.5] * 37 + [1.5] * 3, False), ([0.09] * 40, False), ([0.11] * 40, True), ([1.01] * 40, False), ([], False),
     ([float("nan")] * 40, False), (GOOD + [float("nan")] * 5, True)])
 def test_promise_is_kept_by_enough_scenes_at_no_more_than_its_price(values, good):
-    """95 % of the scenes that ended below what was asked, the median not far below it."""
+    """95 % of the finished scenes must be within the requested accuracy, and the median must not be
+    far below it."""
     assert promise.kept(errors(*values)) == good
     assert f"{sum(value <= 1 for value in values)} of {sum(value == value for value in values)} scenes are within" in promise.report(errors(*values))
 
@@ -49,13 +52,15 @@ def test_promise_is_kept_by_enough_scenes_at_no_more_than_its_price(values, good
 @pytest.mark.parametrize("values, stated, good", [
     ([0.5] * 38 + [2.1] * 2, 2.0, True), ([0.5] * 37 + [2.1] * 3, 2.0, False), ([0.5] * 40, 2.1, False), ([0.5] * 40, 0.5, True), ([0.5] * 40, 0.49, False)])
 def test_stated_errors_hold_and_are_not_far_too_large(values, stated, good):
-    """95 % of the cases of each promised answer within what is stated, which is up to four times the error in the median."""
+    """95 % of the cases of each promised result must be within the estimate, which may be up to
+    four times the error in the median."""
     table = errors(*values, stated=stated)
     assert promise.covered(table) == good and f"{sum(value <= stated for value in values) / 40:.1%}" in promise.report(table)
 
 
 def test_each_promised_answer_is_to_be_covered():
-    """One that is not, of six, is enough to fail; where there is no such answer (no friction) there is no case."""
+    """One of six results without coverage fails. A result that does not occur (no friction) has no
+    cases."""
     table = errors(*[0.5] * 40)
     table["friction_work"] = table["friction_work stated"] = 0.0
     assert promise.covered(table) and promise.cover(table).set_index("answer").cases["friction_work"] == 0
@@ -67,13 +72,14 @@ def test_each_promised_answer_is_to_be_covered():
     ("thresholded contact time: known to 3 %", True), ("peak force: moves", False), ("contact time: grazing", False), ("estimated errors: impulse 2 %", False),
     ("estimated errors: thresholded contact time 2 %", True)])
 def test_a_note_counts_where_it_is_about_an_answer_that_is_off(note, told):
-    """By the name of the answer, or where the error that is stated of it is above what was asked, too."""
+    """The note has the name of the result, or the error estimate of the result exceeds the
+    accuracy, too."""
     row = dict.fromkeys(estimate.PROMISED, 0.5) | {"thresholded_contact_time": 2.0, "thresholded_contact_time stated": 3.0 if told else 0.9}
     assert promise.is_about(note, row) == told and not promise.is_about(note, row | {"thresholded_contact_time": 0.9})
 
 
 def test_silent_are_those_above_without_a_warning():
-    """A warning says so, whatever it is about; missing ones (read from a file: nan) are none."""
+    """Any warning counts. Missing warnings (nan from a file) do not."""
     table = errors(0.5, 1.5, 2.0, 3.0).assign(warnings=["", "", None, "penalty: ..."])
     assert promise.silent(table) == 2 and "2 are above it without a warning" in promise.report(table)
 
@@ -81,7 +87,8 @@ def test_silent_are_those_above_without_a_warning():
 @pytest.mark.parametrize("hard", [False, True])
 @pytest.mark.parametrize("error, code", [(0.6, 0), (2.1, 1)])
 def test_promise_says_whether_it_is_kept(tmp_path, monkeypatch, capsys, error, code, hard):
-    """By its exit code and in words, in the hard scenes too, where what is above must have a warning; the table is a file."""
+    """The exit code and the text give the verdict. In hard scenes every excess must have a warning.
+    The table is a file."""
     monkeypatch.setattr(promise, "compare", lambda drawn, *_: errors(*[error] * len(drawn)))
     arguments = ["--scenes", "6", "--out", str(tmp_path), *(["--hard"] if hard else [])]
     assert promise.main(arguments) == code and ("IS NOT KEPT" in capsys.readouterr().out) == bool(code)
@@ -92,7 +99,8 @@ def test_promise_says_whether_it_is_kept(tmp_path, monkeypatch, capsys, error, c
 
 @pytest.mark.parametrize("missed, code", [(1, 0), (2, 1)])
 def test_stated_errors_at_coarse_accuracies_are_to_hold_of_each_answer_and_accuracy(tmp_path, monkeypatch, capsys, missed, code):
-    """Two of thirty scenes with a peak force beyond what is stated are too many, one is not; the table says by accuracy and by answer."""
+    """Two of thirty scenes with a peak force beyond the estimate fail, one does not. The table is
+    by accuracy and by result."""
     def compared(drawn, *_):
         table = errors(*[0.5] * len(drawn)).assign(accuracy=[point["accuracy"] for _, point in drawn], contact_time=0.5, peak_force=0.5)
         table[["contact_time stated", "peak_force stated"]] = 1.0

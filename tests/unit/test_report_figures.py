@@ -1,4 +1,5 @@
-"""What figures must say: where time begins, when the contact ends, the paper's number, a scale; and the cut of a body in three dimensions."""
+"""Content of figures: start of time, end of contact, the paper's number, a scale; and the section
+of a body in three dimensions."""
 
 import itertools
 from pathlib import Path
@@ -22,7 +23,8 @@ def closed():
 
 @pytest.mark.parametrize("draw", [bodies.forces, bodies.velocities, bodies.energies])
 def test_time_begins_at_zero_and_the_last_touch_is_marked(draw):
-    """A run from the touch on has a tick at t = 0; the end of the contact, inside the last step, is a line with its time, in the legend."""
+    """A run that starts at contact has a tick at t = 0. The end of contact, within the last step,
+    is a line with its time in the legend."""
     figure = draw(history(), SCENE)
     axes = figure.axes[0]
     assert axes.get_xlim()[0] == 0 and 0 in axes.get_xticks()
@@ -30,8 +32,11 @@ def test_time_begins_at_zero_and_the_last_touch_is_marked(draw):
 
 
 def test_a_body_that_goes_on_bouncing_has_no_last_touch():
-    """The run ends in the air between two touches: no end of the contact is claimed. A run that begins with a flight
-    begins a little before the touch, which does not stand on the axis."""
+    """If a run ends between two contacts, no end of contact is drawn.
+
+    If it begins with a flight, it begins shortly before contact, and this instant is not on the
+    axis.
+    """
     h = history(normal_force=np.where(np.arange(100) % 20 < 10, 1e3, 0.0))
     assert bodies.forces(h, SCENE | {"speed": 3, "touched": (0.0, 4.5e-3)}).axes[0].get_legend() is None
     figure = bodies.forces(history(t=np.linspace(2e-3, 7e-3, 100)), SCENE)
@@ -39,7 +44,8 @@ def test_a_body_that_goes_on_bouncing_has_no_last_touch():
 
 
 def test_the_papers_contact_time_is_drawn_beside_ours():
-    """4.8 ms for the disc at 8 m/s, inside the axis; another law says so; another speed has none."""
+    """4.8 ms for the disc at 8 m/s is inside the axis. For another law the label contains the
+    paper's law; another speed has no number."""
     axes = bodies.forces(history(), SCENE).axes[0]
     assert "paper, section 3.3: 4.8 ms" in labels(axes)
     other = bodies.forces(history(), SCENE | {"law": "neohookean"}).axes[0]
@@ -52,7 +58,8 @@ def test_the_papers_contact_time_is_drawn_beside_ours():
 
 
 def test_no_curve_hides_another():
-    """Under gravity the elastic, contact and gravity's energies are all near 0: each line on another is thinner; small ones say how large they get."""
+    """Under gravity, elastic, contact and gravity's energies are near 0. Coinciding lines become
+    thinner, and labels of small ones have their maximum."""
     axes = bodies.energies(history(external_work=np.full(100, 0.5)), SCENE).axes[0]
     widths = [line.get_linewidth() for line in axes.lines if line.get_label() in ("total", "kinetic", "elastic") or line.get_label().startswith(("contact", "external"))]
     assert len(widths) == 5 and widths == sorted(widths, reverse=True) and len(set(widths)) == 5
@@ -65,7 +72,8 @@ def test_no_contact_is_in_the_legend_of_rolling():
 
 
 def test_a_normal_impact_has_no_flight():
-    """The way of a body that neither goes along the plane nor turns is a vertical line: no figure of it."""
+    """The path of a body that neither moves along the plane nor rotates is a vertical line and is
+    not drawn."""
     assert not figures.goes_along(history(), SCENE)
     assert figures.goes_along(history(spin=np.full(100, 5.0)), SCENE) and figures.goes_along(history(vx=np.full(100, 1.0)), SCENE)
 
@@ -81,7 +89,8 @@ def test_scale_of_length(width, words):
 
 
 def test_a_body_at_rest_on_its_partner_has_no_restitution():
-    """An approach of round-off is no denominator; what a vibrating body is pushed off with is marked at the edge, and does not flatten the rest."""
+    """An approach velocity of round-off gives no restitution. An excessive value of a vibrating
+    body is marked at the edge and does not scale the axis."""
     rows = pd.DataFrame(dict(body=1, partner=-1, start=[0, 0.03, 0.05], end=[0.02, 0.04, 0.06], impulse=1.0, approach=[5e-20, 0.02, 0.03], separation=0.004,
                              restitution=[8e16, 0.2, 4.4], restitution_tangential=np.nan, slip_before=0.0))
     top = impacts.draw(rows.to_records(), ["body"], ["plane"]).axes[0]
@@ -90,16 +99,20 @@ def test_a_body_at_rest_on_its_partner_has_no_restitution():
     assert list(pushed.get_xdata()) == [50] and list(pushed.get_ydata()) == [impacts.HIGHEST]
 
 
-# ---- cut of a body in three dimensions
+# ---- section of a body in three dimensions
 
 def block(low: float, high: float, count: int) -> vtu.Solid:
-    """A block 2 x 2 from z = low to high, of quadratic tetrahedra, six a cell of count^3; u = (x, y, z), a field 1 + 2 x - y + z."""
+    """A block 2 x 2 from z = low to high of quadratic tetrahedra, six in each of count^3 cubes.
+
+    The displacement is u = (x, y, z), a field is 1 + 2 x - y + z.
+    """
     axis = np.linspace(-1, 1, count + 1)
     corners = np.array([(x, y, low + (high - low) * (z + 1) / 2) for x, y, z in itertools.product(axis, axis, axis)])
     number = {each: k for k, each in enumerate(itertools.product(range(count + 1), repeat=3))}
     cells = []
     for cell in itertools.product(range(count), repeat=3):
-        for order in itertools.permutations(range(3)):                    # along the edges of the cell from corner to corner
+        # Along the edges of the cube from corner to corner.
+        for order in itertools.permutations(range(3)):
             steps = np.cumsum([np.zeros(3, int), *np.eye(3, dtype=int)[list(order)]], axis=0)
             cells.append([number[tuple(np.add(cell, step))] for step in steps])
     points, middles, tetrahedra = list(corners), {}, []
@@ -119,7 +132,8 @@ def block(low: float, high: float, count: int) -> vtu.Solid:
 
 @pytest.mark.parametrize("low, high, count", [(-1, 2, 2), (-1, 1, 1), (-1, 1, 3), (-0.25, 0.75, 1)])
 def test_cut_of_a_whole_body(low, high, count):
-    """The cut covers the cross-section once, 4 m2, all triangles one way round, with fields that are exact where they are linear; nodes in the plane or not."""
+    """The section covers 4 m2 once, with triangles of one orientation and exact linear fields,
+    whether nodes lie in the plane or not."""
     solid = block(low, high, count)
     on_plane = np.abs(solid.points[:, 2]) < 1e-9
     snapshot = vtu.cut_in_plane(solid, on_plane)
@@ -129,7 +143,8 @@ def test_cut_of_a_whole_body(low, high, count):
     sides = np.sort(snapshot.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     outline = np.unique(sides, axis=0, return_counts=True)
     ends = snapshot.points[outline[0][outline[1] == 1]]
-    assert (np.isclose(np.abs(ends).max(axis=2), 1)).all()          # one piece: its only free sides are on the block's surface
+    # The section is connected: its free edges lie on the surface of the block.
+    assert (np.isclose(np.abs(ends).max(axis=2), 1)).all()
 
 
 def test_a_body_beside_the_plane_has_no_cut():
@@ -139,7 +154,8 @@ def test_a_body_beside_the_plane_has_no_cut():
 
 @pytest.mark.parametrize("restitution, drawn", [(np.nan, False), (0.8, True)])
 def test_no_legend_without_names(recwarn, restitution, drawn):
-    """Bounces of which none has a restitution, as between a table and a plate that presses, have no picture; nothing warns."""
+    """If no bounce has a restitution, as between a table and a pressing plate, there is no figure
+    and no warning."""
     columns = {"body": 1, "partner": -1, "start": [0.0, 1e-3], "end": [5e-4, 2e-3], "impulse": [1.0, 0.8], "approach": [1.2, 1.0],
                "separation": [0.1, 0.1], "slip_before": [0.0, 0.0], "restitution": restitution, "restitution_tangential": np.nan}
     figure = impacts.draw(pd.DataFrame(columns).to_records(index=False), ["block"], ["table"])
@@ -148,7 +164,7 @@ def test_no_legend_without_names(recwarn, restitution, drawn):
 
 
 def test_a_legend_takes_what_has_a_name():
-    """A legend of nothing with a name is left out."""
+    """A legend without labels is omitted."""
     figure, axes = plt.subplots()
     axes.plot([0, 1])
     figures.legend(axes)

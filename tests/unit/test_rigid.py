@@ -1,4 +1,4 @@
-"""Rigid bodies: the motions of rigid bodies exactly, and the limit of stiff ones."""
+"""Rigid bodies: exact rigid motions, and the limit of stiff bodies."""
 
 import pytest
 
@@ -10,7 +10,7 @@ from tests.support.rigid import DISC, FLOOR, ROLLER
     ("young = 1e6", "body.1.young"), ("[[body.support]]\nwhere = 'all'", "body.1.support"), ("mass = 1\ndensity = 1", "body.1.mass"),
     ("inertia = -1", "body.1.inertia"), ("inertia = [1, 1, 1]", "body.1.inertia"), ("viscosity = 1", "body.1.viscosity")])
 def test_wrong_entries(tmp_path, capsys, entries, named):
-    """One line that names the entry, exit code 10."""
+    """One line with the entry, exit code 10."""
     file = tmp_path / "scene.toml"
     file.write_text(DISC + "position = [0, 0.06]\nvelocity = [0, -1]\n" + entries + "\n" + FLOOR)
     assert main(["run", str(file), "--out", str(tmp_path / "out")]) == 10
@@ -19,7 +19,7 @@ def test_wrong_entries(tmp_path, capsys, entries, named):
 
 
 def test_all_rigid_needs_a_penalty(tmp_path, capsys):
-    """There is no body whose stiffness it could follow."""
+    """There is no deformable body whose stiffness could determine the penalty."""
     file = tmp_path / "scene.toml"
     file.write_text(DISC + "position = [0, 0.06]\nvelocity = [0, -1]\n" + FLOOR.replace("penalty = 1e7", "friction_static = 0.1"))
     assert main(["run", str(file), "--out", str(tmp_path / "out")]) == 10
@@ -32,7 +32,7 @@ def test_all_rigid_needs_a_penalty(tmp_path, capsys):
     ('rotation = "10*t"\naxis = [0, 0, 1]', "obstacle.1.axis"), ('rotation = 20', "obstacle.1.rotation: 20 does not change"),
     ('motion = [0, "0.1*2"]', "obstacle.1.motion.2: 0.2 does not change")])
 def test_wrong_motions(tmp_path, capsys, entries, named):
-    """One line that names the entry, exit code 10."""
+    """One line with the entry, exit code 10."""
     file = tmp_path / "scene.toml"
     file.write_text(ROLLER.format(entries))
     assert main(["run", str(file), "--out", str(tmp_path / "out")]) == 10

@@ -1,4 +1,4 @@
-"""The rooms of the program, the folders of edp/core: what leaves one is a promise to the others."""
+"""The folders of edp/core: the names that other folders use."""
 
 import re
 from pathlib import Path
@@ -12,12 +12,12 @@ DECLARED = re.compile(rf"(?:^|[;{{}}(,]|\b(?:IFMACRO\([^)]*\)))\s*({TYPE}(?:\s*\
 
 
 def statements(path: Path) -> str:
-    """The code without comments and texts; the ends of macros' lines are kept."""
+    """The code without comments and texts. The line ends of macros are kept."""
     return re.sub(r"//.*", ";", re.sub(r'"(?:\\.|[^"\\])*"', '""', path.read_text()))
 
 
 def outermost(text: str) -> str:
-    """What stands in no braces and no parentheses."""
+    """The text outside of braces and parentheses."""
     depth, kept = 0, []
     for character in text:
         depth += (character in "{(") - (character in "})")
@@ -26,8 +26,9 @@ def outermost(text: str) -> str:
 
 
 def names(text: str) -> set[str]:
-    """All that the declarations in it declare: each name of a list, without values and sizes."""
-    found = set(re.findall(rf"{TYPE}(?:\s*\[[^\]]*\])*\s*&?\s*([A-Za-z]\w*)", text))   # also parameters
+    """All names that the declarations in `text` declare, without values and sizes."""
+    # Also parameters.
+    found = set(re.findall(rf"{TYPE}(?:\s*\[[^\]]*\])*\s*&?\s*([A-Za-z]\w*)", text))
     for kind, rest in DECLARED.findall(text):
         if kind.startswith(("func", "macro", "varf", "fespace")):
             rest = re.sub(rf"^{TYPE}(?:\s*\[[^\]]*\])*\s*", "", rest)
@@ -40,7 +41,8 @@ def names(text: str) -> set[str]:
 
 
 def leaving() -> dict[str, set[str]]:
-    """room -> its names that other rooms or the scripts use; a file that has a name of its own for something uses its own."""
+    """The names of each folder that other folders or the scripts use. A file that declares a name
+    itself uses its own."""
     texts = {path: statements(path) for path in [*CORE.rglob("*.idp"), *CORE.parent.glob("*.edp"), *CORE.parent.glob("*.idp")]}
     words = {path: set(re.findall(r"[A-Za-z]\w*", text)) - names(text) for path, text in texts.items()}
     rooms = {path.parent for path in texts if path.is_relative_to(CORE)}
@@ -50,9 +52,11 @@ def leaving() -> dict[str, set[str]]:
 
 
 def test_names_that_leave_their_room_do_not_become_more():
-    """A name that other folders of edp/core use stands for all of them: their number is counted, and can only fall."""
+    """The number of names that other folders of edp/core use can only fall."""
     found = leaving()
-    count = len(set().union(*found.values()))   # some have two rooms that give them, of which a script takes one
+    # Two folders provide some of the names, of which a script uses one.
+    count = len(set().union(*found.values()))
     print(count, {room: len(found[room]) for room in sorted(found)})
     assert count <= MOST, {room: sorted(found[room]) for room in sorted(found)}
-    assert {"ndof", "gradient", "part", "mass"} <= found["discrete"] and {"u", "solveStep"} <= found["step"]   # it sees lists, macros, functions
+    # The search detects lists, macros and functions.
+    assert {"ndof", "gradient", "part", "mass"} <= found["discrete"] and {"u", "solveStep"} <= found["step"]

@@ -1,4 +1,4 @@
-"""make rubber: the verdict can fail, and two runs make a row each and a figure."""
+"""make rubber: the verdict can fail, and two runs give a row each and a figure."""
 
 import pandas as pd
 
@@ -13,7 +13,8 @@ def table(**changed) -> pd.DataFrame:
 
 
 def test_the_verdict_can_fail():
-    """A run that fails, energy that drifts, a contact time that rises and a cost that is too high each do; NGSolve may differ as well."""
+    """A failed run, energy drift, a rising contact time and excessive cost each fail; so does a
+    difference from NGSolve."""
     assert rubber.holds(table())
     for changed in ({"outcome": "step"}, {"energy": 1e-8}, {"contact [ms]": 4.5}, {"CPU [s]": 1.6}):
         assert not rubber.holds(table(**changed))

@@ -1,4 +1,4 @@
-"""The run contract: one scene, one run, one folder; what is kept, reused and refused."""
+"""The contract of runs: one scene, one run, one folder; what is kept, reused and refused."""
 
 
 import numpy as np
@@ -13,7 +13,7 @@ from tests.support.run import go
 
 @pytest.mark.parametrize("mode, words", [("noplugin", "lacks its plugin"), ("old", "is version 4.6, needed is 4.9")])
 def test_unusable_freefem_says_how_to_install(fake, tmp_path, mode, words):
-    """FreeFem++ without plugins or too old is exit code 13 with how to install it."""
+    """FreeFem++ without plugins or too old gives exit code 13 with installation instructions."""
     fake(mode)
     with pytest.raises(NotInstalled, match=f"{words}.*make setup") as error:
         go(tmp_path / "out")
@@ -21,13 +21,13 @@ def test_unusable_freefem_says_how_to_install(fake, tmp_path, mode, words):
 
 
 def test_versions_are_numbers_between_points(fake):
-    """4.10 is newer than 4.9, though scripts see it as the number 4.1."""
+    """4.10 is newer than 4.9, although scripts read it as the number 4.1."""
     fake("ten")
     assert freefem.find().version == "4.10"
 
 
 def test_history_is_read_to_the_last_digit(tmp_path):
-    """A table of one row is a table too; a ragged one is named."""
+    """A table of one row is valid. A ragged table is reported."""
     (tmp_path / "history.csv").write_text("t,vy\n0.10000000000000001,-8\n")
     assert np.array_equal(results.read_history(tmp_path)["t"], [0.1])
     (tmp_path / "history.csv").write_text("t,vy\n0.1,-8\n0.2\n")
@@ -36,7 +36,8 @@ def test_history_is_read_to_the_last_digit(tmp_path):
 
 
 def test_what_another_run_makes_meanwhile_stays(tmp_path):
-    """A run that has put its folder in its place does not take away the next one's, which has the same name by then."""
+    """After a run has moved its folder to its final place, it does not delete the folder of the
+    next run with the same name."""
     with folder.staging(tmp_path / "out") as (stage, _):
         stage.rename(tmp_path / "out")
         stage.mkdir()
@@ -45,7 +46,8 @@ def test_what_another_run_makes_meanwhile_stays(tmp_path):
 
 
 def test_killed_between_two_renames(tmp_path):
-    """A complete folder that was not yet put in its place is, by the next run, which starts with an empty one."""
+    """The next run moves a complete folder of a killed run to its final place and starts with an
+    empty one."""
     part = tmp_path / "out.part"
     part.mkdir()
     (part / "checkpoint.json").write_text("{}")
@@ -55,14 +57,19 @@ def test_killed_between_two_renames(tmp_path):
 
 
 def test_what_decides_a_result_is_derived():
-    """A run is reused only by the same code: every module that assembly.py reaches by imports decides, but those that are named as harmless, and so does a new one."""
+    """A run is reused only by the same code: every module that assembly.py imports, directly or
+    not, counts except those in HARMLESS.
+
+    A new module counts, too.
+    """
     decisive = run.imported(run.ENTRANCE) - run.HARMLESS
     assert run.HARMLESS < run.imported(run.ENTRANCE) and {"scenes/scene", "scenes/entries", "scenes/assembly", "input/parameters", "mesh/mesh", "mesh/solid_mesh", "geometry/tumbling"} <= decisive
     assert not decisive & {"running/run", "output/folder", "report/report", "sweeps/study", "running/solver"}
 
 
 def test_an_import_anywhere_is_found(tmp_path):
-    """At the top, inside a function, of a module or of names in it, of modules that import each other; names that are no modules are none."""
+    """Imports are found at the top, inside functions, of modules or names, and in cycles. Names
+    that are not modules are ignored."""
     (tmp_path / "room").mkdir()
     for name, text in {"a": "from . import b, VERSION\nimport os\n", "b": "def f():\n    from .room.c import g\n", "room/c": "from ..a import x\nfrom . import e\n",
                        "d": "", "room/e": "from ..elsewhere import y"}.items():
@@ -71,7 +78,7 @@ def test_an_import_anywhere_is_found(tmp_path):
 
 
 def test_a_changed_module_is_other_code(tmp_path, monkeypatch):
-    """What sets mesh sizes, scene.py, is part of the hash."""
+    """The module that sets mesh sizes, scene.py, is part of the hash."""
     before = run.code_hash()
     for name in run.imported(run.ENTRANCE):
         (tmp_path / f"{name}.py").parent.mkdir(exist_ok=True)

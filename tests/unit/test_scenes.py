@@ -1,4 +1,5 @@
-"""Scenes of several bodies through every way in: disc-block, a TOML file of one's own, direct runs, sweeps, figures."""
+"""Scenes of several bodies by every interface: disc-block, a TOML file, direct runs, sweeps,
+figures."""
 
 from pathlib import Path
 
@@ -10,7 +11,8 @@ from ffimpact.scene import read as read_scene
 
 
 def test_an_entry_that_no_body_takes_is_refused():
-    """At the top an entry is for bodies without their own: where all have one it would change nothing, in a sweep neither."""
+    """An entry at the top applies to bodies without their own value. If all bodies have one, it
+    would change nothing, also in a sweep."""
     given = scene.load("disc-bowl").given
     own = read_scene(given | {"body": [given["body"][0] | {"young": 7e6}]}, Path("."), "own")
     with pytest.raises(BadInput, match=r"young: changes nothing, as every body has its own \(accepted: body.1.young and so on\)"):
@@ -19,7 +21,8 @@ def test_an_entry_that_no_body_takes_is_refused():
 
 
 def test_nonsense_that_is_set_is_refused_in_words():
-    """Whatever stands in the place of a table or an entry, beside entries that others follow: accepted, or BadInput; nothing else."""
+    """Any value in place of a table or an entry, beside entries with dependent entries, is accepted
+    or raises BadInput."""
     bowl, refused = scene.load("disc-bowl"), 0
     for name in ("body", "body.1", "obstacle", "obstacle.1", "contact", "contact.pair", "body.1.radius", "contact.penalty", "dt", "contact.friction_dynamic"):
         for text in ("3", "x", "[3]", "[]", "{}", "[{}]", "{pair = 3}", "{pair = [3]}", "{penalty = {a = 1}}", "true", "1979-05-27", "[[[1]]]", "nan"):

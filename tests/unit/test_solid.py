@@ -1,4 +1,5 @@
-"""Pictures of a body in three dimensions: the surfaces and the pressure that they show, and what happens without PyVista."""
+"""Pictures of bodies in three dimensions: surfaces and pressure, and the behaviour without PyVista.
+"""
 
 import re
 import tomllib
@@ -12,7 +13,7 @@ from tests.support.solid import RADIUS
 
 
 def test_body_without_contact_has_no_pressure():
-    """A table without rows: zero everywhere, at any time."""
+    """For a table without rows the pressure is zero everywhere at any time."""
     empty = np.rec.fromarrays(np.empty((6, 0)), names=["t", "X", "Y", "Z", "weight", "pressure"])
     assert not solid.Pressure(empty, (0, 2), np.random.default_rng(1).random((5, 3))).at(0.1).any()
 
@@ -24,6 +25,6 @@ def test_hertz_pressure_bears_its_force():
 
 
 def test_what_is_missing_is_the_extra():
-    """What the user is told to install is what pyproject.toml names as the extra."""
+    """The installation message contains the packages of the extra in pyproject.toml."""
     extra = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]["solid"]
     assert solid.INSTALL.endswith(f"pip install {' '.join(re.split('[<>=]', each)[0] for each in extra)}")

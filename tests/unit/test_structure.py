@@ -1,4 +1,4 @@
-"""The rooms of the Python side: which may import which; how long functions and lines may be."""
+"""The folders of the Python package: permitted imports, and the length of functions and lines."""
 
 import ast
 import tomllib
@@ -8,14 +8,15 @@ import pytest
 from ffimpact.places import ROOT
 
 PACKAGE = ROOT / "orchestrate/ffimpact"
-# a room imports those before it, and the modules beside the rooms that stand in the same line; what is in no line imports nothing but itself
+# A folder imports the folders before it and the modules in its own line. A module that is in no
+# line imports no others.
 ORDER = (("failure", "places", "progress"), ("freefem",), ("input",), ("output",), ("geometry",), ("mesh",), ("scenes",), ("scene",), ("running",),
          ("report",), ("sweeps",), ("model",), ("schema", "plot", "view"), ("result",), ("api",), ("__init__", "__main__"))
 MODULES = {path.relative_to(PACKAGE).with_suffix("").parts: path for path in sorted(PACKAGE.rglob("*.py"))}
 
 
 def imported(module: tuple[str, ...]) -> set[tuple[str, ...]]:
-    """The modules of the package that one imports, wherever in it, but for types alone."""
+    """The modules of the package that a module imports anywhere, without imports for types only."""
     found, tree = set(), ast.parse(MODULES[module].read_text())
     for node in [one for one in ast.walk(tree) if isinstance(one, ast.If) and getattr(one.test, "id", "") == "TYPE_CHECKING"]:
         node.body = [ast.Pass()]
@@ -27,7 +28,7 @@ def imported(module: tuple[str, ...]) -> set[tuple[str, ...]]:
 
 
 def test_no_import_circle():
-    """No module imports itself by way of others, at the top or inside functions."""
+    """No module imports itself through others, at the top or inside functions."""
     open_ones = {module: imported(module) for module in MODULES}
     while free := [module for module, needs in open_ones.items() if not needs & set(open_ones)]:
         for module in free:
@@ -37,7 +38,7 @@ def test_no_import_circle():
 
 @pytest.mark.parametrize("module", MODULES, ids="/".join)
 def test_a_room_imports_those_before_it(module):
-    """So that each can be read without those that come after it; the version, in __init__, is everybody's."""
+    """Each folder can be read without the later ones. All may import the version in __init__."""
     height = {name: k for k, line in enumerate(ORDER) for name in line}
     later = {"/".join(other) for other in imported(module) if height[other[0]] > height[module[0]] and other != ("__init__",)}
     assert not later
@@ -47,14 +48,15 @@ LINE = 140
 
 
 def test_lines_fit_a_screen():
-    """No line of the Python side, the scripts and the kernels has more than 140 characters."""
+    """No line of the Python package, the scripts and the kernels has more than 140 characters."""
     files = [*MODULES.values(), *(path for path in (ROOT / "edp").rglob("*") if path.suffix in (".edp", ".idp", ".hpp", ".cpp"))]
     assert not [f"{path.relative_to(ROOT)}:{k}" for path in files for k, line in enumerate(path.read_text().splitlines(), 1) if len(line) > LINE]
 
 
 @pytest.mark.parametrize("module", [one for one in MODULES if one[-1] != "__init__"], ids="/".join)
 def test_a_module_says_what_it_gives(module):
-    """Its public names stand in __all__, and are there; what others take of it is among them."""
+    """The public names of a module are in __all__ and exist. Names that other modules use are among
+    them."""
     tree = ast.parse(MODULES[module].read_text())
     given = next(ast.literal_eval(node.value) for node in tree.body if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == "__all__")
     made = {getattr(node, "name", "") for node in tree.body}
@@ -63,7 +65,7 @@ def test_a_module_says_what_it_gives(module):
 
 @pytest.mark.parametrize("module", MODULES, ids="/".join)
 def test_no_private_name_of_another_module_is_taken(module):
-    """Names with an underscore in front are of their own module alone."""
+    """Names with a leading underscore are used in their own module only."""
     tree = ast.parse(MODULES[module].read_text())
     taken = [name.name for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) for name in node.names]
     modules = {(name.asname or name.name) for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) and node.level for name in node.names}
@@ -75,6 +77,6 @@ UNTYPED = 44
 
 
 def test_modules_without_checked_types_do_not_become_more():
-    """The modules whose types mypy does not accept are counted: their number can only fall, and each of them is there."""
+    """The number of modules that mypy does not pass can only fall, and each of them exists."""
     (untyped,) = [one["module"] for one in tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["mypy"]["overrides"] if one.get("ignore_errors")]
     assert len(untyped) <= UNTYPED and {tuple(name.split(".")[1:]) for name in untyped} <= set(MODULES)

@@ -1,4 +1,5 @@
-"""The studies: runs in parallel that survive failures, limits and interruption; hard parameters on top."""
+"""Studies: parallel runs that survive failures, time limits and interruption; and difficult
+parameters."""
 
 import re
 
@@ -11,7 +12,7 @@ from verification import commands
 
 
 def test_missing_freefem_is_said_once(tmp_path, monkeypatch, capsys):
-    """Without FreeFem++ a study does not fail point by point."""
+    """Without FreeFem++ a study fails once, not for every point."""
     monkeypatch.setenv("FREEFEM", str(tmp_path / "nothing"))
     from benchmarks import __main__ as measurements
     from ffimpact.__main__ import guarded
@@ -20,14 +21,14 @@ def test_missing_freefem_is_said_once(tmp_path, monkeypatch, capsys):
 
 
 def test_table_is_markdown():
-    """Columns are aligned; what is missing is left empty."""
+    """Columns are aligned. Missing values are empty."""
     frame = pd.DataFrame({"law": ["svk", "neohookean"], "drift": [1e-11, None]})
     assert study.table(frame, {"law": "", "drift": ".1e"}).splitlines() == [
         "|        law |   drift |", "| ---------: | ------: |", "|        svk | 1.0e-11 |", "| neohookean |         |"]
 
 
 def test_stress_has_every_combination_once(fake, tmp_path, monkeypatch):
-    """891 sets, none twice; a part of them is always the same part."""
+    """There are 891 different sets. A sample of them is always the same."""
     asked = []
     monkeypatch.setattr(study, "study", lambda points, *rest: asked.append(points) or pd.DataFrame(
         [point | {"exit": 0, "message": "", "energy_drift": 1e-12} for point in points]))
@@ -44,13 +45,17 @@ def test_stress_has_every_combination_once(fake, tmp_path, monkeypatch):
     (dict(exit=12, message="det F"), "breakdown", True), (dict(exit=10, message="end_time"), "other", False),
     (dict(exit=124, message="no end"), "other", False)])
 def test_stress_requirement(row, kind, good):
-    """Closed balance, or 11 or 12 with a message; nothing else will do."""
+    """A closed balance, or exit code 11 or 12 with a message, is required."""
     rows = pd.DataFrame([row | {"outcome": stress.outcome(pd.Series(row))}])
     assert rows.outcome[0] == kind and stress.holds(rows)[0] == good
 
 
 def test_pairs_are_held_against_closest_points_of_the_same_penalty(monkeypatch, tmp_path):
-    """A row a run, differences from closest points with the same k in per cent; one that fails is a row that says why, and fails the requirement."""
+    """There is a row for each run, with differences from closest points with the same k in per
+    cent.
+
+    A failed run is a row with the reason and fails the requirement.
+    """
     def runs(points, *_, **__):
         return pd.DataFrame([{"exit": 0, "message": "", "warnings": "", "rebound_vy_1": 5 + (point["pairing"] == "pairwise") * 0.05, "energy_drift": 1e-12,
                               "rebound_vy_2": -0.5, "impulse_y_1": 2e4, "thresholded_contact_time": 0.05} | point for point in points])
@@ -67,6 +72,6 @@ def test_pairs_are_held_against_closest_points_of_the_same_penalty(monkeypatch, 
 
 
 def test_pages_say_what_measured_them():
-    """The command as it was given, the commit, the day and the machine."""
+    """The line has the command with its arguments, the commit, the day and the machine."""
     words = commands.measured(["promise", "--scenes", "3"])
     assert re.fullmatch(r"Measured by `\S.*promise --scenes 3` at commit \w+(-dirty)?, \d{4}-\d\d-\d\d, on \d+ cores, .+\.", words)

@@ -1,4 +1,5 @@
-"""Messages about words and numbers with a unit: the entry, the value, the nearest accepted word, the unit of the entry, the exit code."""
+"""Messages about words and numbers with a unit: entry, value, nearest accepted word, unit of the
+entry, exit code."""
 
 import re
 
@@ -9,7 +10,8 @@ from ffimpact.__main__ import main
 from ffimpact.failure import BadInput, suggestion
 from ffimpact.input import parameters
 
-MESSAGES = [   # arguments, entry, value, what the message suggests
+# Arguments, entry, value and the suggestion of the message.
+MESSAGES = [
     (("run", "disk-normal"), "disk-normal", "no such scene", "did you mean disc-normal?"),
     (("run", "disc-normol.toml"), "disc-normol.toml", "no such file", "did you mean disc-normal?"),
     (("rum", "disc-normal"), "COMMAND", "'rum'", "did you mean run?"),
@@ -54,7 +56,7 @@ def test_a_second_word_is_suggested_only_where_it_is_as_near():
 
 @pytest.mark.parametrize("text", ["8x", "0x10", "1,5", "nan", "4 m/s fast", "m/s", "1e5e"])
 def test_other_text_has_no_unit(text):
-    """It is no number, and nothing else is said of it."""
+    """The message reports that it is not a number, and nothing else."""
     with pytest.raises(BadInput, match=re.escape(f"speed: '{text}' is not a number (accepted: 0 to 1e+09)")):
         parameters.check({"speed": text})
 
@@ -63,7 +65,7 @@ def test_other_text_has_no_unit(text):
     ("speed = 4m/s   # fast", "speed: '4m/s' has a unit; give the number in m/s: 4 (accepted: 0 to 1e+09)"),
     ("young = 7MPa", "young: '7MPa' has a unit; give the number in Pa: 7000000 (accepted: "), ("speed = ", "cannot be read: ")])
 def test_a_unit_in_a_scene_file_is_named(tmp_path, line, said):
-    """TOML takes no such line; the message says so where a unit is why."""
+    """TOML does not accept such a line. The message mentions the unit if it is the reason."""
     path = tmp_path / "own.toml"
     path.write_text(f'script = "disc-plane"\n{line}\n')
     with pytest.raises(BadInput, match=re.escape(f"{path}: {said}")) as error:
@@ -76,7 +78,7 @@ def test_a_unit_in_a_scene_file_is_named(tmp_path, line, said):
                                        ({"shape": True}, "body.1.shape: 'true' is not known (accepted: disc|"),
                                        ({"law": False}, "body.1.law: 'false' is not known (accepted: svk|")])
 def test_a_boolean_is_written_as_in_the_file(top, said):
-    """Where a number, a word or no entry at all stands, true is not Python's True."""
+    """For a number, a word or a missing entry the message has true, not Python's True."""
     body = {"shape": "disc", "radius": 0.05, "position": [0, 0.1]} | top
     with pytest.raises(BadInput, match="^" + re.escape(said)):
         scene.read({"body": [body], "obstacle": [{"kind": "plane", "point": [0, 0], "normal": [0, 1]}]}, scene.SCENES, "own")

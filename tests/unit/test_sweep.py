@@ -1,4 +1,5 @@
-"""Sweeps: the file and its errors, the table, kills and two drivers at once, Snakemake, trends, maps and histories."""
+"""Sweeps: the file and its errors, the table, killed and simultaneous sweeps, Snakemake, trends,
+maps and histories."""
 
 import numpy as np
 import pandas as pd
@@ -6,7 +7,7 @@ import pytest
 
 from ffimpact.sweeps import sweep_figures
 
-# ---- what figures say
+# ---- text of figures
 
 def rows_over_speed(values, error=0.01) -> pd.DataFrame:
     return pd.DataFrame({"speed": np.arange(1.0, 1 + len(values)), "contact_time": 1e-3 * np.array(values), "exit": 0,
@@ -14,7 +15,7 @@ def rows_over_speed(values, error=0.01) -> pd.DataFrame:
 
 
 def test_trend_counts_rises_beyond_the_error_bar():
-    """A rise counts as one where it exceeds the error bars of both its ends, added in squares."""
+    """A rise counts if it exceeds the root of the sum of squares of the error bars at both ends."""
     said = sweep_figures.trend(rows_over_speed([5.0, 4.8, 4.81, 4.7, 4.9, 4.6]), "speed", "contact_time", "")
     assert "falls from 5 to 4.6 ms; of 5 steps 2 rise, 1 of them by more than their error bar" in said and "largest by 0.2 ms" in said
     assert "0 of them by more" in sweep_figures.trend(rows_over_speed([5, 4.8, 4.9, 4.7, 4.6], 0.1), "speed", "contact_time", "")
@@ -29,8 +30,11 @@ def test_trend_counts_rises_beyond_the_error_bar():
     ([5, 4.4, 4.3, 4.5, 4.9], np.nan, sweep_figures.MINIMUM), ([5, 4.6, 4.4, 4.3, 4.35], 0.02, sweep_figures.FALLS),
     ([4.5, 5, 4.2, 4.6], 0.01, sweep_figures.UNEVEN), ([5, 4.8, 4.9, 4.7, 4.6], 0.2, sweep_figures.LEVEL)])
 def test_a_trend_is_the_course_of_the_curve(values, error, course):
-    """A curve falls where it ends at its lowest and begins at its highest value, beyond twice the error
-    bars; a minimum is named, with its place. Turned upside down, the curve does the opposite."""
+    """A curve falls if it begins at its highest and ends at its lowest value, by more than twice
+    the error bars.
+
+    A minimum is reported with its position. The curve with opposite sign does the opposite.
+    """
     there, opposite = rows_over_speed(values, error), {sweep_figures.FALLS: sweep_figures.RISES,
                                                        sweep_figures.MINIMUM: sweep_figures.MAXIMUM}
     found = sweep_figures.steps_against(there, "speed", "contact_time")
@@ -49,7 +53,8 @@ def test_trend_does_not_trust_one_small_difference():
 
 
 def test_set_of_a_level():
-    """The range of y in which the level is met within its band, interpolated in the logarithm."""
+    """The range of y in which the value is within the band of the level, interpolated in the
+    logarithm."""
     group = pd.DataFrame({"nu": 0.3, "penalty": [1e9, 1e10, 1e11], "contact_time": [5e-3, 4.8e-3, 4.6e-3], "exit": 0})
     figure = {"x": "nu", "y": "penalty", "colour": "contact_time", "level": 4.8e-3, "band": 1e-4}
     lines = sweep_figures.level_set_words(figure, "", group)
@@ -58,7 +63,7 @@ def test_set_of_a_level():
 
 
 def test_distance_of_histories():
-    """||b - a|| / ||a|| in L2 over time, on different time steps."""
+    """||b - a|| / ||a|| in L2 over time, for different time steps."""
     fine, coarse = np.linspace(0, 1, 2001), np.linspace(0, 1, 101)
     a, b = (fine, np.sin(np.pi * fine)), (coarse, 1.1 * np.sin(np.pi * coarse))
     assert sweep_figures.distance(a, b) == pytest.approx(0.1, rel=1e-3) and sweep_figures.distance(a, a) == 0

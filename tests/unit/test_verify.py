@@ -1,4 +1,5 @@
-"""make verify: the verdicts follow from the numbers, the table names the worst, the exit code says whether all pass."""
+"""make verify: the verdicts follow from the numbers, the table has the worst number, the exit code
+shows whether all pass."""
 
 import math
 
@@ -15,35 +16,40 @@ def passes(rows, **given) -> bool:
     return bool(verify.judged(verify.judge(wanted, list(wanted.rows(None))))["pass"].all())
 
 
+# The first two: only the finest size counts. The next two: the finest must be more accurate than
+# the coarsest.
 @pytest.mark.parametrize("values, good", [
-    ((1.1, 1.05, 1.009), True), ((1.1, 1.05, 1.011), False),     # only the finest is asked for
-    ((1.001, 1.0, 1.002), False), ((0.9, 1.2, 0.995), True),      # it must be nearer than the coarsest
+    ((1.1, 1.05, 1.009), True), ((1.1, 1.05, 1.011), False),
+    ((1.001, 1.0, 1.002), False), ((0.9, 1.2, 0.995), True),
     ((1.1, 1.05, math.nan), False)])
 def test_a_case_passes_within_its_tolerance_and_converging(values, good):
-    """Within the tolerance at the finest size, the largest error there below that at the coarsest; in any order of the rows."""
+    """At the finest size the error must be within the tolerance and below that at the coarsest
+    size, in any order of the rows."""
     rows = [("a", size, value, 1) for size, value in zip((4, 2, 1), values)]
     assert passes(rows) is passes(rows[::-1]) is good
 
 
 def test_every_number_of_a_case_counts():
-    """One number beyond its tolerance fails the case; one that has a single size is judged there."""
+    """One number beyond its tolerance fails the case. A number with a single size is judged at this
+    size."""
     good = [("a", 2, 1.05, 1), ("a", 1, 1.005, 1)]
     assert passes(good + [("b", 1, 3.02, 3)]) and not passes(good + [("b", 1, 3.04, 3)])
 
 
 @pytest.mark.parametrize("fine, good", [(1 / 4, True), (1 / 2 ** 1.86, True), (1 / 2 ** 1.84, False), (1 / 2 ** 2.2, False)])
 def test_orders_are_taken_from_the_two_finest_sizes(fine, good):
-    """Between them the order must be the expected one to the tolerance, from above and below; the coarsest may be anything."""
+    """Between them the order must be within the tolerance of the expected one, above and below. The
+    coarsest size does not count."""
     assert passes([("e", 4, 9, 0, 2), ("e", 2, 1, 0, 2), ("e", 1, fine, 0, 2)], by_order=True, tolerance=0.15) is good
 
 
 def test_errors_are_relative():
-    """To what is expected; where 0 is expected the number itself is the error."""
+    """Errors are relative to the expected value. If this is 0, the number itself is the error."""
     assert Row("a", 1, 2.2, 2).error == pytest.approx(0.1) and Row("a", 1, -0.3, 0).error == 0.3
 
 
 def test_no_cores_are_refused(tmp_path, capsys):
-    """In one line, with exit code 10, before anything is run."""
+    """One line with exit code 10, before anything runs."""
     assert guarded(verify.main, ["--cores", "0", "--out", str(tmp_path / "out")]) == 10
     assert capsys.readouterr().err == "ffimpact: --cores: 0 (accepted: from 1)\n" and not (tmp_path / "out").exists()
 

@@ -1,4 +1,5 @@
-"""Warnings and notes: each appears where its condition holds, with its number, and not where it does not; tables and reports show them."""
+"""Warnings and notes: each appears if its condition holds, with its number, and not otherwise;
+tables and reports show them."""
 
 import pages
 from ffimpact.output import notes
@@ -7,7 +8,8 @@ from ffimpact.sweeps import study
 
 
 def test_what_stands_behind_a_warning_is_a_note():
-    """A warning that says that the answers are no good stands alone; nothing is lost, and what it does not explain stays."""
+    """A warning that the results are invalid turns the warnings that it explains into notes. No
+    sentence is lost."""
     warnings = ["ellipticity: a", "breakdown: b", "penalty: c", "locking: d", "penetration: e", "estimated errors: f"]
     told = notes.settled(warnings, ["peak force: g"])
     assert told["warnings"] == ["breakdown: b", "penetration: e"] and sorted(told["warnings"] + told["notes"]) == sorted([*warnings, "peak force: g"])
@@ -17,7 +19,7 @@ def test_what_stands_behind_a_warning_is_a_note():
 
 
 def test_every_note_is_about_a_number_of_the_report():
-    """Its mark stands at a row: of each sentence that is a note, or becomes one behind a warning."""
+    """Every sentence that is a note, or becomes one, refers to a row of the report."""
     always = {row.split(" | ")[0].strip("| ") for row in pages.warnings().splitlines()[2:] if "note" in row.split(" | ")[1]}
     behind = {name for names in notes.BEHIND.values() for name in names}
     rows = {row.key for row in report.rows("/m")} | {"estimated_error"}
@@ -25,13 +27,13 @@ def test_every_note_is_about_a_number_of_the_report():
 
 
 def test_a_line_is_no_wider_than_the_screen():
-    """Up to the second colon; a name that is too long for the screen is cut."""
+    """The line ends before the second colon. A name that is too long for the screen is cut."""
     assert notes.line("  warning   ", "mass: it is off: whose: take") == "  warning   mass: it is off"
     assert len(notes.line("  warning   ", f"mass: {'x' * 200}: take")) == notes.WIDEST
     assert notes.line("", "no contact: by the end_time") == "no contact: by the end_time"
 
 
 def test_warnings_are_counted_by_name():
-    """The most frequent first; nothing where there is none."""
+    """The most frequent warning is first. Without warnings the text is empty."""
     assert study.warned(["penalty: a; creep: b", "", "creep: c"]) == "creep in 2, penalty in 1 of 3 runs"
     assert study.warned(["", ""]) == ""

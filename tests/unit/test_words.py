@@ -1,4 +1,4 @@
-"""Pages written by hand: plain terms, few words, and a picture on each; docs/words.py counts."""
+"""Handwritten pages: plain terms, few words, and a figure on each; docs/words.py counts."""
 
 import re
 
@@ -11,7 +11,7 @@ PAGES = words.pages()
 
 
 def test_all_pages_together_have_few_words():
-    """At most 20,000."""
+    """The limit is 20,000 words."""
     assert sum(len(path.read_text().split()) for path in PAGES) <= 20_000
 
 
@@ -25,7 +25,7 @@ def test_a_page_has_a_picture_and_no_private_term(path):
 
 
 def test_every_figure_is_small_and_shown():
-    """Less than 100 kB; pages show it."""
+    """Each is smaller than 100 kB and shown on a page."""
     shown = set(re.findall(r"\]\((?:\.\./)?figures/([\w-]+\.(?:svg|png))", "".join(path.read_text() for path in PAGES)))
     there = {path.name: path.stat().st_size for path in (ROOT / "docs/figures").iterdir() if path.suffix in (".svg", ".png")}
     assert set(there) == shown and max(there.values()) < 100_000
