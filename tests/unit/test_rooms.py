@@ -59,4 +59,4 @@ def test_names_that_leave_their_room_do_not_become_more():
     print(count, {room: len(found[room]) for room in sorted(found)})
     assert count <= MOST, {room: sorted(found[room]) for room in sorted(found)}
     # The search detects lists, macros and functions.
-    assert {"ndof", "gradient", "part", "mass"} <= found["discrete"] and {"u", "solveStep"} <= found["step"]
+    assert {"ndof", "gradient", "tensorComponent", "mass"} <= found["discrete"] and {"u", "solveStep"} <= found["step"]
