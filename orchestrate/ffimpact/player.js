@@ -1,5 +1,5 @@
-// The player of a run. It animates the k3d plot K3DInstance and adds a play button, a slider for the
-// time, a choice of the field and a time cursor in the figure. The object `RUN` contains
+// The player of a run. It animates the k3d plot K3DInstance and adds a play button, a slider for
+// the time, a choice of the field and a time cursor in the figure. The object `RUN` contains
 //   id: id of the mesh; times: times of the states [s]
 //   start: index of the state that is shown first; seconds: duration of the animation [s]
 //   field: name of the field that is shown first
