@@ -187,9 +187,8 @@ def sweep(
     points = [dict(zip(values, combination)) for combination in itertools.product(*values.values())]
     varied = {name: list(one) for name, one in values.items()}
     folder = Path(out) if out else place.with_name(f"{place.name}-sweep-{_digits([varied, given])}")
-    scenes = [
-        wanted.override(given | point) for point in points
-    ]  # raises BadInput before the first run
+    # Raises BadInput before the first run.
+    scenes = [wanted.override(given | point) for point in points]
     folder.mkdir(parents=True, exist_ok=True)
     acts = {
         k: partial(_point, one, folder / f"{k:03d}", force, estimate)

@@ -292,9 +292,8 @@ def _maps(
             name: np.concatenate([values, -values if name in turned else values])
             for name, values in columns.items()
         }
-    if not several and np.abs(columns["y"]).max() < 0.1 * np.ptp(
-        columns["x"]
-    ):  # contact with the plane
+    # The points are on the plane.
+    if not several and np.abs(columns["y"]).max() < 0.1 * np.ptp(columns["x"]):
         columns |= {"across": columns["x"], "up": columns["z"]}
         labels = "x [mm]", "z [mm]"
     else:
@@ -308,9 +307,8 @@ def _maps(
     states = SLIDES if several else SLIP
     low, high = (1e3 * np.array([end(points.across), end(points.up)]) for end in (np.min, np.max))
     low, high = low - 0.04 * (high - low), high + 0.04 * (high - low)
-    scale = 72 * min(
-        5.2 / len(shown) / (high - low)[0], 1.1 / (high - low)[1]
-    )  # typographic points per mm
+    # Typographic points per mm.
+    scale = 72 * min(5.2 / len(shown) / (high - low)[0], 1.1 / (high - low)[1])
     for row, (column, colours) in zip(
         grid,
         (

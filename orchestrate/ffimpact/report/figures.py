@@ -557,9 +557,8 @@ def flight(
         axes.plot(
             [], [], color=BLUE, linestyle=DASHED, label="continued as rigid motion, shape frozen"
         )
-        if (
-            history["normal_force"][-1] == 0 and history["vy"][-1] > 0
-        ):  # the body has left the plane
+        # The body has left the plane.
+        if history["normal_force"][-1] == 0 and history["vy"][-1] > 0:
             _draw_flight(axes, poses[-1], 1, -1, history, scene, GREEN)
             at, ahead = row(poses[0].t), np.sign(history["vx"][0]) or 1.0
             before, after = (

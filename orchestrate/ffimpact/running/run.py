@@ -312,14 +312,11 @@ def _sizes_left_to(mesh_file: Path | str | None, scene: Scene) -> dict[str, Valu
 def _mesh_path(given: Path) -> Path:
     try:
         path = given.resolve()
-        if (
-            path.exists() and not path.is_file()
-        ):  # a pipe or a device, of which reading might never end
+        # Reading a pipe or a device might never end.
+        if path.exists() and not path.is_file():
             raise BadInput(f"mesh: {given} is no file")
-    except (
-        OSError,
-        RuntimeError,
-    ) as error:  # for example a loop of links or a name that is too long
+    # For example a loop of links, or a name that is too long.
+    except (OSError, RuntimeError) as error:
         raise BadInput(
             f"mesh: {given} cannot be read: {getattr(error, 'strerror', None) or error}"
         ) from None
