@@ -1,4 +1,4 @@
-"""Impact of nonlinear deformable bodies: scenes in, results out.
+"""Impact of nonlinear deformable bodies: run() turns a scene into a result.
 
     import ffimpact as ff
     rubber = ff.NeoHookean(young=7e6, nu=0.45, density=1722)
@@ -6,7 +6,7 @@
     result = ff.run(ff.Scene(bodies=[disc], obstacles=[ff.Plane()]), accuracy=0.005)
     result["impulse"], result.errors["impulse"], result.plot.force()
 
-The names stand in __init__.pyi. Each is loaded when it is first used.
+The public names are listed in __init__.pyi. Each name is loaded from its module on first use.
 """
 
 from importlib.metadata import version

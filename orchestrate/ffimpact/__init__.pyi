@@ -1,4 +1,6 @@
-"""What `import ffimpact` offers: the names, and the module that each is loaded from when it is first used."""
+"""The public names of `import ffimpact`, each with the module that it is loaded from on first
+use.
+"""
 
 from .api import (
     Study as Study,

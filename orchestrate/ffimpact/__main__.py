@@ -1,5 +1,5 @@
-"""Command line: ffimpact COMMAND, or python -m ffimpact COMMAND; the commands are listed by
---help.
+"""Command line of the program: `ffimpact COMMAND` or `python -m ffimpact COMMAND`. The option
+--help lists the commands.
 """
 
 import argparse
@@ -22,7 +22,7 @@ from .places import shown
 __all__ = ["execute", "guarded", "leave", "main", "start"]
 
 Command = Callable[[list[str]], int | None]
-# the commands with a module of their own, which has a main(argv)
+# Each of these commands has a module of its own with a function main(argv).
 OWN_MAIN = {
     "sweep": "ffimpact.sweeps.sweep",
     "friction-laws": "ffimpact.report.friction_laws",
@@ -36,17 +36,21 @@ HELP = {
     "movie": "a film of a scene",
 }
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
-CHOICES = re.compile(r"[^', ]+")  # the words in argparse's own message
+# Matches each accepted value that argparse lists in its message.
+CHOICES = re.compile(r"[^', ]+")
 
 
 def main(argv: list[str]) -> int:
-    """The exit code of the command; see the table in the run contract."""
+    """Runs a command and returns its exit code. The run contract has a table of the exit codes."""
     return guarded(execute, argv)
 
 
 def guarded(run: Command, argv: list[str]) -> int:
-    """The exit code of a command; what goes wrong is one line on stderr."""
-    argparse.ArgumentParser.error = _bad_usage  # one line and exit code 10 as for any bad input
+    """Calls `run` and returns its exit code. Each failure is reported on stderr, one line a
+    message.
+    """
+    # A wrong command line is reported like any bad input: one line and exit code 10.
+    argparse.ArgumentParser.error = _bad_usage
     try:
         return run(argv) or 0
     except Failure as failure:
@@ -55,10 +59,10 @@ def guarded(run: Command, argv: list[str]) -> int:
         if failure.folder:
             print(f"files of the failed run: {shown(failure.folder)}")
         return failure.code
-    except BrokenPipeError:  # the reader of our output left
+    except BrokenPipeError:  # the program that reads our output has ended
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
-    except OSError as error:  # a full disk, a folder that was taken away
+    except OSError as error:  # for example a full disk or a deleted folder
         advice = (
             "make room, or choose another --out" if error.errno in FULL else "choose another --out"
         )
@@ -73,7 +77,7 @@ def guarded(run: Command, argv: list[str]) -> int:
 
 
 def execute(argv: list[str]) -> int | None:
-    """What the words of a command line ask for; raises Failure."""
+    """Executes the words of a command line. Raises Failure."""
     if argv[:1] and argv[0] in OWN_MAIN:
         return importlib.import_module(OWN_MAIN[argv[0]]).main(argv[1:])
     options = _parser().parse_args(argv)
@@ -177,7 +181,7 @@ def _parser() -> argparse.ArgumentParser:
     command = commands.add_parser("figures", help="draw the figures of a result folder again")
     command.add_argument("folder", metavar="DIR", type=Path, help="the result folder")
     command.set_defaults(command=_figures)
-    for name in OWN_MAIN:  # for the list of what is accepted; main() calls them itself
+    for name in OWN_MAIN:  # only for --help and messages: execute() calls these
         commands.add_parser(name, help=HELP[name])
     return parser
 
@@ -217,7 +221,7 @@ def _view(options: argparse.Namespace) -> None:
 def _evaluate(options: argparse.Namespace) -> None:
     from .output import fields, results
 
-    results.read_summary(options.folder)  # Unreadable where there is no finished run
+    results.read_summary(options.folder)  # raises Unreadable without a finished run
     if not (options.folder / fields.RECORDED).exists():
         raise Unreadable(
             f"{options.folder / fields.RECORDED} cannot be read: there is no such file "
@@ -267,7 +271,7 @@ def _figures(options: argparse.Namespace) -> None:
     from .output import results
     from .report import drawing, solid
 
-    results.read_summary(options.folder)  # Unreadable where there is no finished run
+    results.read_summary(options.folder)  # raises Unreadable without a finished run
     drawn = drawing.draw(options.folder)
     for path in drawn:
         print(path)
@@ -280,34 +284,34 @@ def _figures(options: argparse.Namespace) -> None:
 
 
 def leave(number: int, _) -> None:
-    """Ends the program on a signal through every `finally`, as Ctrl-C does: there FreeFem++ is
-    ended and unfinished files go.
+    """Signal handler: ends the program with exit code 128 + `number`. Every `finally` is executed
+    as after Ctrl-C: FreeFem++ is ended and unfinished files are removed.
     """
     sys.exit(128 + number)
 
 
 def start(run: Command | None = None) -> int:
-    """A command as a program: ffimpact, or python -m."""
-    if (
-        locale.getencoding().lower() not in ("utf-8", "utf8") and not sys.flags.utf8_mode
-    ):  # files are UTF-8 whatever the locale is
+    """Runs a command as the program `ffimpact` or `python -m ffimpact` and returns its exit
+    code.
+    """
+    # All files are UTF-8, whatever the locale is.
+    if locale.getencoding().lower() not in ("utf-8", "utf8") and not sys.flags.utf8_mode:
         os.execv(sys.executable, [sys.executable, "-X", "utf8", *sys.orig_argv[1:]])
-    gc.set_threshold(
-        100_000
-    )  # to look for garbage every few hundred objects takes longer than to keep it
-    os.environ.setdefault("MPLBACKEND", "Agg")  # figures become files
-    os.environ.setdefault(
-        "OPENBLAS_NUM_THREADS", "1"
-    )  # numpy's too: to start its threads takes as long as to load it
+    # Collecting garbage every few hundred objects takes longer than keeping the garbage.
+    gc.set_threshold(100_000)
+    os.environ.setdefault("MPLBACKEND", "Agg")  # matplotlib writes figures to files only
+    # The limit holds for numpy too: starting its threads takes as long as loading numpy.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     for number in (signal.SIGTERM, signal.SIGHUP):
-        if signal.getsignal(number) is signal.SIG_DFL:  # not under nohup
+        if signal.getsignal(number) is signal.SIG_DFL:  # ignored under nohup
             signal.signal(number, leave)
-    for name in ("stdout", "stderr"):  # closed by who started us
+    for name in ("stdout", "stderr"):  # the calling process may have closed them
         if getattr(sys, name) is None:
             setattr(sys, name, open(os.devnull, "w"))
-    sys.stdout.reconfigure(errors="surrogateescape")  # paths are bytes, not all of them text
+    # Paths are bytes, which need not be valid text.
+    sys.stdout.reconfigure(errors="surrogateescape")
     code = guarded(run or execute, sys.argv[1:])
-    gc.freeze()  # nor at the end, which took a tenth of a second
+    gc.freeze()  # avoids a garbage collection when Python exits
     return code
 
 

@@ -1,4 +1,4 @@
-"""run() and sweep(): scenes in, results out, from a script or a notebook."""
+"""The functions run() and sweep(), which run scenes from a Python script or a notebook."""
 
 from __future__ import annotations
 
@@ -39,15 +39,15 @@ def run(
     progress: bool | None = None,
     **more: Any,
 ) -> Result:
-    """The result of a scene: one made in Python, the name of a built-in one, or the path of a
-    TOML file.
+    """Runs a scene and returns its result. `scene` is a Scene, the name of a built-in scene or the
+    path of a TOML file.
 
     Entries of the scene are set by keywords (accuracy=0.005) or by dotted names
-    (entries={"body.1.young": 2e6}). `out` is the result folder: results/NAME of a file or a
-    built-in scene; of a scene made in Python a folder of its own. A run that is there is not
-    made again, unless `force`. With `estimate` a second run estimates the errors. Raises the
-    exceptions of ffimpact: BadInput, StepFailed and so on. A run keeps 60 states where the
-    scene leaves `fields` open.
+    (entries={"body.1.young": 2e6}). `out` is the result folder. Its default is results/NAME for a
+    file or a built-in scene; a Scene object gets a folder of its own. A finished run in the folder
+    is reused unless `force` is set. With `estimate` a second run estimates the errors. If the scene
+    leaves `fields` open, the run keeps 60 states. Raises the exceptions of ffimpact: BadInput,
+    StepFailed and so on.
     """
     given = _given(entries, more)
     wanted, place = _wanted(scene, given)
@@ -58,14 +58,18 @@ def run(
 
 
 def _given(entries: Mapping[str, Any] | None, more: dict[str, Any]) -> dict[str, Any]:
-    """The entries that are set, by dotted names; keywords that are None are not."""
+    """Returns the entries that are set, by dotted names, without the keywords that are None. Raises
+    BadInput if `entries` is not a mapping.
+    """
     if not isinstance(entries or {}, Mapping):
         raise BadInput(f"entries: '{entries}' is no table (accepted: {{\"body.1.young\": 2e6}})")
     return dict(entries or {}) | {name: value for name, value in more.items() if value is not None}
 
 
 def _wanted(scene: Scene | str | Path, given: dict[str, Any]) -> tuple[Any, Path]:
-    """The scene as it is read, and where its results go; `given` gets the states to keep."""
+    """Returns the scene as the program reads it and its default result folder. Adds the number of
+    states to keep to `given`. Raises BadInput if `scene` is not a scene.
+    """
     if isinstance(scene, Scene):
         wanted = scene.checked(_word(scene.title or "scene"))
     elif isinstance(scene, str | Path):
@@ -81,14 +85,14 @@ def _wanted(scene: Scene | str | Path, given: dict[str, Any]) -> tuple[Any, Path
 
 
 def _word(title: str) -> str:
-    """A title as the name of a folder."""
+    """Converts a title to a name of a folder."""
     return re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-")[:40] or "scene"
 
 
 class Study:
-    """A sweep: `table` has a row for each point, with the entries that vary, the exit code, its
-    message and the numbers of the run; `results` the Result of each, None where a run
-    failed.
+    """The outcome of a sweep. `table` has one row for each point: the entries that vary, the exit
+    code, its message and the numbers of the run. `results` has the Result of each point, or None
+    where the run failed.
     """
 
     def __init__(
@@ -116,8 +120,9 @@ class Study:
         return str(self.table.to_html(max_cols=12))
 
     def plot(self, x: str, y: str, by: str | None = None, ax: Axes | None = None) -> Axes:
-        """A number y over an entry x with error bars, a line for each value of the entry
-        `by`; returns the axes.
+        """Plots a number `y` with error bars over an entry `x`, one line for each value of the
+        entry `by`. Returns the axes. Raises BadInput if a name is unknown or its values are not
+        numbers.
         """
         import matplotlib.pyplot as plt
 
@@ -168,12 +173,13 @@ def sweep(
     estimate: bool = True,
     **more: Any,
 ) -> Study:
-    """Runs every combination of the `values` of some entries; `workers` runs at a time
-    (default: one per core).
+    """Runs every combination of the `values` of some entries, `workers` runs at a time (default:
+    one per core).
 
-    `entries` and keywords are set in all runs; `force` and `estimate` are those of `run`. Each
-    run has its own folder below `out`. A finished run is not run again. A run that fails is a
-    row with its exit code and message.
+    `entries` and keywords are set in all runs; `force` and `estimate` have the meaning they have in
+    run(). Each run has its own folder below `out`. A finished run is not run again. A run that
+    fails is a row with its exit code and message. Raises BadInput before the first run if a
+    combination is not accepted.
     """
     _check(values, workers)
     given = _given(entries, more)
@@ -181,7 +187,8 @@ def sweep(
     points = [dict(zip(values, combination)) for combination in itertools.product(*values.values())]
     varied = {name: list(one) for name, one in values.items()}
     folder = Path(out) if out else place.with_name(f"{place.name}-sweep-{_digits([varied, given])}")
-    scenes = [wanted.override(given | point) for point in points]  # BadInput before anything is run
+    # Raises BadInput before the first run.
+    scenes = [wanted.override(given | point) for point in points]
     folder.mkdir(parents=True, exist_ok=True)
     acts = {
         k: partial(_point, one, folder / f"{k:03d}", force, estimate)
@@ -198,7 +205,7 @@ def sweep(
 
 
 def _check(values: Any, workers: Any) -> None:
-    """BadInput where a sweep cannot be made of these values."""
+    """Raises BadInput if no sweep can be made of these values and workers."""
     if not isinstance(values, Mapping):
         raise BadInput(
             f"sweep: '{values}' is no table (accepted: {{\"body.1.young\": [1e6, 2e6]}})"
@@ -210,7 +217,7 @@ def _check(values: Any, workers: Any) -> None:
 
 
 def _digits(choices: Any) -> str:
-    """Eight digits that tell it from others."""
+    """Returns eight hexadecimal digits of a hash that identify `choices`."""
     text = json.dumps(choices, sort_keys=True, default=str)
     return hashlib.sha256(text.encode()).hexdigest()[:8]
 
@@ -222,7 +229,9 @@ def _listed(name: str, value: Any) -> list[Any]:
 
 
 def _point(wanted: Any, folder: Path, force: bool, estimate: bool) -> Result | Failure | None:
-    """The result of one run, or its failure; None if another program is writing the folder."""
+    """Returns the result of one run, its failure, or None if another program is writing the
+    folder.
+    """
     try:
         return Result(
             running.run(wanted, out=folder, force=force, estimate=estimate, progress=False)

@@ -1,4 +1,6 @@
-"""Expected failures: one line for the user and an exit code (the table in the run contract)."""
+"""Expected failures. Each has a message of one line for the user and an exit code, see the table in
+the run contract.
+"""
 
 import difflib
 from collections.abc import Callable, Iterable
@@ -24,49 +26,51 @@ __all__ = [
 
 T = TypeVar("T")
 
-MORE = " ..."  # behind a text that is cut
-MOST = 200  # characters of a value that a message repeats
-# a second word is suggested where its likeness to the user's is this near to that of the first
+MORE = " ..."  # appended to a text that is cut
+MOST = 200  # largest number of characters of a value that a message repeats
+# A second word is suggested if its similarity to the user's word, in [0, 1], is less than this
+# below that of the first word.
 ALIKE = 0.15
-SWITCHES = {"true": "on", "false": "off"}  # what a user may write for a word
+SWITCHES = {"true": "on", "false": "off"}  # the accepted word for a word that users write instead
 
 
 class Failure(Exception):
-    """A failure that the user can act on. `code` is the exit code: 11 step, 12 material, 1
-    anything else.
+    """A failure that the user can act on. `code` is the exit code: 11 for a step, 12 for a
+    material, 1 for anything else; further subclasses have their own.
 
-    `folder` is where the files of a failed run were kept.
+    `folder` is the folder in which the files of a failed run were kept.
     """
 
     code = 1
     folder: Path | None = None
 
     def __init__(self, *messages: str, code: int | None = None):
-        self.messages = tuple(
-            " ".join(one.splitlines()) for one in messages
-        )  # a line each, whatever the user's text had in it
+        # Each message becomes one line, even if it repeats a text of several lines.
+        self.messages = tuple(" ".join(one.splitlines()) for one in messages)
         super().__init__("\n".join(self.messages))
         self.code = self.code if code is None else code
 
     def within(self, place: str) -> Self:
-        """The same of an entry in `place`, a file or a table."""
+        """Returns the same failure with `place`, a file or a table, in front of each message."""
         return type(self)(*(f"{place}: {one}" for one in self.messages), code=self.code)
 
 
 def brief(value) -> str:
-    """A value as a message repeats it, however long it is; true and false as TOML has them."""
+    """Returns a value as the text that a message repeats, cut if it is long. True and false are
+    written as in TOML.
+    """
     text = str(value).lower() if isinstance(value, bool) else str(value)
     return shortened(text, MOST + len(MORE))
 
 
 def shortened(text: str, most: int) -> str:
-    """A text of up to so many characters."""
+    """Returns a text, cut to at most `most` characters."""
     return text if len(text) <= most else text[: most - len(MORE)] + MORE
 
 
 def suggestion(word, accepted: Iterable[str]) -> str:
-    """What a message adds where one or two of the accepted words are near to the user's; empty
-    where none is.
+    """Returns the part of a message that suggests one or two accepted words similar to the user's
+    word. It is empty if no word is similar.
     """
     given, words = brief(word).lower(), list(dict.fromkeys(accepted))
     near = [one for one in (SWITCHES.get(given),) if one in words] or difflib.get_close_matches(
@@ -78,7 +82,7 @@ def suggestion(word, accepted: Iterable[str]) -> str:
 
 
 def unknown(word, accepted: Iterable[str], between: str = "|") -> str:
-    """What a message says of a word that is none of the accepted ones."""
+    """Returns a message that `word` is unknown, with suggestions and all accepted words."""
     words = list(accepted)
     return (
         f"'{brief(word)}' is not known{suggestion(word, words)} (accepted: {between.join(words)})"
@@ -86,47 +90,49 @@ def unknown(word, accepted: Iterable[str], between: str = "|") -> str:
 
 
 class StepFailed(Failure):
-    """A time step that does not converge however small it is."""
+    """A time step does not converge, however small it is."""
 
     code = 11
 
 
 class MaterialFailed(Failure):
-    """A law that breaks down: an element is turned inside out."""
+    """A constitutive law breaks down: an element is turned inside out."""
 
     code = 12
 
 
 class TooLong(Failure):
-    """A run that its time limit ended: interrupted, not failed. The code is that of timeout(1)."""
+    """A run exceeded its time limit: it was interrupted and did not fail. The exit code is that of
+    timeout(1).
+    """
 
     code = 124
 
 
 class BadInput(Failure):
-    """A parameter, scene file or mesh that cannot be used."""
+    """A parameter, scene file or mesh cannot be used."""
 
     code = 10
 
 
 class NotInstalled(Failure):
-    """FreeFem++ (or a library) missing, too old or without a plugin it needs."""
+    """FreeFem++ or a library is missing, is too old or lacks a plugin."""
 
     code = 13
 
 
 class Unreadable(Failure):
-    """A result folder that cannot be read or is not ours."""
+    """A result folder cannot be read or was not written by this program."""
 
     code = 14
 
 
 class Busy(Unreadable):
-    """A result folder that another run is writing just now."""
+    """Another run is writing the result folder."""
 
 
 def of_code(code: int, message: str) -> Failure:
-    """The failure of an exit code."""
+    """Returns the failure that has this exit code."""
     kinds = {
         one.code: one
         for one in (StepFailed, MaterialFailed, TooLong, BadInput, NotInstalled, Unreadable)
@@ -135,7 +141,9 @@ def of_code(code: int, message: str) -> Failure:
 
 
 def gathered(acts: Iterable[Callable[[], T]]) -> list[T]:
-    """What each of some acts returns; one BadInput with all that they find wrong."""
+    """Calls all `acts` and returns their results. Raises one BadInput with the messages of all that
+    failed.
+    """
     found, messages = [], []
     for act in acts:
         try:

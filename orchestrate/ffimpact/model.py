@@ -1,12 +1,12 @@
-"""A scene as Python objects, SI units: what a TOML file of a scene holds, entry by entry under the
-same names.
+"""A scene as a Python object in SI units. It has the entries of a TOML scene file under the same
+names.
 
     rubber = NeoHookean(young=7e6, nu=0.45, density=1722)
     Scene(bodies=[Disc(radius=0.05, material=rubber, position=(0, 0.051), velocity=(0, -8))], obstacles=[Plane()])
 
-A Scene is checked as a whole when it is made and when an entry of it is set. Whatever is wrong is a
-BadInput, a line each, with the dotted name of the entry (body.1.young, counted from 1), its value
-and what is accepted. An entry that is None is left open: the program chooses it.
+A Scene is checked as a whole when it is made and when one of its entries is set. Errors are raised
+as one BadInput with a line for each error: the dotted name of the entry (body.1.young, counted from
+1), its value and the accepted values. The program chooses the value of an entry that is None.
 """
 
 from __future__ import annotations
@@ -30,7 +30,9 @@ __all__ = ["Scene"]
 
 
 def _of_tables(key: str) -> BeforeValidator:
-    """Bodies or obstacles, each as an object or as the table of a file."""
+    """Returns a validator that accepts bodies or obstacles as objects or as tables of a TOML
+    file.
+    """
 
     def objects(given: Any) -> Any:
         listed = models.several(given)
@@ -46,8 +48,8 @@ def _of_tables(key: str) -> BeforeValidator:
 
 
 class Scene(models.Top):
-    """Bodies, obstacles, contact, and how the run is to be made. Entries are those of a TOML
-    file, under the same names.
+    """Bodies, obstacles, contact and the settings of the run. The entries have the names that they
+    have in a TOML file.
     """
 
     nested = {"contact": Contact}
@@ -73,7 +75,9 @@ class Scene(models.Top):
 
     @property
     def kind(self) -> Dimension:
-        """Its dimension: as given, or what the bodies' shapes and places say."""
+        """The dimension of the scene. If the entry `dimension` is not set, it follows from the
+        bodies' shapes and the number of components of their positions.
+        """
         if self.dimension:
             return DIMENSIONS[self.dimension]
         if any(isinstance(body.position, list) and len(body.position) == 3 for body in self.bodies):
@@ -82,7 +86,7 @@ class Scene(models.Top):
         return PLANE_STRAIN if plane else AXISYMMETRIC
 
     def table(self) -> dict[str, Any]:
-        """The tables of its TOML file."""
+        """Returns the scene as the tables of its TOML file."""
         found = super().table()
         for name in ("bodies", "obstacles", "contact", "folder"):
             found.pop(name, None)
@@ -97,11 +101,13 @@ class Scene(models.Top):
         return {name: value for name, value in found.items() if value not in ({}, [])}
 
     def checked(self, name: str = "scene") -> reading.Scene:
-        """What the program makes of it; BadInput where it does not accept it."""
+        """Returns the scene as the program reads it. Raises BadInput if the program does not accept
+        it.
+        """
         return reading.read(self.table(), self.folder, name)
 
     def save(self, path: str | Path) -> Path:
-        """Writes its TOML file."""
+        """Writes the scene to a TOML file and returns its path."""
         path = Path(path)
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(to_toml(self.table()), "utf-8")
@@ -109,8 +115,8 @@ class Scene(models.Top):
 
     @classmethod
     def load(cls, path: str | Path) -> Scene:
-        """The scene of a TOML file, or a built-in one that is made of bodies (disc-beam,
-        two-discs ...).
+        """Reads the scene of a TOML file, or a built-in scene of bodies (disc-beam, two-discs ...).
+        Raises BadInput if it cannot be read or has no table [[body]].
         """
         name = str(path)
         path = files.SCENES / f"{name}.toml" if name in files.built_in() else Path(name)
@@ -126,8 +132,8 @@ class Scene(models.Top):
 
     @classmethod
     def of(cls, given: dict[str, Any], folder: Path = Path(".")) -> Scene:
-        """The scene of tables as a TOML file has them."""
-        reading.read(given, folder, "scene")  # all that is wrong, by the names of the file
+        """Makes a scene from the tables of a TOML file. Raises BadInput."""
+        reading.read(given, folder, "scene")  # reports all errors by the names of the file
         top = {
             name: value
             for name, value in given.items()
@@ -137,10 +143,11 @@ class Scene(models.Top):
         return cls(folder=folder, contact=Contact(**given.get("contact", {})), **tables, **top)
 
     def set(self, values: Mapping[str, Any] | None = None, /, **entries: Any) -> Scene:
-        """The same scene with entries set by their dotted names:
+        """Returns a copy of the scene with entries set by their dotted names:
         scene.set({"body.1.velocity.2": -4}), or scene.set(accuracy=0.01).
 
-        An entry that is set to None is removed: the program then chooses its value.
+        An entry that is set to None is removed; the program then chooses its value. Raises
+        BadInput.
         """
         given = plain(dict(values or {}) | entries)
         return type(self).of(self.checked().override(given).given, self.folder)

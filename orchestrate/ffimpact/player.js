@@ -1,12 +1,16 @@
-// The player of a run, on the k3d plot K3DInstance: play, slider, choice of the field, and the
-// cursor of the figure. `RUN` holds
-//   id of the mesh; times [s]; start, the state that is shown at first; seconds of the animation
-//   vertices, places of all states as uint16 shares of the box at `low` [m] of size `extent` [m]:
-//     (states, n, 3)
-//   fields, each with name, label, low, high; values by name, uint8 shares of low ... high: (states, n)
-//   obstacles, each with id and velocity [m/s]
-//   cursor: where in the figure its time axis begins and ends, and at what times [s]
-// Arrays are compressed differences between one state and the next.
+// The player of a run. It animates the k3d plot K3DInstance and adds a play button, a slider for
+// the time, a choice of the field and a time cursor in the figure. The object `RUN` contains
+//   id: id of the mesh; times: times of the states [s]
+//   start: index of the state that is shown first; seconds: duration of the animation [s]
+//   field: name of the field that is shown first
+//   vertices (states, n, 3): positions as uint16 fractions of the box with the corner `low` [m] and
+//     the size `extent` [m]
+//   fields: name, label and range low ... high of each field, in the unit of its label
+//   values (states, n), by name of the field: uint8 fractions of low ... high
+//   obstacles: id and velocity [m/s] of each obstacle
+//   cursor: left and right end of the time axis as fractions of the figure's width, and their times
+//     start and end [s]
+// Each array consists of the compressed differences between successive states.
 const world = K3DInstance.getWorld();
 const element = (name, attributes = {}) => Object.assign(document.createElement(name), attributes);
 
@@ -23,14 +27,14 @@ const shares = {};
 for (const { name } of RUN.fields) shares[name] = unpacked(RUN.values[name], Uint8Array);
 const n = vertices.length / RUN.times.length / 3;
 
-function places(state) { // deformed places (n, 3) [m]
+function places(state) { // deformed positions (n, 3) [m]
   const found = new Float32Array(3 * n);
   for (let k = 0; k < 3 * n; k++)
     found[k] = RUN.low[k % 3] + RUN.extent[k % 3] * vertices[3 * n * state + k] / 65535;
   return { data: found, shape: [n, 3] };
 }
 
-function values(field, state) { // (n,) of the field, in its unit
+function values(field, state) { // values (n,) of the field, in its unit
   const found = new Float32Array(n);
   for (let k = 0; k < n; k++)
     found[k] = field.low + (field.high - field.low) * shares[field.name][n * state + k] / 255;

@@ -1,5 +1,5 @@
-"""Figures of a run, drawn into axes: result.plot.force(ax=...). Importing this changes no setting
-of matplotlib.
+"""Figures of a run, drawn into matplotlib axes: result.plot.force(ax=...). Importing this module
+changes no setting of matplotlib.
 """
 
 from __future__ import annotations
@@ -24,11 +24,8 @@ if TYPE_CHECKING:
 __all__ = ["Plots"]
 
 MS = 1e3
-UNITS = {
-    "displacement": "m",
-    "velocity": "m/s",
-    "jacobian": "",
-}  # of the fields of a state; of the others Pa
+# Units of the fields of a state. All other fields are in Pa.
+UNITS = {"displacement": "m", "velocity": "m/s", "jacobian": ""}
 ENERGIES = {
     "kinetic": "kinetic",
     "elastic": "elastic",
@@ -39,8 +36,8 @@ ENERGIES = {
 
 
 class Plots:
-    """The figures of a finished run. Each method takes `ax`, the axes to draw into (its own by
-    default), and returns them.
+    """Draws the figures of a finished run. Each method draws into the axes `ax`, by default into
+    new axes, and returns the axes.
     """
 
     def __init__(self, result: Result):
@@ -48,7 +45,7 @@ class Plots:
         self.per = per_metre(result["provenance"]["script"])
 
     def force(self, ax: Axes | None = None) -> Axes:
-        """Normal force and friction [N or kN] over time [ms]."""
+        """Draws normal force and friction force [N or kN] over time [ms]."""
         history, ax = self.result.history, _axes(ax)
         unit, factor = ("kN", 1e-3) if history.normal_force.max() >= 1e3 else ("N", 1.0)
         ax.plot(MS * history.t, factor * history.normal_force, label="normal")
@@ -59,7 +56,7 @@ class Plots:
         return _labelled(ax, f"force [{unit}{self.per}]")
 
     def energies(self, ax: Axes | None = None) -> Axes:
-        """Energies, and the work of friction and viscosity, [J] over time [ms]."""
+        """Draws the energies and the work of friction and viscosity [J] over time [ms]."""
         history, ax = self.result.history, _axes(ax)
         for name, label in ENERGIES.items():
             if name in history and history[name].any():
@@ -69,7 +66,7 @@ class Plots:
         return _labelled(ax, f"energy [J{self.per}]")
 
     def velocities(self, ax: Axes | None = None) -> Axes:
-        """Velocities of the bodies' centres of mass [m/s] over time [ms]."""
+        """Draws the velocities [m/s] of the bodies' centres of mass over time [ms]."""
         history, ax = self.result.history, _axes(ax)
         several = "vx_1" in history
         names = body_names(self.result.scene) if several else [""]
@@ -83,8 +80,9 @@ class Plots:
     def shapes(
         self, ax: Axes | None = None, field: str = "von_mises", time: float | None = None
     ) -> Axes:
-        """The deformed bodies with a field at a time [s], that of the largest force by
-        default. Needs states (fields=N of the run).
+        """Draws the deformed bodies, coloured by a field, at the kept state nearest to `time` [s],
+        by default the time of the largest normal force. Raises Unreadable if the run kept no states
+        (entry `fields`), BadInput if the field is unknown.
         """
         ax, series = _axes(ax), vtu.series(self.result.folder / "fields.pvd")
         if not series:
@@ -103,7 +101,7 @@ class Plots:
             state.points[:, :2] + state.fields["displacement"][:, :2],
             state.triangles,
         )
-        if is_half(self.result.scene):  # the other half is its mirror image
+        if is_half(self.result.scene):  # adds the mirror image of the computed half
             triangles = np.vstack([triangles, triangles + len(points)])
             points, values = np.vstack([points, points * [-1, 1]]), np.concatenate([values, values])
         drawn = ax.tripcolor(

@@ -1,9 +1,9 @@
-"""Progress: one line on a terminal or in a notebook: what is being done, the share of it that is
-done, the time left.
+"""Progress of a computation as one line on a terminal or in a notebook: the current work, the
+completed fraction and the remaining time.
 
-Work in parts has one line. What its parts say of themselves, each a line of its own where it stands
-alone, goes into that one: those of a part in this thread (part, in_turn), and those of a thread
-beside others (forward, in study.side_by_side).
+Work that consists of parts has one line for all of them. The progress lines of its parts are merged
+into that line, both for parts in the same thread (Line.part, in_turn) and for parts in other
+threads (forward, in study.side_by_side).
 """
 
 import contextlib
@@ -15,11 +15,14 @@ from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 __all__ = ["Line", "forward", "in_notebook", "in_turn"]
 
 FORMAT = "{desc} {percentage:3.0f}% |{bar}| {elapsed}, {remaining} left"
-Tell = Callable[[float, str], None]  # the share that is done, in [0, 1], and what is being done
+# A receiver of progress: the completed fraction, in [0, 1], and a description of the current work.
+Tell = Callable[[float, str], None]
 
 
 class _Thread(threading.local):
-    """The receiver of the lines that a thread makes; None: they are shown."""
+    """The receiver of the progress lines that a thread makes. If it is None, the lines are
+    shown.
+    """
 
     tell: Tell | None = None
 
@@ -29,8 +32,8 @@ _thread = _Thread()
 
 @contextlib.contextmanager
 def forward(tell: Tell) -> Iterator[None]:
-    """Sends the lines that this thread makes inside the `with` to `tell`, which shows them as
-    part of another line.
+    """Sends the progress of the lines that this thread makes inside the `with` to `tell`, which
+    shows it as part of another line.
     """
     before, _thread.tell = _thread.tell, tell
     try:
@@ -44,8 +47,8 @@ def in_notebook() -> bool:
 
 
 class Line(contextlib.AbstractContextManager):
-    """Progress of the work `name` in parts of these costs, in any unit. `watched`: whether it
-    is shown; None: on a terminal and in a notebook.
+    """Progress of the work `name`. `costs` maps each part to its cost, in any unit. `watched`
+    states whether the line is shown; None: only on a terminal and in a notebook.
     """
 
     def __init__(
@@ -67,7 +70,7 @@ class Line(contextlib.AbstractContextManager):
             from tqdm.contrib import DummyTqdmFile
 
             self.leaving = contextlib.ExitStack()
-            if sys.stdout.isatty():  # what is printed stands above the line
+            if sys.stdout.isatty():  # printed text appears above the line
                 self.leaving.enter_context(contextlib.redirect_stdout(DummyTqdmFile(sys.stdout)))
             self.bar = tqdm(total=1.0, desc=self._words(words), leave=False, bar_format=FORMAT)
 
@@ -77,7 +80,9 @@ class Line(contextlib.AbstractContextManager):
             self.leaving.close()
 
     def at(self, part: Hashable, share: float, words: str = "", cost: float = 1.0) -> None:
-        """A part has come that far; one that was not foreseen joins the rest with its cost."""
+        """Reports that the fraction `share`, in [0, 1], of a part is completed. A part that was not
+        foreseen is added with its `cost`. The fraction never decreases.
+        """
         self.costs.setdefault(part, cost)
         self.shares[part] = (
             min(1.0, max(share, self.shares.get(part, 0.0)))
@@ -97,7 +102,7 @@ class Line(contextlib.AbstractContextManager):
         return f"{self.name}: {words}" if words else self.name
 
     def say(self, sentence: str) -> None:
-        """Prints a sentence of its own above the line, which stays."""
+        """Prints a sentence above the line."""
         if not self.quiet:
             from tqdm import tqdm
 
@@ -105,7 +110,9 @@ class Line(contextlib.AbstractContextManager):
 
     @contextlib.contextmanager
     def part(self, part: Hashable, words: str) -> Iterator[None]:
-        """What is done in here is that part: lines in it are words of this one."""
+        """Context manager: work inside the `with` is this part, and its progress lines are merged
+        into this line.
+        """
         self.at(part, 0.0, words)
         with forward(lambda share, inner: self.at(part, share, f"{words}, {inner}")):
             yield
@@ -113,7 +120,7 @@ class Line(contextlib.AbstractContextManager):
 
 
 def in_turn(name: str, items: Iterable) -> Iterator:
-    """The items, one after another, with a line that says which of how many."""
+    """Yields the items one after another, with a line that shows the number of the current item."""
     items = list(items)
     with Line(name, dict.fromkeys(range(len(items)), 1.0)) as line:
         for k, item in enumerate(items):

@@ -1,7 +1,8 @@
-"""A finished run as Python objects: numbers with units and error bars, tables, figures, states.
+"""A finished run as Python objects: its numbers with units and error estimates, its tables, figures
+and states.
 
-result = ffimpact.run("disc-normal", speed=4)
-result["impulse"], result.errors["impulse"], result.units["impulse"]
+    result = ffimpact.run("disc-normal", speed=4)
+    result["impulse"], result.errors["impulse"], result.units["impulse"]
 """
 
 from __future__ import annotations
@@ -32,16 +33,18 @@ if TYPE_CHECKING:
 
 __all__ = ["Fields", "Result", "compare", "load"]
 
-# what `table` has, in this order
+# The numbers that `Result.table` lists, in this order.
 SHOWN = (*report.MAIN, "thresholded_contact_time", "energy_initial", "energy_final")
 
 
 class Result:
-    """A finished run: its numbers with units and error estimates, tables, figures and states.
+    """A finished run: its numbers with units and error estimates, its tables, figures and states.
 
-    `source` is its folder, or the Record of its files. result["impulse"] is a number of
-    summary.json, in SI units; `keys()` lists them. `folder` is where its files are, `reused`
-    says whether the run was there already.
+    `source` is the folder of the run, or the Record of its files. result["impulse"] is a number of
+    summary.json in SI units; `keys()` lists the names of all numbers. `folder` is the result
+    folder. `reused` states whether the result was in the folder before the run was requested.
+    Raises BadInput if `source` is neither a folder nor a Record, Unreadable if the folder has no
+    finished run.
     """
 
     def __init__(self, source: Record | str | Path):
@@ -57,7 +60,7 @@ class Result:
         return self.summary[name]
 
     def keys(self) -> list[str]:
-        """The names of all its numbers."""
+        """Returns the names of all numbers."""
         return numbers(self.summary)
 
     def __contains__(self, name: object) -> bool:
@@ -70,7 +73,9 @@ class Result:
         return len(self.keys())
 
     def _path(self, name: str) -> Path:
-        """A file of the folder; Unreadable where another run has taken the place of this one."""
+        """Returns the path of a file in the folder. Raises Unreadable if the folder holds another
+        run by now.
+        """
         if read_summary(self.folder) != self.summary:
             raise Unreadable(
                 f"{self.folder}: holds another run by now (accepted: load('{self.folder}'))"
@@ -79,39 +84,47 @@ class Result:
 
     @cached_property
     def scene(self) -> dict[str, Any]:
-        """Every entry as it was used: result.scene["body"][0]["young"]."""
+        """The entries of the scene with the values that the run used:
+        result.scene["body"][0]["young"].
+        """
         return tomllib.loads(self._path("scene.toml").read_text("utf-8"))
 
     @cached_property
     def history(self) -> pd.DataFrame:
-        """A row for each step, SI units: columns t, normal_force, kinetic ..."""
+        """The time history in SI units, one row for each step; columns t, normal_force, kinetic
+        ...
+        """
         self._path("history.csv")
         return pd.DataFrame(dict(self.record.history))
 
     @cached_property
     def contacts(self) -> pd.DataFrame:
-        """A row for each interval of contact of a body and its partner."""
+        """One row for each interval of contact of a contact pair. The table is empty if there is no
+        contacts.csv.
+        """
         path = self._path("contacts.csv")
         return pd.read_csv(path) if path.exists() else pd.DataFrame()
 
     @property
     def warnings(self) -> list[str]:
-        """What may make an answer wrong."""
+        """The warnings of the run: reasons why a result may be wrong."""
         return list(self.summary["warnings"])
 
     @cached_property
     def errors(self) -> Mapping[str, float]:
-        """The estimated error of each number in its own unit: the answer is result[name] +-
-        result.errors[name].
+        """The estimated error of each number in the unit of the number: the result is result[name]
+        +- result.errors[name].
 
-        Numbers without an estimate are left out. Penalty and slip velocity are no part of
-        it.
+        Numbers without an estimate are left out. The estimates do not include the errors by the
+        penalty and the slip velocity.
         """
         return errors(self.record)
 
     @cached_property
     def units(self) -> Mapping[str, str]:
-        """The unit of each number and column; per metre of thickness in plane strain alone."""
+        """The unit of each number and column. Only plane strain has units per metre of
+        thickness.
+        """
         script = self.summary["provenance"]["script"]
         said = describe_results(script=script)["meanings"]
         found = {
@@ -128,7 +141,9 @@ class Result:
 
     @property
     def table(self) -> pd.DataFrame:
-        """The main numbers: value, error, unit; of several bodies those of each."""
+        """The main numbers with value, error and unit. If the summary has a number for each of
+        several bodies, the table lists these.
+        """
         names = [
             name
             for name in self.keys()
@@ -169,8 +184,8 @@ class Result:
 
     @property
     def plot(self) -> Plots:
-        """Figures: result.plot.force(), .energies(), .velocities(), .shapes(); each returns
-        axes and draws into ax=...
+        """The figures: result.plot.force(), .energies(), .velocities(), .shapes(). Each method
+        accepts axes as `ax` and returns the axes.
         """
         from .plot import Plots
 
@@ -178,7 +193,7 @@ class Result:
 
     @property
     def fields(self) -> Fields:
-        """The states that were kept (fields=N of the run) as grids of pyvista."""
+        """The states that the run kept (entry `fields`), as PyVista grids."""
         return Fields(self.folder)
 
     def view(
@@ -187,8 +202,8 @@ class Result:
         field: str = "von_mises",
         revolved: bool = True,
     ) -> Any:
-        """An animation of the states that were kept: a player in a notebook, or `path`, one HTML
-        file that needs no network. See ffimpact.view.view.
+        """Returns an animation of the kept states: a player for a notebook, or the path of the HTML
+        file that was written. The file needs no network. See ffimpact.view.view.
         """
         from .view import view
 
@@ -196,7 +211,7 @@ class Result:
 
 
 def _bare(name: str) -> str:
-    """The name of a number without that of its body."""
+    """Returns the name of a number without the suffix of its body."""
     return re.sub(r"_[0-9]+$", "", name)
 
 
@@ -209,8 +224,9 @@ def _unit(unit: str) -> str:
 
 
 class Fields(Sequence["pyvista.UnstructuredGrid"]):
-    """The kept states in the order of time: fields[-1]["von_mises"] are values at the nodes.
-    `times` [s].
+    """The kept states in order of time, as PyVista grids: fields[-1]["von_mises"] are nodal values.
+    `times` has the times of the states [s]. Access raises NotInstalled without PyVista and
+    Unreadable without states.
     """
 
     def __init__(self, folder: Path):
@@ -237,16 +253,19 @@ class Fields(Sequence["pyvista.UnstructuredGrid"]):
 
 
 def load(folder: str | Path) -> Result:
-    """The finished run in a folder; Unreadable, in one line, where there is none."""
+    """Returns the finished run in a folder. Raises Unreadable, with a message of one line, if there
+    is none.
+    """
     return Result(folder)
 
 
 def compare(*results: Result | str | Path, names: Sequence[str] | str = ()) -> pd.DataFrame:
-    """The main numbers of several runs side by side, each with its error, in the order given.
+    """Returns a table of the main numbers of several runs side by side, each with its error
+    estimate, in the order of the arguments.
 
-    `agree` says whether all of them lie within their error bars, None where one has no estimate.
-    `names`: which numbers; by default the main ones that all runs have. The folders are in
-    `.attrs["folders"]`.
+    The column `agree` states whether the error bars of all runs overlap; it is None where a run has
+    no estimate. `names` selects the numbers; by default these are the main numbers that all runs
+    have. The folders are in `.attrs["folders"]`. Raises BadInput for fewer than two runs.
     """
     if len(results) == 1 and isinstance(results[0], list | tuple):
         results = tuple(results[0])
@@ -268,7 +287,9 @@ def compare(*results: Result | str | Path, names: Sequence[str] | str = ()) -> p
 
 
 def _agree(runs: Sequence[Result], name: str) -> bool | None:
-    """Whether all error bars of a number have a value in common."""
+    """Returns whether all error bars of a number have a value in common, or None if a run has no
+    error estimate.
+    """
     if not all(name in one.errors for one in runs):
         return None
     return bool(

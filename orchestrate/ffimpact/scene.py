@@ -1,4 +1,4 @@
-"""Scenes as files: the built-in ones and those of one's own."""
+"""Reads scenes from files: the built-in scenes and TOML files of the user."""
 
 import re
 import tomllib
@@ -14,18 +14,17 @@ SCENES = Path(__file__).resolve().parent / "scenes"
 
 
 def built_in() -> list[str]:
-    """Names of the scenes that come with the program."""
+    """Returns the names of the built-in scenes."""
     return sorted(path.stem for path in SCENES.glob("*.toml"))
 
 
 def read_toml(path: Path, missing: str) -> tuple[str, dict]:
-    """The text of a TOML file and what it says; BadInput with the words `missing` where there
-    is none, or why it cannot be read.
+    """Returns the text of a TOML file and its tables. Raises BadInput with the message `missing` if
+    there is no such file, or with the reason why the file cannot be read.
     """
     try:
-        if (
-            path.exists() and not path.is_file() and not path.is_dir()
-        ):  # reading a pipe or a device might never end
+        # Reading a pipe or a device might never end.
+        if path.exists() and not path.is_file() and not path.is_dir():
             raise BadInput(f"{path}: is no file")
         text = path.read_text("utf-8-sig")  # some editors write a byte order mark
         return text, tomllib.loads(text)
@@ -39,8 +38,8 @@ def read_toml(path: Path, missing: str) -> tuple[str, dict]:
 
 
 def _unit_in(path: Path, error: Exception) -> str:
-    """Of a file that is no TOML: the entry in the line of the error, where its number has a
-    unit; else empty.
+    """Returns a message if a TOML error is due to a number that is written with its unit, else an
+    empty text. The message contains the entry in the line of the error.
     """
     if not (line := re.search(r"at line ([0-9]+)", str(error))):
         return ""
@@ -52,7 +51,7 @@ def _unit_in(path: Path, error: Exception) -> str:
 
 
 def absent(name: str, kind: str, names: list[str]) -> str:
-    """The message where a word is neither the name of one of the built-in scenes (sweeps) nor a
+    """Returns the message for a name that is neither a built-in scene (or sweep) nor an existing
     file.
     """
     hint = suggestion(name.removesuffix(".toml"), names)
@@ -66,11 +65,11 @@ def absent(name: str, kind: str, names: list[str]) -> str:
 
 
 def load(name: str | Path) -> Scene:
-    """A built-in scene, or the scene of a TOML file: title, script and any parameters, all at
-    top level; or one with bodies.
+    """Reads a built-in scene or the scene of a TOML file. A file has either title, script and
+    parameters at top level, or tables of bodies.
 
-    The scene.toml of a result folder is such a file too. BadInput when there is no such scene,
-    on a TOML error and on an unknown key.
+    The scene.toml of a result folder is such a file, too. Raises BadInput if there is no such
+    scene, on a TOML error and on an unknown key.
     """
     name = str(name)
     path = SCENES / f"{name}.toml" if name in built_in() else Path(name)

@@ -1,5 +1,5 @@
-"""The JSON schema of scene files, from the models of input/models.py and the table of parameters:
-editors complete and check TOML files with it (ffimpact schema).
+"""The JSON schema of scene files, made from the models in input/models.py and the table of
+parameters. Editors complete and check TOML files with it (`ffimpact schema`).
 """
 
 from __future__ import annotations
@@ -16,13 +16,14 @@ from .input.models import BODIES, OBSTACLES, Contact, Top
 
 __all__ = ["FILE", "schema", "text"]
 
-FILE = Path(__file__).parent / "scenes/scene.schema.json"  # what the built-in scenes name
+# The built-in scenes refer to this file.
+FILE = Path(__file__).parent / "scenes/scene.schema.json"
 DRAFT = "https://json-schema.org/draft/2020-12/schema"
 
 
 def schema() -> dict[str, Any]:
-    """The schema of a scene file: one of bodies and obstacles in tables, or one of the paper's
-    cases.
+    """Returns the schema of a scene file, which has either tables of bodies and obstacles or the
+    parameters of a case of the paper.
     """
     models = [Top, Contact, *BODIES.values(), *OBSTACLES.values()]
     _, made = models_json_schema([(one, "validation") for one in models])
@@ -55,7 +56,7 @@ def schema() -> dict[str, Any]:
 
 
 def text() -> str:
-    """The schema as the text of a file."""
+    """Returns the schema as the text of a JSON file."""
     return json.dumps(schema(), indent=1, ensure_ascii=False) + "\n"
 
 
@@ -64,7 +65,9 @@ def _references(table: dict[str, Any]) -> list[dict[str, str]]:
 
 
 def _plain(made: Any) -> Any:
-    """Without null, which TOML has not, and titles that repeat names."""
+    """Returns a schema without null, which TOML does not have, and without titles that repeat
+    names.
+    """
     if isinstance(made, list):
         return [_plain(one) for one in made]
     if not isinstance(made, dict):

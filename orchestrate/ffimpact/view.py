@@ -1,8 +1,9 @@
-"""The player of a run: the deforming bodies over time with a field, the obstacles, and figures of
-force and energies with a cursor; one HTML page that needs no network.
+"""The player of a run, an HTML page that needs no network. It animates the deforming bodies,
+coloured by a field, and the obstacles, beside figures of force and energies with a time cursor.
 
-The bodies and obstacles are a k3d plot. The states are packed: places as 16-bit shares of the box
-around all of them, fields as 8-bit shares of their range. player.js unpacks and shows them.
+The bodies and obstacles are a k3d plot. The states are compressed: positions as 16-bit fractions of
+the box around all states, fields as 8-bit fractions of their range. player.js decompresses and
+shows them.
 """
 
 from __future__ import annotations
@@ -31,22 +32,21 @@ if TYPE_CHECKING:
 
 __all__ = ["FIELDS", "Player", "Shown", "States", "view"]
 
-# name: its label, the field of a state that it is made from, and the units it may be shown in
+# For each name: the label, the field of the state that it is computed from, and the possible units.
 FIELDS = {
     "von_mises": ("von Mises stress", "von_mises", ("Pa", "kPa", "MPa", "GPa")),
     "pressure": ("pressure", "pressure", ("Pa", "kPa", "MPa", "GPa")),
     "speed": ("speed", "velocity", ("m/s", "km/s")),
     "energy_density": ("energy density", "energy_density", ("J/m³", "kJ/m³", "MJ/m³", "GJ/m³")),
 }
-SECONDS = 6.0  # that the animation takes
-DARKEST = (
-    0.999  # quantile of a field that has the end of the colours: one spot does not hide the rest
-)
-TURN = np.radians(270)  # by which a body of revolution is shown: cut open
-SECTIONS = 37  # around the axis
-GRID = 40  # points along each side of the box in which the surface of an obstacle is looked for
+SECONDS = 6.0  # duration of the animation [s]
+# Quantile of a field at the end of the colour scale, so that a single spot does not dominate it.
+DARKEST = 0.999
+TURN = np.radians(270)  # angle [rad] over which a body of revolution is shown, cut open
+SECTIONS = 37  # number of sections within that angle
+GRID = 40  # grid points along each side of the box in which the surface of an obstacle is computed
 GROUND = 0xB8B8B8
-LINE = 0.012  # width of an obstacle's line over the size of the picture
+LINE = 0.012  # width of an obstacle's line, relative to the largest side of the box of the states
 STYLE = """
 <style>
  html, body { background: #fff; font: 14px system-ui, sans-serif; }
@@ -72,7 +72,9 @@ STYLE = """
 
 
 class Player:
-    """The player of a run as one HTML page: `page`. A notebook shows it; `save(path)` writes it."""
+    """The player of a run as an HTML page, `page`. A notebook displays it; `save(path)` writes it
+    to a file.
+    """
 
     def __init__(self, page: str):
         self.page = page
@@ -84,7 +86,7 @@ class Player:
         )
 
     def save(self, path: str | Path) -> Path:
-        """Writes the page; returns its path."""
+        """Writes the page to a file and returns its path."""
         path = Path(path)
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(self.page, "utf-8")
@@ -97,11 +99,12 @@ def view(
     field: str = "von_mises",
     revolved: bool = True,
 ) -> Any:
-    """The Player of a run, or `path`, the HTML file that was written.
+    """Returns the Player of a run, or writes it to the HTML file `path` and returns the path.
 
-    `field` is the one of FIELDS that is shown at first. A body of revolution is shown cut open,
-    or with `revolved=False` as its section. A body in space that has a plane of symmetry is shown
-    cut along it.
+    `field` is the name in FIELDS that is shown first. A body of revolution is shown cut open, or
+    with `revolved=False` as its section. A body in space that has a plane of symmetry is shown cut
+    along that plane. Raises NotInstalled without k3d, BadInput for a wrong path or field, and
+    Unreadable without states.
     """
     try:
         import k3d
@@ -158,8 +161,10 @@ def view(
 
 @dataclass(frozen=True)
 class States:
-    """`places` (states, n, 3) deformed [m] at `times` (states,) [s], `triangles` (t, 3), `fields` by
-    name (states, n) in SI units. `kind` is plane, revolved or space.
+    """The states that the player shows.
+
+    `places` (states, n, 3): deformed positions [m] at `times` (states,) [s]; `triangles` (t, 3);
+    `fields` by name (states, n) in SI units. `kind` is "plane", "revolved" or "space".
     """
 
     times: np.ndarray
@@ -170,7 +175,9 @@ class States:
 
 
 def _states(result: Result, revolved: bool) -> States:
-    """What the player shows of each state that was kept."""
+    """Reads the kept states of a run in the form that the player shows. Raises Unreadable without
+    states.
+    """
     series = vtu.series(result.folder / "fields.pvd")
     if not series:
         raise Unreadable(
@@ -200,10 +207,12 @@ def _states(result: Result, revolved: bool) -> States:
 
 @dataclass(frozen=True)
 class Shown:
-    """How the vertices that are shown come from the nodes of a state: the value at vertex i is that
-    of `nodes[i]`, its place that of the node, turned about the y-axis by `angle[i]`, times the signs
-    `mirror[i]` (3,); `skin` first takes a field to the vertices of curved faces. Triangles turn
-    counter-clockwise as seen from outside.
+    """Maps the nodes of a state to the vertices that are shown. Vertex i has the field value of
+    node `nodes[i]`. Its position is that of the node, rotated about the y-axis by `angle[i]` [rad],
+    times the signs `mirror[i]` (3,).
+
+    If `skin` is set, it first interpolates a field to the vertices of curved faces. The vertices of
+    a triangle are in counter-clockwise order as seen from outside.
     """
 
     triangles: np.ndarray
@@ -213,12 +222,12 @@ class Shown:
     skin: vtu.Skin | None = None
 
     def values(self, field: np.ndarray) -> np.ndarray:
-        """A field (nodes, ...) at the vertices."""
+        """Returns a field (nodes, ...) at the vertices."""
         at_vertices: np.ndarray = (self.skin.at(field) if self.skin else field)[self.nodes]
         return at_vertices
 
     def places(self, places: np.ndarray) -> np.ndarray:
-        """The places (vertices, 3) [m] of the vertices."""
+        """Returns the positions (vertices, 3) [m] of the vertices."""
         x, y, z = self.values(places).T
         turned = [np.cos(self.angle) * x, y, np.sin(self.angle) * x + z]
         found: np.ndarray = np.stack(turned, axis=1) * self.mirror
@@ -226,7 +235,7 @@ class Shown:
 
 
 def _section(state: vtu.Snapshot, mirrored: bool) -> Shown:
-    """A state in the plane, with its mirror image."""
+    """Shows a state in the plane, with its mirror image if `mirrored`."""
     n = len(state.points)
     images = [[1, 1, 1], [-1, 1, 1]] if mirrored else [[1, 1, 1]]
     return _images(state.triangles, n, images)
@@ -235,7 +244,9 @@ def _section(state: vtu.Snapshot, mirrored: bool) -> Shown:
 def _images(
     triangles: np.ndarray, n: int, images: list[list[int]], skin: vtu.Skin | None = None
 ) -> Shown:
-    """Triangles of n vertices with mirror images of them, each by the signs of the coordinates."""
+    """Shows triangles of n vertices together with their mirror images. Each of `images` is a list
+    of the signs of the three coordinates.
+    """
     found = [
         (triangles if np.prod(signs) > 0 else triangles[:, ::-1]) + k * n
         for k, signs in enumerate(images)
@@ -245,7 +256,9 @@ def _images(
 
 
 def _revolution(state: vtu.Snapshot) -> Shown:
-    """Two sections of a body of revolution and the surface between them."""
+    """Shows a body of revolution as its two end sections and the surface of revolution between
+    them.
+    """
     edges = state.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
     _, first, count = np.unique(
         np.sort(edges, axis=1), axis=0, return_index=True, return_counts=True
@@ -265,8 +278,9 @@ def _revolution(state: vtu.Snapshot) -> Shown:
 
 
 def _skin(solid: vtu.Solid, symmetry: str) -> Shown:
-    """The faces that bound a body in space. Of a symmetric one the half with z < 0, so that one looks
-    into it: the image of the half or quarter with positive coordinates that was computed.
+    """Shows the boundary faces of a body in space. A body with a plane of symmetry is shown as its
+    half with z < 0, so that its inside is visible. This half consists of mirror images of the half
+    or quarter with positive coordinates that was computed.
     """
     faces = solid.tetrahedra[:, vtu.FACES]
     corners = solid.points[faces[..., :3]]
@@ -284,7 +298,7 @@ def _skin(solid: vtu.Solid, symmetry: str) -> Shown:
 
 
 def _three(vectors: np.ndarray) -> np.ndarray:
-    """Vectors (n, 2 or 3) with three components."""
+    """Pads vectors (n, 2 or 3) with zeros to three components."""
     return np.pad(vectors, [(0, 0), (0, 3 - vectors.shape[1])])
 
 
@@ -293,7 +307,7 @@ def _scalar(field: np.ndarray) -> np.ndarray:
 
 
 def _packed(states: States, low: np.ndarray, high: np.ndarray) -> dict[str, Any]:
-    """The states as player.js reads them."""
+    """Returns the states in the form that player.js reads."""
     extent = np.maximum(high - low, 1e-12 * (high - low).max())
     places = np.rint(65535 * (states.places - low) / extent).astype("<u2")
     fields, values = [], {}
@@ -324,19 +338,23 @@ def _packed(states: States, low: np.ndarray, high: np.ndarray) -> dict[str, Any]
 
 
 def _text(array: np.ndarray) -> str:
-    """The differences between states, compressed, as text: neighbours in time are alike."""
+    """Returns the differences between successive states, compressed, as text. Successive states are
+    similar, so that the differences compress well.
+    """
     steps = np.diff(array, axis=0, prepend=np.zeros_like(array[:1]))
     return base64.b64encode(zlib.compress(steps.tobytes(), 9)).decode()
 
 
-# ---- what stands around them
+# ---- obstacles, camera and figure
 
 
 def _obstacle(k3d: Any, one: Obstacle, kind: str, low: np.ndarray, high: np.ndarray) -> Any:
-    """An obstacle where it is at t = 0: a line in the plane, else a surface; None out of sight."""
+    """Returns an obstacle at t = 0 as a k3d object: a line in the plane, else a surface. Returns
+    None if it is not visible.
+    """
     margin = 0.25 * (high - low).max()
     left, right = low - margin, high + margin
-    count = 3 if one.kind == "plane" else GRID  # the distance from a plane is linear
+    count = 3 if one.kind == "plane" else GRID  # the gap to a plane is linear
     x, y, z = (np.linspace(a, b, count) for a, b in zip(left, right))
     if kind == "plane":
         from contourpy import contour_generator
@@ -378,7 +396,9 @@ def _obstacle(k3d: Any, one: Obstacle, kind: str, low: np.ndarray, high: np.ndar
 
 
 def _camera(kind: str, low: np.ndarray, high: np.ndarray) -> list[float]:
-    """Eye, target and upward direction: from the front in the plane, else from above and aside."""
+    """Returns eye, target and upward direction of the camera. It looks from the front in the plane,
+    otherwise from above and aside.
+    """
     centre, size = (low + high) / 2, float(np.linalg.norm(high - low))
     towards = {"plane": (0, 0, 1), "revolved": (0.9, 0.45, -1.0), "space": (0.35, 0.3, 1)}[kind]
     eye = centre + 3.2 * size * np.array(towards) / np.linalg.norm(towards)
@@ -386,13 +406,13 @@ def _camera(kind: str, low: np.ndarray, high: np.ndarray) -> list[float]:
 
 
 def _of_largest_force(result: Result) -> float:
-    """The time [s] of the largest normal force: what is shown at first."""
+    """Returns the time [s] of the largest normal force. The player shows this time first."""
     return float(result.history.t[result.history.normal_force.idxmax()])
 
 
 def _figure(result: Result) -> tuple[str, dict[str, float]]:
-    """Force and energies over time as a picture, and where in it the time axis lies: its ends in
-    shares of the width, and their times [s].
+    """Returns a picture of force and energies over time, and the extent of its time axis: both ends
+    as fractions of the picture's width and as times [s].
     """
     from matplotlib.figure import Figure
 

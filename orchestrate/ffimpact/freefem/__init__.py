@@ -1,1 +1,1 @@
-"""FreeFEM: its process, the compiled kernels, what its scripts say of themselves."""
+"""FreeFEM: its process, the compiled kernels and the descriptions that its scripts give."""

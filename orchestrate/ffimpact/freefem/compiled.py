@@ -1,5 +1,5 @@
-"""What is compiled on a machine lies in the user's cache folder, beside what other versions and
-other sources have left there.
+"""Compiled files in the cache folder of the user. Files of other versions and other sources are
+kept beside them.
 """
 
 import hashlib
@@ -19,10 +19,12 @@ QUIET = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.DEVNULL)
 
 
 def compiled(name: str, made_of: Iterable[str], make: Callable[[Path], None]) -> Path | None:
-    """The file `name` made of these texts, the sources and whatever else it depends on. Where
-    the file is missing, make(folder) makes it in a folder of its own, from where it moves to
-    its place at once: several processes may do so at a time. None where it cannot be made, for
-    want of a compiler, of headers or of a folder to write in.
+    """Returns the path of the file `name`, which is identified by the texts `made_of`: its sources
+    and all else that it depends on.
+
+    If the file is missing, make(folder) makes it in a temporary folder, from which it is moved to
+    its place in one step, so that several processes can do this at a time. Returns None if the file
+    cannot be made because a compiler, headers or a writable folder are missing.
     """
     key = hashlib.sha256("\0".join(made_of).encode()).hexdigest()[:12]
     place = user_cache_path("ffimpact") / __version__ / key / name

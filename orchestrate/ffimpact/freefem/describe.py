@@ -1,5 +1,5 @@
-"""What the FreeFEM scripts say of themselves, of a scene and of its results: asked of
-edp/describe*.edp, never read from their source.
+"""Queries the FreeFEM scripts edp/describe*.edp, which describe the scripts, a scene and its
+results. The source of the scripts is never parsed.
 """
 
 import copy
@@ -12,16 +12,16 @@ from . import freefem
 
 __all__ = ["describe", "describe_results"]
 
-LIMIT = 60  # s; an answer takes some tenths
+LIMIT = 60  # time limit of a query [s]
 
 
 def describe(values: dict | None = None, script: str = "disc-plane") -> dict:
-    """The answer of edp/describe.edp to the parameters in `values` of a scene of
-    edp/<script>.edp: scripts, parameters (rows of the table), and of the scene bodies (how
-    many), `used` (every parameter as used, SI units), half (is half the body enough?),
-    touch_arc [rad], accuracy_made.
+    """Returns the answer of edp/describe.edp for a scene of edp/<script>.edp with the parameters
+    `values`: scripts, parameters (rows of the table), bodies (number of bodies), `used` (every
+    parameter with the value that is used, SI units), half (whether half the body is sufficient),
+    touch_arc [rad] and accuracy_made.
 
-    BadInput where the script refuses the values; NotInstalled without FreeFem++.
+    Raises BadInput if the script refuses the values, and NotInstalled without FreeFem++.
     """
     if not values and script == "disc-plane":
         return copy.deepcopy(freefem.find().description)
@@ -31,11 +31,14 @@ def describe(values: dict | None = None, script: str = "disc-plane") -> dict:
 
 
 def describe_results(values: dict | None = None, script: str = "disc-plane") -> dict:
-    """The answer of edp/describe-results.edp for the same: bodies, columns (of history.csv),
-    summary (the numbers of summary.json), body_columns and body_summary (of each of several
-    bodies), damped (what all four have beside, where bodies are damped), projected (what both
-    columns have where volume is projected, of nu above plain_nu), contact_columns (of
-    contacts.csv), and by file and name `meanings`: unit, words. Raises as describe().
+    """Returns the answer of edp/describe-results.edp for the same arguments. Its names are: bodies;
+    columns (of history.csv); summary (the numbers of summary.json); body_columns and body_summary
+    (for each of several bodies); damped (additional names in these four if bodies are damped);
+    projected (additional names in both lists of columns if the volume is projected, for nu above
+    plain_nu); contact_columns (of contacts.csv); and `meanings`, by file and name: unit and
+    description.
+
+    Raises the same exceptions as describe().
     """
     return json.loads(
         _ask("edp/describe-results.edp", *freefem.words_of({"script": script} | (values or {})))

@@ -1,5 +1,5 @@
-"""FreeFem++: finds and checks the program, starts its processes, waits for them, and ends them
-whatever happens.
+"""Finds and checks the program FreeFem++, starts its processes, waits for them and ends them in all
+circumstances.
 """
 
 import ctypes
@@ -43,19 +43,19 @@ __all__ = [
 ]
 
 CORES = len(os.sched_getaffinity(0))
-OLDEST = (4, 9)  # the version in the banner; Debian's 4.11 calls itself 4.9
-DEBIAN_PLUGINS = (
-    "/usr/lib/freefem++"  # where Debian puts the plugins, and its FreeFem++ does not look
-)
+# The oldest accepted version, as the banner prints it. Debian's 4.11 prints 4.9.
+OLDEST = (4, 9)
+# Debian installs the plugins in this folder, in which its FreeFem++ does not search for them.
+DEBIAN_PLUGINS = "/usr/lib/freefem++"
 DESCRIBE = "edp/describe.edp"
 CLOCK = ROOT / "edp/clock.c"
 OPEN_FILES = "/proc/self/fd/"
 BANNER = re.compile(r"FreeFem\+\+ v(\d+\.\d\d?)\b")
 SAYS = re.compile(r"progress (\S+) t=(\S+) steps=(\S+)(?: unknowns=(\S+) apart=(\S+))?$")
-POLL = 0.1  # s between two looks at a process, its log and its limits
-# setpriv (util-linux) asks the kernel to kill what it starts as soon as the thread that started it
-# ends, even by SIGKILL. Where setpriv is missing FreeFem++ goes on to its end, and its folder stays
-# locked until then: start() hands it the lock.
+POLL = 0.1  # time [s] between two checks of a process, its log and its limits
+# setpriv (util-linux) asks the kernel to kill the process that it starts as soon as the thread that
+# started setpriv ends, even by SIGKILL. Without setpriv FreeFem++ continues to its end. Its folder
+# stays locked until then, because start() passes the lock to FreeFem++.
 SETPRIV = shutil.which("setpriv")
 LAUNCHER = (SETPRIV, "--pdeathsig", "KILL") if SETPRIV else ()
 WAYS = (
@@ -66,15 +66,14 @@ HOW = f"install it: {WAYS}" if INSTALLED else f"run: make setup   (or: {WAYS})"
 
 
 class At(NamedTuple):
-    """How far a run is."""
+    """The progress of a run."""
 
-    share: float  # of its steps, in [0, 1], as far as one can see
-    t: float  # s
+    share: float  # estimated fraction of its steps that is completed, in [0, 1]
+    t: float  # time in the run [s]
     steps: int
     unknowns: int = 0
-    apart: float = (
-        1.0  # the times that a wave takes across the slowest body, over those of the quickest
-    )
+    # Transit time of waves across the slowest body, divided by that across the quickest one.
+    apart: float = 1.0
 
 
 Progress = Callable[[At], None]
@@ -82,18 +81,18 @@ Progress = Callable[[At], None]
 
 @dataclass(frozen=True)
 class FreeFem:
-    """A FreeFem++ that runs our scripts: its path, its version, the environment it needs, and
-    what the scripts say of themselves.
+    """A FreeFem++ that can run the scripts of this program: its path, its version, the environment
+    that it needs and the description that the scripts give.
     """
 
     command: str
     version: str
     environment: dict[str, str]
     description: dict
-    plugin: str = ""  # the word that loads the compiled kernels
+    plugin: str = ""  # the command-line word that loads the compiled kernels
 
     def words(self, script: str | Path, *flags: str) -> list[str]:
-        """The command that runs a script."""
+        """Returns the command that runs a script."""
         return [
             *LAUNCHER,
             self.command,
@@ -108,14 +107,16 @@ class FreeFem:
 
     @property
     def preloaded(self) -> list[int]:
-        """Open files that its environment names."""
+        """The numbers of the open files to which LD_PRELOAD in the environment refers."""
         return [
             int(number)
             for number in re.findall(rf"{OPEN_FILES}(\d+)", self.environment.get("LD_PRELOAD", ""))
         ]
 
     def call(self, script: str | Path, *flags: str, **options) -> subprocess.CompletedProcess:
-        """A script run to its end; `options` are of subprocess.run."""
+        """Runs a script to its end and returns the completed process. `options` are passed to
+        subprocess.run.
+        """
         usual = {
             "cwd": ROOT,
             "env": self.environment,
@@ -129,12 +130,12 @@ class FreeFem:
 
 
 def words_of(flags: Mapping[str, object]) -> list[str]:
-    """Flags of a script as words of its command."""
+    """Converts the flags of a script to words of its command line."""
     return [word for name, value in flags.items() for word in (f"-{name}", str(value))]
 
 
 def said_in(errors: str) -> str:
-    """The last line that a script says to the user on its stderr, "" where it says nothing."""
+    """Returns the last message for the user in a script's stderr, or "" if there is none."""
     return next(
         (
             line.removeprefix("ffimpact: ")
@@ -146,15 +147,15 @@ def said_in(errors: str) -> str:
 
 
 def find() -> FreeFem:
-    """$FREEFEM or FreeFem++ on the PATH, probed once; NotInstalled when missing, too old or
-    without its plugins.
+    """Finds $FREEFEM, or FreeFem++ on the PATH, and checks it once per environment. Raises
+    NotInstalled if it is missing, too old or without its plugins.
     """
     return _find(tuple(sorted(os.environ.items())))
 
 
 @cache
 def _find(variables: tuple[tuple[str, str], ...]) -> FreeFem:
-    """The same in an environment."""
+    """Finds FreeFem++ as find() does, in the environment `variables`."""
     environment = dict(variables)
     wanted = environment.get("FREEFEM", "FreeFem++")
     command = shutil.which(wanted)
@@ -181,10 +182,13 @@ def _find(variables: tuple[tuple[str, str], ...]) -> FreeFem:
 
 
 def _threads(wanted: str) -> dict[str, str]:
-    """What lets a process have so many threads. One is best where processes fill the cores:
-    sweeps, and a run with the one beside it that estimates its error. Answers are the same with
-    any number. CHOLMOD takes four (of its own) unless there is a limit; OpenBLAS, whose sums
-    depend on it, has one.
+    """Returns the environment variables that give a process `wanted` threads. Raises BadInput if
+    `wanted` is not a number from 1 to 64.
+
+    One thread is best if processes fill the cores, as in a sweep or in a run beside the one that
+    estimates its error. The results do not depend on the number of threads. CHOLMOD starts four
+    threads of its own unless OMP_THREAD_LIMIT limits them. OpenBLAS has one thread, because its
+    sums depend on the number of threads.
     """
     if not (wanted.isdecimal() and 1 <= int(wanted) <= 64):
         raise BadInput(
@@ -199,9 +203,9 @@ def _threads(wanted: str) -> dict[str, str]:
 
 
 def _blas_kernels() -> dict[str, str]:
-    """OpenBLAS takes its oldest kernels (SSE3) for a processor newer than itself: those for
-    AVX2 where there is that. They made steps with 14,000 unknowns in three dimensions a sixth
-    faster; answers differ by round-off.
+    """Returns the environment variable that makes OpenBLAS use its kernels for AVX2, if the
+    processor has AVX2 and FMA. For a processor newer than itself OpenBLAS chooses its oldest and
+    slower kernels (SSE3). The results differ by round-off.
     """
     try:
         flags = re.search(r"^flags\s*:(.*)", Path("/proc/cpuinfo").read_text(), re.MULTILINE)
@@ -218,9 +222,9 @@ def _blas_kernels() -> dict[str, str]:
 
 
 def quick_clock(environment: Mapping[str, str]) -> dict[str, str]:
-    """The preloaded clock() of edp/clock.c; nothing where it cannot be compiled. On a path that
-    LD_PRELOAD, whose names end at blanks and colons, cannot name, it is an open file that
-    processes are handed.
+    """Returns the environment variable that preloads the clock() of edp/clock.c, or nothing if it
+    cannot be compiled. Names in LD_PRELOAD end at blanks and colons. If the path contains one, the
+    variable refers to an open file that the processes inherit.
     """
 
     def make(folder: Path) -> None:
@@ -244,9 +248,9 @@ def quick_clock(environment: Mapping[str, str]) -> dict[str, str]:
 
 
 def _probe(command: str, environment: dict[str, str]) -> dict | None:
-    """What edp/describe.edp says without a scene, if it starts and finds the plugins that the
-    scenes load. The version is the banner's: to scripts it is a number, that of 4.10 the same
-    as that of 4.1.
+    """Returns the answer of edp/describe.edp without a scene, or None if FreeFem++ does not start
+    or lacks a plugin that the scenes load. The version is taken from the banner: scripts see it as
+    a number, in which 4.10 equals 4.1.
     """
     try:
         said = FreeFem(command, "", environment, {}).call(DESCRIBE, "-v", "1", timeout=60).stdout
@@ -256,18 +260,18 @@ def _probe(command: str, environment: dict[str, str]) -> dict | None:
         return None
 
 
-# ---- a process at work
+# ---- running processes
 
 
 class _Limit(threading.local):
-    """When the FreeFem++ that a thread waits for has to end: after `seconds`, at the time
-    `end`, or once another thread sets `stop`.
+    """The limits of the FreeFem++ that a thread waits for. It has to end after `seconds`, at the
+    time `end` [s] of the monotonic clock, or once another thread sets `stop`.
     """
 
     seconds, end, stop = math.inf, math.inf, threading.Event()
 
     def check(self) -> None:
-        """Raises TooLong after the end, and KeyboardInterrupt once `stop` is set."""
+        """Raises TooLong after the time `end`, and KeyboardInterrupt once `stop` is set."""
         if self.stop.is_set():
             raise KeyboardInterrupt
         if time.monotonic() > self.end:
@@ -279,8 +283,8 @@ _limit = _Limit()
 
 @contextmanager
 def limited(seconds: float = math.inf, stop: threading.Event | None = None) -> Iterator[None]:
-    """Limits every FreeFem++ that this thread waits for inside the `with`. Without a `stop` the
-    thread keeps the one it has.
+    """Limits every FreeFem++ that this thread waits for inside the `with`. Without `stop` the
+    thread keeps its present one.
     """
     before = _limit.seconds, _limit.end, _limit.stop
     _limit.seconds, _limit.end, _limit.stop = (
@@ -296,18 +300,18 @@ def limited(seconds: float = math.inf, stop: threading.Event | None = None) -> I
 
 @dataclass(frozen=True)
 class Process:
-    """A FreeFem++ at work, the file of its stdout, and that of its stderr."""
+    """A running FreeFem++, the file of its stdout (`log`) and the file of its stderr (`errors`)."""
 
     child: subprocess.Popen
     log: Path
     errors: TextIO
 
     def end(self, progress: Progress | None = None) -> tuple[int, str]:
-        """Waits for the end, and raises what the limits of this thread raise.
+        """Waits for the end of the process. Raises TooLong or KeyboardInterrupt by the limits of
+        this thread.
 
-        Returns the exit code, negative for a signal, and the script's line for the user, or
-        "". What the lines "progress <share> t=<time> steps=<n> ..." of the log say goes to
-        `progress`.
+        Returns the exit code, negative for a signal, and the script's message for the user, or "".
+        Lines "progress <share> t=<time> steps=<n> ..." of the log are passed to `progress`.
         """
         unread, code = "", None
         with open(self.log, errors="replace") as lines:
@@ -342,12 +346,12 @@ def start(
     lock: int | None = None,
     folder: Path = ROOT,
 ) -> Iterator[Process]:
-    """A script at work, started in `folder`, with its output in `log`.
+    """Starts a script in `folder` with its output in `log`, and ends it when the `with` is left.
 
-    FreeFem++ and the commands that it starts are a session, and so a process group, of their
-    own: Ctrl-C on the terminal reaches Python alone, which ends the group when this `with` is
-    left in any way. FreeFem++ shares the open file `lock`: what is locked stays locked until
-    FreeFem++ has ended.
+    FreeFem++ and its child processes form a session, and thus a process group, of their own. Ctrl-C
+    on the terminal therefore reaches Python only. Python kills the group when the `with` is left in
+    any way. FreeFem++ inherits the open file `lock`, so that the lock is kept until FreeFem++ has
+    ended.
     """
     with open(log, "w") as output, tempfile.TemporaryFile("w+", errors="replace") as errors:
         child = subprocess.Popen(

@@ -1,5 +1,5 @@
-"""The compiled kernels of edp/kernels: a plugin built for the FreeFem++ at hand, where a compiler
-is, and named on its command line.
+"""Builds the compiled kernels of edp/kernels as a plugin for the installed FreeFem++, if there is a
+compiler. A word on the command line of a script loads the plugin.
 """
 
 import re
@@ -16,13 +16,14 @@ __all__ = ["SOURCES", "build"]
 
 SOURCES = ROOT / "edp/kernels"
 LIBRARIES = ("-lcholmod", "-lumfpack")
-THREADS = ("-fopenmp",), ()  # where the compiler has no OpenMP: one thread
+# Compiler flags, tried in this order. Without OpenMP the kernels use one thread.
+THREADS = ("-fopenmp",), ()
 
 
 def build(command: str, version: str, environment: Mapping[str, str]) -> str:
-    """The word on a command line with which a script loads the plugin made of the present
-    sources for this FreeFem++. The plugin is built where it is missing, by the ff-c++ beside
-    FreeFem++. Where that fails the word is empty, and the scripts run without kernels.
+    """Returns the command-line word with which a script loads the plugin of the present sources for
+    this FreeFem++. If the plugin is missing, the ff-c++ in the folder of FreeFem++ builds it. If
+    that fails, the word is empty and the scripts run without kernels.
     """
     maker = Path(command).resolve().with_name("ff-c++")
     if not maker.exists():
@@ -36,18 +37,18 @@ def build(command: str, version: str, environment: Mapping[str, str]) -> str:
     plugin = compiled("kernels.so", made_of, partial(_make, command, maker, environment))
     if not plugin or re.search(r'["\\\n]', str(plugin)):
         return ""
-    interface = re.search(r"IFMACRO\((kernels\d+)\)", (ROOT / "edp/kernels.idp").read_text())[
-        1
-    ]  # the calls that the scripts know
-    # FreeFEM puts its own folders before any name: from each of them up to the root
+    # The version of the interface through which the scripts call the kernels.
+    interface = re.search(r"IFMACRO\((kernels\d+)\)", (ROOT / "edp/kernels.idp").read_text())[1]
+    # FreeFEM puts its own folders before any name, so that the path first leads up to the root.
     return f'-D{interface}="{"../" * 40}{str(plugin.with_suffix("")).lstrip("/")}"'
 
 
 def _make(command: str, maker: Path, environment: Mapping[str, str], folder: Path) -> None:
-    """kernels.so in a folder, tried."""
-    shutil.copytree(
-        SOURCES, folder, dirs_exist_ok=True
-    )  # the names of other folders may confuse ff-c++
+    """Builds kernels.so in a folder and checks that FreeFem++ loads it. Raises OSError or
+    subprocess.SubprocessError.
+    """
+    # Compiles a copy in `folder`, because names of other folders may confuse ff-c++.
+    shutil.copytree(SOURCES, folder, dirs_exist_ok=True)
     for flags in THREADS:
         made = subprocess.run(
             [maker, *flags, "kernels.cpp", *LIBRARIES],

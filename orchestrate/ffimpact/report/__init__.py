@@ -1,3 +1,1 @@
-"""What finished runs are told and shown in: key figures, pictures, films, the page beside the
-paper.
-"""
+"""Output of finished runs: printed reports, figures, films and the comparison with the paper."""

@@ -1,5 +1,5 @@
-"""Figures of a run: energies of each body and of all (figures 6a, 9a, 9b of the paper), velocities,
-forces, and deformed shapes among the obstacles.
+"""Figures of a run: energies of each body and of all bodies (figures 6a, 9a, 9b of the paper),
+velocities, forces, and the deformed shapes with the obstacles.
 """
 
 from collections.abc import Sequence
@@ -65,14 +65,15 @@ __all__ = [
     "width",
 ]
 
-ALONE = ("disc-plane", "ball-axisymmetric", "ball-plane")  # scripts of one body on the plane
-COLOURS = (BLUE, ORANGE, GREEN, PURPLE, "#56b4e9", "#e69f00")  # of bodies
-ACROSS = 3  # panels side by side
-NAMED = 6  # of many bodies the first and the last that titles and legends name
-PLANE = Obstacle(
-    "plane", "plane", (0.0, 0.0, 0.0, 0.0, 1.0, 0.0), np.zeros(3)
-)  # y = 0, of a scene of one body
-GRID = 200  # points along each side of a picture, at which obstacles are looked for
+# Scripts of a single body on the plane y = 0.
+ALONE = ("disc-plane", "ball-axisymmetric", "ball-plane")
+COLOURS = (BLUE, ORANGE, GREEN, PURPLE, "#56b4e9", "#e69f00")  # of the bodies
+ACROSS = 3  # largest number of panels side by side
+# Of many bodies, titles and legends list this number of the first and of the last ones.
+NAMED = 6
+# The plane y = 0 of a scene with a single body.
+PLANE = Obstacle("plane", "plane", (0.0, 0.0, 0.0, 0.0, 1.0, 0.0), np.zeros(3))
+GRID = 200  # grid points along each side of a picture, at which the gap to obstacles is computed
 DOTS = (0, (1, 1.5))
 ABOVE = {
     "loc": "lower center",
@@ -83,14 +84,14 @@ ABOVE = {
 
 
 def are_several(scene: dict[str, Value]) -> bool:
-    """Whether a scene, as used, has several bodies or obstacles of its own; else it is a body
-    on the plane y = 0.
+    """Returns whether a scene, as used, defines its own bodies and obstacles. Otherwise it has a
+    single body on the plane y = 0.
     """
     return "script" in scene and scene["script"] not in ALONE
 
 
 def title(scene: dict[str, Value]) -> str:
-    """Each body's material; of a disc on a block the speed."""
+    """Returns the material of each body. For a disc on a block it adds the speed."""
     if "body" not in scene:
         return f"disc on block: {material(scene)}, {scene['speed']:g} m/s"
     materials = {}
@@ -104,7 +105,9 @@ def title(scene: dict[str, Value]) -> str:
 
 
 def ends(items: list, between=None) -> list:
-    """The first and the last of many, `between` in the place of the others where it is given."""
+    """Returns the first and the last of many items, with `between` instead of the others if it is
+    not None. Few items are returned unchanged.
+    """
     return (
         items
         if len(items) <= 2 * NAMED
@@ -118,7 +121,9 @@ def draw(
     scene: dict[str, Value],
     snapshots: list[tuple[float, Path]],
 ) -> dict[str, plt.Figure]:
-    """The figures by name; `contact` is the history from the first touch on."""
+    """Draws the figures of a run and returns them by name. `contact` is the part of the history
+    from the onset of contact on.
+    """
     rubs = not are_several(scene) and history["friction_force"].any()
     drawn = {"energies": energies(contact, scene), "velocity": velocities(contact, scene)}
     drawn |= (
@@ -126,9 +131,8 @@ def draw(
         if rubs
         else {"force": forces(contact, scene)}
     )
-    if snapshots and len(
-        vtu.read(snapshots[0][1]).triangles
-    ):  # none where no body crosses the plane z = 0
+    # There are no triangles if no body crosses the plane z = 0.
+    if snapshots and len(vtu.read(snapshots[0][1]).triangles):
         drawn |= {
             name: shapes(snapshots, scene, *field)
             for name, field in COLOURED.items()
@@ -145,14 +149,14 @@ def draw(
 
 
 def width(body: int) -> float:
-    """Of the line of a body (from 0): a little thinner from body to body, so that one under
-    another is seen.
+    """Returns the line width for a body (counted from 0). It decreases from body to body, so that
+    overlapping lines remain visible.
     """
     return max(1.0, 2.0 - 0.4 * body)
 
 
 def panels(count: int, height: float = 2.4) -> tuple[plt.Figure, list[plt.Axes]]:
-    """A figure of so many panels over the same time [ms]."""
+    """Returns a figure with `count` panels over the same time [ms]."""
     columns = min(count, 2 if count == 4 else ACROSS)
     rows = -(-count // columns)
     figure, grid = plt.subplots(
@@ -173,14 +177,15 @@ def panels(count: int, height: float = 2.4) -> tuple[plt.Figure, list[plt.Axes]]
 
 
 def columns_of(history: dict[str, np.ndarray], scene: dict[str, Value]) -> dict[str, str]:
-    """What stands behind the names of the columns of each body, by its name."""
+    """Maps the name of each body to the suffix of its columns in the history."""
     return dict(zip(body_names(scene), suffixes(history)))
 
 
 def energies(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
-    """Energies [J/m] over time: a panel each of several bodies; one of all, with the contact's,
-    which belongs to no body, and the work that friction, viscosity and gravity take and give,
-    so that the dashed sum is constant; the error of this balance.
+    """Draws energies [J/m] over time. Each of several bodies has a panel. One panel shows all
+    bodies, the contact energy, which belongs to no body, and the work of friction, viscosity and
+    external forces, so that the dashed sum is constant. The last panel shows the error of this
+    balance.
     """
     t, unit, bodies = (
         1e3 * history["t"],
@@ -233,9 +238,8 @@ def energies(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fig
         together.plot(
             t, mechanical_energy(history), color=BAND, linewidth=4.5, zorder=1, label="total"
         )
-    for k, (name, (values, colour)) in enumerate(
-        lines.items()
-    ):  # thinner and thinner, so that one on another is seen
+    # The line width decreases, so that overlapping lines remain visible.
+    for k, (name, (values, colour)) in enumerate(lines.items()):
         together.plot(
             t,
             values,
@@ -250,16 +254,16 @@ def energies(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fig
     over_time([together, balance, *own], history, scene)
     for axes in (*own, together):
         legend(axes, ends, **ABOVE, ncols=2 if axes is together and 1 < len(bodies) < 4 else 3)
-    balance_error(
-        balance, history, largest or 1.0
-    )  # not of the total alone: bodies at rest under gravity have none
+    # The error is relative to the largest of all energies. The total alone can vanish, for example
+    # for bodies at rest under gravity.
+    balance_error(balance, history, largest or 1.0)
     balance.set_ylabel("|balance| /\nlargest energy")
     return figure
 
 
 def velocities(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
-    """Velocities [m/s] of the centres of mass and spins [rad/s], a panel a component, a line a
-    body.
+    """Draws the velocities of the centres of mass [m/s] and the spins [rad/s]: one panel for each
+    component that is not zero, one line for each body.
     """
     bodies = columns_of(history, scene)
     components = {
@@ -291,8 +295,8 @@ def velocities(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.F
 
 
 def forces(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
-    """Contact forces [kN/m] over time: normal and friction forces of all contacts, and the
-    components on each of several bodies.
+    """Draws contact forces [kN/m] over time: the normal and friction forces of all contacts, and
+    the components of the force on each of several bodies.
     """
     t, unit, bodies = amid(history, scene), f"[kN{per_metre(scene)}]", columns_of(history, scene)
     lines = {f"normal force {unit}": {"": "normal_force"}}
@@ -310,9 +314,8 @@ def forces(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figur
         for words, columns in own.items()
         if any(np.any(history.get(column, 0)) for column in columns.values())
     }
-    if (
-        len(own) == 1 and len(bodies) == 2 and not obstacles_of(scene)
-    ):  # the normal force is then that on each
+    # The normal force is then the same as the force on each body.
+    if len(own) == 1 and len(bodies) == 2 and not obstacles_of(scene):
         lines = dict(list(lines.items())[1:])
     lines |= own
     figure, grid = panels(len(lines), 2.8)
@@ -324,7 +327,8 @@ def forces(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figur
             axes.plot(t, 1e-3 * history[column], color=colour, label=name or None)
         axes.set_ylabel(words)
     end_of_contact(grid, history, scene)
-    if len(columns) > 1:  # no forces on bodies where nothing touched
+    # Without contact there are no panels for the forces on bodies.
+    if len(columns) > 1:
         legend(grid[-1], ends, **ABOVE, ncols=3)
     return figure
 
@@ -335,7 +339,7 @@ def forces(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figur
 def shapes(
     series: list[tuple[float, Path]], scene: dict[str, Value], field: str, label: str
 ) -> plt.Figure:
-    """All bodies at up to SHAPES instants among the obstacles, coloured by a field [MPa]."""
+    """Draws all bodies with the obstacles at up to SHAPES instants, coloured by a field [MPa]."""
     picked = evenly(series, SHAPES)
     found = [deformed(vtu.read(path), is_half(scene), field) for _, path in picked]
     rigid = obstacles_of(scene)
@@ -358,7 +362,7 @@ def shapes(
 
 
 def obstacles_of(scene: dict[str, Value]) -> list[Obstacle]:
-    """The rigid obstacles of a scene as used."""
+    """Returns the rigid obstacles of a scene as used."""
     if not are_several(scene):
         return [PLANE]
     of = dimension.of(scene)
@@ -368,7 +372,9 @@ def obstacles_of(scene: dict[str, Value]) -> list[Obstacle]:
 
 
 def limits(found: list[Body]) -> tuple[float, float, float, float]:
-    """Left, right, lower and upper end [m] of a picture that has room for all bodies."""
+    """Returns the left, right, lower and upper end [m] of a picture that contains all bodies, with
+    a margin.
+    """
     low, high = (np.array([end(body.points, axis=0) for body in found]) for end in (np.min, np.max))
     (left, bottom), (right, top) = low.min(axis=0), high.max(axis=0)
     margin = 0.06 * max(right - left, top - bottom)
@@ -378,8 +384,8 @@ def limits(found: list[Body]) -> tuple[float, float, float, float]:
 def down_the_slope(
     view: tuple[float, float, float, float], rigid: list[Obstacle]
 ) -> tuple[float, float, float, float]:
-    """A view [m] whose lower end, by up to half its height lower, no obstacle's surface
-    crosses: else a slope would end in the picture.
+    """Extends a view [m] downwards by up to half its height, until no surface of an obstacle
+    crosses its lower end. Without this a slope would end within the picture.
     """
     left, right, low, high = view
     for lower in low - (high - low) * np.linspace(0, 0.5, 11) if rigid else ():
@@ -397,13 +403,13 @@ def draw_obstacles(
     t: float,
     places: Sequence[np.ndarray] = (ORIGIN,),
 ) -> list:
-    """The obstacles where they are at time t [s], grey, within the limits `view` [m], drawn at
-    places [m]; what was drawn.
+    """Draws the obstacles at time t [s] in grey within the limits `view` [m], once for each shift
+    in `places` [m]. Returns the artists.
     """
     left, right, low, high = view
     if not rigid:
         return []
-    count = 2 if [one.kind for one in rigid] == ["plane"] else GRID  # whose distance is linear
+    count = 2 if [one.kind for one in rigid] == ["plane"] else GRID  # gap is linear
     x, y = np.linspace(left, right, count), np.linspace(low, high, count)
     points = np.stack(np.meshgrid(x, y), axis=-1)
     gap = np.min([one.gap_in_plane(points.reshape(-1, 2), t) for one in rigid], axis=0).reshape(

@@ -1,4 +1,4 @@
-"""Runs of several scenes side by side: their reports, and one figure of their forces, energies and
+"""Compares runs of several scenes: their reports, and one figure of their forces, energies and
 velocities.
 """
 
@@ -35,8 +35,8 @@ __all__ = ["contact_force", "draw", "main", "mass_of"]
 
 
 def main(argv: list[str]) -> int:
-    """Runs or reuses every scene, prints the reports, draws DIR/<names>.png. A scene that fails
-    does not keep the others.
+    """Runs or reuses every scene, prints the reports and draws DIR/<names>.png. After a scene that
+    fails the others still run; the first failure is raised at the end.
     """
     parser = argparse.ArgumentParser(prog="ffimpact compare", description=__doc__)
     parser.add_argument(
@@ -74,12 +74,14 @@ def main(argv: list[str]) -> int:
 
 
 def draw(results: dict[str, Record], path: Path) -> None:
-    """Normal force, friction force, total energy and velocities (of each body) over time, a
-    colour a run; friction only where there is any.
+    """Draws normal force, friction force, total energy and the velocities (of each body) over time,
+    with one colour for each run. If no run has friction, the largest penetration replaces the
+    friction force.
 
-    Totals, which often lie on one another, are dashes of the runs in turn. Of discs, per metre,
-    and balls together: the acceleration of the centre of mass (figure 11), of several bodies
-    the first one's, for the force, energies over that at the start.
+    Total energies, which often coincide, are drawn with alternating dashes. If the runs mix forces
+    per metre (discs) with forces (balls), the figure shows the acceleration of the centre of mass
+    (figure 11; of the first one of several bodies) instead of the force, and energies relative to
+    the initial energy.
     """
     mixed = len({per_metre(result.scene) for result in results.values()}) > 1
     rubs = any(result.history["friction_force"].any() for result in results.values())
@@ -115,7 +117,7 @@ def draw(results: dict[str, Record], path: Path) -> None:
             )
             energy.plot(t, h["elastic"] / start, color=colour, linewidth=0.9)
             for of, body in zip(suffixes(h), body_names(used)):
-                if of and colour == BLUE:  # once
+                if of and colour == BLUE:  # labels the bodies of the first run only
                     velocity.annotate(
                         body,
                         (t[-1], h[f"vy{of}"][-1]),
@@ -164,8 +166,8 @@ def draw(results: dict[str, Record], path: Path) -> None:
 
 
 def _contact(axes: plt.Axes, result: Record, colour: str) -> None:
-    """The end of the contact, and when it would be by the contact time that the paper states of
-    that impact with that law.
+    """Marks the end of the contact, and the end that follows from the contact time that the paper
+    prints for the same impact with the same law.
     """
     if not (when := touched(result.summary)):
         return
@@ -175,8 +177,8 @@ def _contact(axes: plt.Axes, result: Record, colour: str) -> None:
 
 
 def contact_force(history: dict[str, np.ndarray]) -> np.ndarray:
-    """Force on the body by its contacts: normal to the plane; of several bodies the size of all
-    that acts on the first.
+    """Returns the contact force on the body normal to the plane. For several bodies it is the
+    magnitude of the total contact force on the first one.
     """
     on_first = [
         history[name] for name in ("force_x_1", "force_y_1", "force_z_1") if name in history
@@ -185,7 +187,9 @@ def contact_force(history: dict[str, np.ndarray]) -> np.ndarray:
 
 
 def mass_of(result: Record) -> float:
-    """Of the body, of several the first [kg, in plane strain kg/m]."""
+    """Returns the mass of the body, or of the first one of several bodies [kg, in plane strain
+    kg/m].
+    """
     if "mass_1" in result.summary:
         return result.summary["mass_1"]
     moves = int(np.argmax(np.abs(result.history["vy"])))
@@ -193,7 +197,7 @@ def mass_of(result: Record) -> float:
 
 
 def _material(used: dict) -> str:
-    """Law, nu and penalty, where the scene has one of them."""
+    """Returns law, nu and penalty if the scene has a single law, else an empty text."""
     return (
         f"{LAWS.get(used['law'], used['law'])}, ν = {used['nu']:g}, k = {report.stiffness(used)}, "
         if "law" in used
@@ -202,7 +206,7 @@ def _material(used: dict) -> str:
 
 
 def _key(axes: plt.Axes, lines: dict[str, str]) -> None:
-    """What the kinds of line mean, above the panel."""
+    """Explains the line styles in a legend above the panel."""
     handles = [
         plt.Line2D([], [], color="black", linestyle=line, label=label)
         for label, line in lines.items()

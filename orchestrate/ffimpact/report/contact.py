@@ -1,7 +1,7 @@
-"""The contact of a run along the outlines of its bodies: pressure at instants and over time, with
-friction where it sticks and slides.
+"""The contact of a run along the outlines of its bodies: pressure at several instants and over
+time, and stick and slip if there is friction.
 
-The pressure of every panel is the projected one (projected_pressure of fields/contact.csv).
+Every panel shows the projected pressure (`projected_pressure` of fields/contact.csv).
 """
 
 from pathlib import Path
@@ -16,19 +16,19 @@ from .figures import BLACK, BLUE, ORANGE, STICKS, evenly, legend, plt
 
 __all__ = ["PRESSURE", "SLIDES", "draw", "draw_profiles", "hertz", "radial", "read"]
 
-INSTANTS = 6  # profiles at most
-SLOW = 0.03  # speed over sqrt(E/rho) up to which the pressure of a ball is shown beside Hertz'
-MOST_BODIES = 4  # those with the largest pressure
+INSTANTS = 6  # largest number of profiles
+# Largest speed, relative to sqrt(E/rho), at which the pressure of a ball is compared with Hertz.
+SLOW = 0.03
+MOST_BODIES = 4  # largest number of bodies shown: those with the largest pressure
 PRESSURE = "contact pressure [MPa]"
-SLIP = {
-    "slides back": BLUE,
-    "sticks": STICKS,
-    "slides forward": ORANGE,
-}  # v_T < 0, > 0: on the plane along x
-RADIAL = {"slides inwards": BLUE, "sticks": STICKS, "slides outwards": ORANGE}  # from the axis
+# v_T < 0 slides back, v_T > 0 slides forward. On the plane the direction of v_T is x.
+SLIP = {"slides back": BLUE, "sticks": STICKS, "slides forward": ORANGE}
+# The same for slip towards the axis and away from it.
+RADIAL = {"slides inwards": BLUE, "sticks": STICKS, "slides outwards": ORANGE}
 SLIDES = {"sticks": STICKS, "slides": ORANGE}
-FAR = 3  # usual distances of points between two contacts
-MAPS = 5  # instants at most
+# Two contacts are separate if their distance exceeds this multiple of the median point distance.
+FAR = 3
+MAPS = 5  # largest number of instants with a map of the contact area
 ALONG = "along the outline"
 ABOVE = {
     "loc": "lower center",
@@ -57,11 +57,11 @@ COLUMNS = [
 
 
 def read(folder: Path) -> np.recarray:
-    """fields/contact.csv of the run in `folder`: a row for every point of an outline that bears
-    load, at the instants of the snapshots.
+    """Reads fields/contact.csv of the run in `folder`: one row for every contact point that bears
+    load, at each instant of the snapshots.
 
-    Columns and units: docs/reference/results.md; in three dimensions weight is in m2. Unreadable where it
-    is not such a table.
+    docs/reference/results.md describes the columns and their units; in three dimensions the unit of
+    `weight` is m2. Raises Unreadable if the file is not such a table.
     """
     return read_table(folder / "fields/contact.csv", COLUMNS)
 
@@ -75,16 +75,17 @@ def draw(
     symmetry: str = "full",
     history: dict[str, np.ndarray] | None = None,
 ) -> plt.Figure | None:
-    """A row of panels a body: pressure over the outline at some instants, over outline and
-    time, with friction where it sticks and slides, and with the `history` half-width and
-    largest pressure; None without contact. Of two bodies that touch nothing but each other the
-    first shows all. `free`: times [s] at which nothing is touched.
+    """Draws a row of panels for each body: pressure over the outline at some instants; pressure
+    over outline and time; with friction stick and slip; with a `history` also contact half-width
+    and largest pressure. Returns None without contact. For two bodies that come into contact only
+    with each other, the first body represents both. `free`: times [s] without contact.
 
-    Half a body is drawn with its mirror image. `ball`: the scene where the body is a ball that
-    nothing turns: all is drawn over the distance from its axis. Of other bodies in three
-    dimensions: of one the points nearest to the plane z = 0, of several all over the distance
-    from the first touch; below them the patch at some instants. `symmetry` (quarter, half,
-    full): what of a body in three dimensions was computed.
+    Half a body is drawn with its mirror image. `ball` is the scene if the body is a ball that does
+    not rotate; its panels use the distance from the axis. Other bodies in three dimensions: a
+    single body is shown by the points nearest to the plane z = 0, several bodies by all points over
+    the distance from the first contact point; maps of the contact area at some instants follow
+    below. `symmetry` (quarter, half, full) states which part of a body in three dimensions was
+    computed.
     """
     if not len(table):
         return None
@@ -156,8 +157,8 @@ def _columns(**columns: np.ndarray) -> np.recarray:
 
 
 def _section(points: np.recarray, half: bool) -> tuple[np.recarray, str, dict[str, str]]:
-    """Along the outline: t, s [m], pressure, state (SLIP: -1, 0, 1); in three dimensions near
-    the plane z = 0.
+    """Returns the points along the outline: t [s], s [m], pressure [Pa] and state (SLIP: -1, 0, 1).
+    In three dimensions these are the points near the plane z = 0.
     """
     if "Z" in points.dtype.names:
         away = np.abs(points.Z)
@@ -177,7 +178,7 @@ def _section(points: np.recarray, half: bool) -> tuple[np.recarray, str, dict[st
             for side in sides
         ]
     ).view(np.recarray)
-    # twice only on the axis, and where an outline meets itself
+    # Removes duplicate points, which occur on the axis and in self-contact.
     once = np.unique(np.stack([own.t, own.s]), axis=1, return_index=True)[1]
     return own[once], ALONG, SLIP
 
@@ -185,9 +186,11 @@ def _section(points: np.recarray, half: bool) -> tuple[np.recarray, str, dict[st
 def radial(
     points: np.recarray, ball: dict[str, Value] | None
 ) -> tuple[np.recarray, str, dict[str, str]]:
-    """Over the distance from the axis, of a ball, or from the first touch: t, s [m], pressure,
-    state. Of a surface means over rings: the pressure over all of its points that are ever
-    under load; it slides where most of the load does.
+    """Returns the points over their distance s [m] from the axis of a ball, or from the first
+    contact point: t [s], s, pressure [Pa], state. For a surface these are averages over rings: the
+    load divided by the area of all points that ever bear load; a ring slides if more than half of
+    its load slides. The second and third results are the name of the distance and the colours of
+    the states.
     """
     solid = "Z" in points.dtype.names
     if ball:
@@ -243,8 +246,9 @@ def _history(
     of: str,
     width: str,
 ) -> None:
-    """Half-width of the contact, in these words, [mm] over time, and on the right its largest
-    pressure [MPa] at the instants [s], as the other panels show it; in the flight neither.
+    """Draws the half-width of the contact (label `width`) [mm] over time and, on the right axis,
+    the largest pressure [MPa] at the instants [s], as in the other panels. Both are left out
+    without contact.
     """
     half_width, other = history[f"contact_half_width{of}"], axes.twinx()
     largest = np.full(len(instants), np.nan)
@@ -270,9 +274,10 @@ def _history(
 def _maps(
     figure: plt.Figure, points: np.recarray, rubs: bool, symmetry: str, several: bool
 ) -> None:
-    """The points under load at some instants, each a square of its area: coloured by pressure
-    and, below, where they stick and slide. Of one body on the plane y = 0 at their places x, z,
-    else in the reference along the two main directions of all of them.
+    """Draws the points under load at some instants, each as a square of its area: coloured by
+    pressure and, with friction, below by stick and slip. A single body on the plane y = 0 is drawn
+    at x, z. Other points are drawn in the reference configuration, along the two principal
+    directions of all points.
     """
     mirrored = {"quarter": ("X", "Z"), "half": ("Z",)}.get(symmetry, ())
     columns = {name: points[name] for name in ("t", "X", "Y", "Z", "x", "y", "z")}
@@ -287,7 +292,8 @@ def _maps(
             name: np.concatenate([values, -values if name in turned else values])
             for name, values in columns.items()
         }
-    if not several and np.abs(columns["y"]).max() < 0.1 * np.ptp(columns["x"]):  # on the plane
+    # The points are on the plane.
+    if not several and np.abs(columns["y"]).max() < 0.1 * np.ptp(columns["x"]):
         columns |= {"across": columns["x"], "up": columns["z"]}
         labels = "x [mm]", "z [mm]"
     else:
@@ -301,7 +307,8 @@ def _maps(
     states = SLIDES if several else SLIP
     low, high = (1e3 * np.array([end(points.across), end(points.up)]) for end in (np.min, np.max))
     low, high = low - 0.04 * (high - low), high + 0.04 * (high - low)
-    scale = 72 * min(5.2 / len(shown) / (high - low)[0], 1.1 / (high - low)[1])  # points a mm
+    # Typographic points per mm.
+    scale = 72 * min(5.2 / len(shown) / (high - low)[0], 1.1 / (high - low)[1])
     for row, (column, colours) in zip(
         grid,
         (
@@ -333,8 +340,8 @@ def _maps(
 
 
 def _in_plane(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Of places (n, 3) [m] the distances from their centre along the two directions in which
-    they spread most, the second nearer to z.
+    """Returns the coordinates of `places` (n, 3) [m] relative to their centre along their two
+    principal directions. The second direction is the one nearer to z.
     """
     places = places - places.mean(axis=0)
     two = np.linalg.svd(places, full_matrices=False)[2][:2]
@@ -344,7 +351,7 @@ def _in_plane(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _instants(table: np.recarray, most: int = INSTANTS) -> list[tuple[float, np.recarray, tuple]]:
-    """(t, rows, colour) of up to `most` times."""
+    """Returns (t, rows, colour) for up to `most` times."""
     times = np.unique(table.t)
     picked = evenly(times, most + 2)[1:-1] if len(times) > most else times
     return [
@@ -354,13 +361,13 @@ def _instants(table: np.recarray, most: int = INSTANTS) -> list[tuple[float, np.
 
 
 def draw_profiles(axes: plt.Axes, own: np.recarray, words: str, line: str) -> None:
-    """Pressure [MPa] over s [mm], which is the distance in these words, at up to INSTANTS
-    times: along a line, broken between contacts that are far from each other; without a line
-    the points.
+    """Draws pressure [MPa] over s [mm] at up to INSTANTS times; `words` is the label of s. With a
+    line style `line` the points are joined, except between separate contacts. Without it only the
+    points are drawn.
     """
     for t, now, colour in _instants(own):
         now = now[np.argsort(now.s, kind="stable")]
-        gap = _between(now.s)[0] if line else []  # where a line is broken
+        gap = _between(now.s)[0] if line else []  # interrupts the line between contacts
         s, values = np.append(now.s, gap), np.append(now.pressure, np.full(len(gap), np.nan))
         order = np.argsort(s, kind="stable")
         axes.plot(
@@ -378,8 +385,8 @@ def draw_profiles(axes: plt.Axes, own: np.recarray, words: str, line: str) -> No
 
 
 def _beside_hertz(axes: plt.Axes, points: np.recarray, ball: dict[str, Value]) -> None:
-    """In a slow impact of a ball Hertz' pressure of the same force at each instant of the
-    profiles.
+    """Adds the Hertz pressure for the same force at each instant of the profiles, if the impact of
+    the ball is slow (SLOW).
     """
     if ball["speed"] <= SLOW * np.sqrt(ball["young"] / ball["density"]):
         for _, now, colour in _instants(points):
@@ -391,8 +398,8 @@ def _beside_hertz(axes: plt.Axes, points: np.recarray, ball: dict[str, Value]) -
 
 
 def hertz(force: float, ball: dict[str, Value]) -> tuple[np.ndarray, np.ndarray]:
-    """Radii [m] and Hertz' pressure there [Pa] of a ball that is pressed on a rigid plane by
-    `force` [N]: a^3 = 3 F R / (4 E*), p_0 = 3 F / (2 pi a^2).
+    """Returns radii [m] and Hertz pressure [Pa] at these radii for a ball that is pressed onto a
+    rigid plane by `force` [N]: a^3 = 3 F R / (4 E*), p_0 = 3 F / (2 pi a^2).
     """
     stiffness = ball["young"] / (1 - ball["nu"] ** 2)
     a = (3 * force * ball["radius"] / (4 * stiffness)) ** (1 / 3)
@@ -401,8 +408,8 @@ def hertz(force: float, ball: dict[str, Value]) -> tuple[np.ndarray, np.ndarray]
 
 
 def _between(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Of places in their order (n): a usual distance behind the last and before the first of
-    every two far from each other.
+    """Finds the intervals between separate contacts in sorted `places` (n). Returns the positions
+    one median distance behind the start and before the end of each interval.
     """
     usual = np.median(np.diff(places)) if len(places) > 1 else 0.0
     far = np.flatnonzero(np.diff(places) > FAR * usual)
@@ -412,11 +419,11 @@ def _between(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def _over_time(
     axes: plt.Axes, own: np.recarray, instants: np.ndarray, values: np.ndarray, **colours
 ) -> QuadMesh:
-    """The values of the points over the instants [s] and their places, nothing where there is
-    no load.
+    """Draws the values of the points over the instants [s] and the positions of the points. Points
+    without load are left blank.
     """
     places, between = np.unique(own.s), _between(np.unique(own.s))
-    places = np.sort(np.concatenate([places, *between]))  # empty rows between two contacts
+    places = np.sort(np.concatenate([places, *between]))  # blank rows between contacts
     found = np.full((len(places), len(instants)), np.nan)
     found[np.searchsorted(places, own.s), np.searchsorted(instants, own.t)] = values
     return axes.pcolormesh(
@@ -425,7 +432,7 @@ def _over_time(
 
 
 def _colours(states: dict[str, str]) -> dict:
-    """Of states -1, 0, 1, or of two 0, 1."""
+    """Returns the colour scale for the three states -1, 0, 1 or the two states 0, 1."""
     return dict(cmap=ListedColormap(list(states.values())), vmin=1.5 - len(states), vmax=1.5)
 
 

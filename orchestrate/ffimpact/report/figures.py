@@ -1,5 +1,5 @@
-"""What figures have in common, and those of one body that goes along the plane: friction force,
-what slides and sticks, and the flight, as figures 4 and 5 of the paper.
+"""Style and helpers that the figures share, and the figures of a single body on the plane: friction
+force, stick and slip, and flight, like figures 4 and 5 of the paper.
 """
 
 from collections.abc import Callable, Sequence
@@ -88,16 +88,14 @@ BLUE, ORANGE, GREEN, PURPLE, BLACK, GREY = (
     "#222222",
     "#999999",
 )
-STICKS = "#bbbbbb"  # what slides is orange, what slides back blue
-END_FORCES = (
-    "newmark",
-    "bdf2",
-    "backward-euler",
-)  # integrators whose forces are those at the end of a step
-# text of legends, of numbers in cells and below figures; all other text has the style's size
+STICKS = "#bbbbbb"  # colour of stick; slip is orange, backward slip blue
+# Integrators whose forces are those at the end of a step.
+END_FORCES = ("newmark", "bdf2", "backward-euler")
+# Font size of legends, of numbers in cells and of text below figures. STYLE has the size of other
+# text.
 SMALL = 7.5
-# hinting, titley: quicker: outlines of letters as they are; titles stand where nothing is to be
-# made way for
+# Two settings make drawing quicker: text.hinting keeps the outlines of letters unchanged, and
+# axes.titley fixes the height of titles.
 STYLE = {
     "font.size": 9,
     "axes.titlesize": 9,
@@ -114,31 +112,33 @@ STYLE = {
     "text.hinting": "none",
     "axes.titley": 1.0,
 }
-NUMBERS = 6  # intervals at most between those along an axis
+NUMBERS = 6  # largest number of intervals between the ticks of an axis
 BODY = {"ball-plane": "ball: ", "ball-axisymmetric": "ball as a body of revolution: "}
 STRESS = "von Mises stress [MPa]"
-# pictures of shapes by name: the field that colours them, and its label
+# For each picture of deformed shapes: the field that colours the shapes, and its label.
 COLOURED = {"shapes": ("von_mises", STRESS), "pressure": ("pressure", "pressure −tr(σ)/3 [MPa]")}
-SHAPES = 9  # small multiples at most
+SHAPES = 9  # largest number of shapes in one picture
+# A legend above its panel.
 ABOVE = {
     "loc": "lower center",
     "bbox_to_anchor": (0.5, 1),
     "handlelength": 1.6,
     "columnspacing": 1.4,
-}  # a legend above its panel
-# one below it, under the numbers and the name of its axis
+}
+# A legend below its panel, below the tick labels and the label of the axis.
 BELOW = {"loc": "upper center", "bbox_to_anchor": (0.5, 0), "borderaxespad": 5.5}
-BARE = {"xticks": [], "yticks": []}  # of a panel without axes: its ticks would still be laid out
-BAND = "#c8c8c8"  # of what other curves run along
+# Removes the ticks of a panel without axes, which matplotlib would lay out even if they are hidden.
+BARE = {"xticks": [], "yticks": []}
+BAND = "#c8c8c8"  # colour of a wide line or an area behind other curves
 VISCOUS = "#8c510a"
 DASHED = (0, (4, 2))
 ORIGIN = np.zeros(2)
-# letters, as is all that pictures say: to parse formulas takes as long as to draw one
+# Converts digits to superscript letters. Parsing a formula takes as long as drawing a picture.
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def save(figure: plt.Figure, path: Path) -> None:
-    """Writes the figure and closes it."""
+    """Writes the figure to a file and closes it."""
     if not figure.get_layout_engine():
         figure.set_layout_engine("constrained")
     for axes in (one for panel in figure.axes for one in (panel, *panel.child_axes)):
@@ -146,15 +146,16 @@ def save(figure: plt.Figure, path: Path) -> None:
             if type(axis.get_major_locator()) is AutoLocator:
                 axis.set_major_locator(MaxNLocator(NUMBERS, steps=(1, 2, 2.5, 5, 10)))
     with catch_warnings():
-        filterwarnings(
-            "ignore", "Glyph .* missing from", UserWarning
-        )  # a letter that the font lacks is an empty box in the title
+        # A letter that the font lacks is drawn as an empty box, without a warning.
+        filterwarnings("ignore", "Glyph .* missing from", UserWarning)
         figure.savefig(path)
     plt.close(figure)
 
 
 def material(one: dict[str, Value]) -> str:
-    """Law with its own numbers, E, nu and density of a body; of a rigid one its mass or density."""
+    """Returns the law of a body with its parameters, E, nu, density and viscosities. For a rigid
+    body it returns mass or density.
+    """
     if one.get("rigid"):
         return (
             f"rigid, m = {one['mass']:g} kg"
@@ -174,18 +175,20 @@ def material(one: dict[str, Value]) -> str:
 
 
 def as_written(text: str) -> str:
-    """A user's text as figures show it: no formula where it has dollars, no control characters."""
+    """Returns a user's text as matplotlib shows it literally: dollar signs start no formula, and
+    blanks replace control characters.
+    """
     return "".join(letter if letter.isprintable() else " " for letter in text).replace("$", r"\$")
 
 
 def per_metre(scene: dict[str, Value]) -> str:
-    """Behind the units of forces and energies of a scene."""
+    """Returns the suffix for the units of forces and energies of a scene."""
     return dimension.per_metre(scene.get("script", ""))
 
 
 def amid(history: dict[str, np.ndarray], scene: dict[str, Value]) -> np.ndarray:
-    """The times [ms] at which the forces of a history are drawn: amid its steps, of which they
-    are means (but of END_FORCES).
+    """Returns the times [ms] at which forces of a history are drawn. Forces are means over a step
+    and are drawn in its middle, except for the integrators of END_FORCES.
     """
     return 1e3 * (
         history["t"] - (0 if scene.get("integrator") in END_FORCES else history["dt"] / 2)
@@ -193,8 +196,8 @@ def amid(history: dict[str, np.ndarray], scene: dict[str, Value]) -> np.ndarray:
 
 
 def touched(summary: dict) -> tuple[float, float] | None:
-    """When the contact begins and ends [s], both interpolated inside their steps; None without
-    one, or where it is not over.
+    """Returns the begin and the end of the contact [s], both interpolated within their steps.
+    Returns None without contact or if the contact has not ended.
     """
     if summary.get("contact_time") is None or summary.get("contact_start") is None:
         return None
@@ -204,9 +207,9 @@ def touched(summary: dict) -> tuple[float, float] | None:
 def over_time(
     panels: list[plt.Axes], history: dict[str, np.ndarray], scene: dict[str, Value]
 ) -> None:
-    """Limits of the time [ms], which begins at 0 where the run does not begin with a long
-    flight; a dotted line at the end of the contact, where the run goes on after it for longer
-    than between any two touches, with a name in the legend of the first panel.
+    """Sets the limits of the time axis [ms]. It begins at 0, unless the run begins with a long
+    flight. A dotted line marks the end of the contact if the run continues after it for longer than
+    the longest pause between two contacts. The legend of the first panel lists this line.
     """
     t, touches = 1e3 * history["t"], history["normal_force"] > 0
     last = 1e3 * scene["touched"][1] if scene.get("touched") else t[-1]
@@ -223,8 +226,8 @@ def over_time(
 
 
 def published(axes: plt.Axes, scene: dict[str, Value]) -> None:
-    """The paper's contact time of the same impact, from the first touch on, where it states
-    one, as a line with a name.
+    """Draws a line at the end of the contact by the paper's contact time of the same impact, if the
+    paper prints one.
     """
     begin, _ = scene.get("touched") or (None, None)
     for _, seconds, words in (
@@ -243,10 +246,12 @@ def published(axes: plt.Axes, scene: dict[str, Value]) -> None:
 def numbers_of_the_paper(
     scene: dict[str, Value], key: str, over: str = "", any_law: bool = False
 ) -> list[tuple[Value | None, float, str]]:
-    """(value of the parameter `over` there, number, words) of every number `key` (summary.json, SI)
-    that the paper prints of this scene, or of the scene with another value of `over`. With
-    `any_law` also those of another law, which the words then name. None of a body of the user's
-    own mesh."""
+    """Returns all numbers `key` (as in summary.json, SI) that the paper prints for this scene, or
+    for this scene with another value of the parameter `over`: (value of `over`, number, words).
+
+    With `any_law` it includes numbers for other laws, which are then part of the words. Returns
+    nothing for a mesh of the user.
+    """
     found = []
     free = ("law", over) if any_law else (over,)
     for run in (
@@ -262,8 +267,8 @@ def numbers_of_the_paper(
 
 
 def legend(axes: plt.Axes, shown: Callable[[list], list] = list, **how) -> None:
-    """The names of the lines and areas of a panel, or those `shown` of them; no legend where
-    none has a name.
+    """Draws the legend of a panel. `shown` selects from the lists of artists and names. Without
+    named artists there is no legend.
     """
     artists, names = axes.get_legend_handles_labels()
     if names:
@@ -271,7 +276,7 @@ def legend(axes: plt.Axes, shown: Callable[[list], list] = list, **how) -> None:
 
 
 def balance_error(axes: plt.Axes, history: dict[str, np.ndarray], energy: float) -> None:
-    """The error of the balance over time [ms], relative to `energy` [J/m]."""
+    """Draws the error of the energy balance over time [ms], relative to `energy` [J/m]."""
     error = np.abs(history["balance"]) / energy
     axes.semilogy(
         1e3 * history["t"], np.where(error > 0, error, np.nan), color=BLACK, linewidth=0.9
@@ -283,7 +288,9 @@ def balance_error(axes: plt.Axes, history: dict[str, np.ndarray], energy: float)
 
 
 def least(values: np.ndarray, largest: float) -> str:
-    """Behind the name of a line that can hardly be told from 0: how large it gets."""
+    """Returns a suffix for the name of a curve that is hardly distinguishable from 0: its largest
+    absolute value. Otherwise it is empty.
+    """
     most = np.abs(values).max()
     return f" (up to {float(f'{most:.1g}'):g})" if 0 < most < 0.01 * largest else ""
 
@@ -291,8 +298,8 @@ def least(values: np.ndarray, largest: float) -> str:
 def end_of_contact(
     panels: list[plt.Axes], history: dict[str, np.ndarray], scene: dict[str, Value]
 ) -> None:
-    """The time of panels over the same time, with the end of the contact and the paper's
-    contact time named above the first.
+    """Sets up the time axes of panels. The end of the contact and the paper's contact time are
+    listed above the first panel.
     """
     over_time(panels, history, scene)
     published(panels[0], scene)
@@ -300,11 +307,11 @@ def end_of_contact(
 
 
 def friction_force(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
-    """Figure 5: normal and friction force [kN/m] over time; beside them, enlarged, where stick
-    and slip alternate most, if they do.
+    """Draws normal and friction force [kN/m] over time (figure 5). If stick and slip alternate, a
+    second column enlarges the interval in which they alternate most.
 
-    The broken lines are the coefficients times the normal force: a body of which all points
-    slide one way is on the dynamic one.
+    The broken lines are the friction coefficients times the normal force. If all points of a body
+    slide in the same direction, the friction force lies on the line of the dynamic coefficient.
     """
     t, per = amid(history, scene), per_metre(scene)
     normal, friction = 1e-3 * history["normal_force"], 1e-3 * history["friction_force"]
@@ -352,8 +359,8 @@ def _enlarge(
     scene: dict[str, Value],
     window: tuple[int, int],
 ) -> None:
-    """The right panels of figure 5: the share of the load that slides, and the friction force
-    [kN/m], in a window of rows that is marked on the left.
+    """Draws the right panels of figure 5 in the interval `window` of rows, which is marked in the
+    left panels: the fraction of the load that slides, and the friction force [kN/m].
     """
     t, friction = amid(history, scene), 1e-3 * history["friction_force"]
     first, last = window
@@ -374,7 +381,7 @@ def _enlarge(
         ylim=(0, 1.08 * max(1.0, 100 * history["sliding_fraction"][inside].max())),
     )
     zoom.plot(t, friction, color=ORANGE, linewidth=1.0, marker=".", markersize=3)
-    # the limits that the force touches, too
+    # The range includes the friction limits on the same side of zero as the force.
     lines = [
         line.get_ydata()[inside] for line in grid[1, 0].lines if len(line.get_ydata()) == len(t)
     ]
@@ -392,9 +399,10 @@ def _enlarge(
 
 
 def _liveliest(history: dict[str, np.ndarray]) -> tuple[int, int] | None:
-    """First and last row of the twelfth of the contact, or third of its longest interval where
-    that is less, in which the share of the load that slides goes up and down most, weighted
-    with the load; None where it does so by less than a twentieth of the largest load.
+    """Returns the first and last row of the interval in which the sliding fraction of the load,
+    weighted with the load, goes up and down most. The interval has the length of a twelfth of the
+    contact, or of a third of its longest interval if that is less. Returns None if the variation is
+    less than a twentieth of the largest load.
     """
     touching = np.flatnonzero(history["normal_force"] > 0)
     t, force = history["t"], history["normal_force"]
@@ -406,9 +414,9 @@ def _liveliest(history: dict[str, np.ndarray]) -> tuple[int, int] | None:
     change = np.diff(history["sliding_fraction"]) * np.minimum(force[1:], force[:-1])
     up, travelled = (np.concatenate([[0], np.cumsum(each)]) for each in (change, np.abs(change)))
     ends = np.minimum(np.searchsorted(t, t + width), len(t) - 1)
-    lively = travelled[ends] - travelled - np.abs(up[ends] - up)  # there and back again
+    lively = travelled[ends] - travelled - np.abs(up[ends] - up)  # total variation minus net change
     idle = np.cumsum(force == 0)
-    lively = np.where(idle[ends] > idle, -1.0, lively)  # not in the air
+    lively = np.where(idle[ends] > idle, -1.0, lively)  # excludes intervals with free flight
     first = int(np.argmax(lively))
     return (
         (first, int(ends[first]))
@@ -418,9 +426,9 @@ def _liveliest(history: dict[str, np.ndarray]) -> tuple[int, int] | None:
 
 
 def rolling(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
-    """Velocity of the centre and of the rim [m/s], which are equal in rolling, and which share
-    of the load sticks, slides on and slides back. A disc that is set down on the plane: the
-    velocities of a rigid one beside them.
+    """Draws the velocities of the centre and of the rim [m/s], which are equal in rolling, and the
+    fractions of the load that stick, slide and slide back. For a disc that starts on the plane it
+    adds the velocities of a rigid disc.
     """
     t = 1e3 * history["t"]
     figure, (top, bottom) = plt.subplots(2, sharex=True, figsize=(5.6, 4.6), height_ratios=[1.6, 1])
@@ -464,11 +472,12 @@ def rolling(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figu
 
 
 def rigid_rolling(t: np.ndarray, scene: dict[str, Value]) -> tuple[np.ndarray, np.ndarray] | None:
-    """v_x and -omega R [m/s] of a rigid disc on the plane, each (steps,): it slides until both
-    are equal, then rolls.
+    """Returns v_x and -omega R [m/s], each (steps,), of a rigid disc that slides until both
+    velocities are equal and then rolls.
 
-    None where the disc does not start on the plane or other forces than gravity act: with v0
-    and no spin it slides as v0 - mu_d g t and rolls from v0/(3 mu_d g) on, at 2/3 v0.
+    Returns None if the disc does not start on the plane or if forces other than gravity act. With
+    initial velocity v0 and no spin, it slides with v0 - mu_d g t and rolls from t = v0/(3 mu_d g)
+    on with 2/3 v0.
     """
     given = lambda name: scene.get(name, 0)  # noqa: E731
     pull = given("friction_dynamic") * given("gravity")
@@ -485,8 +494,8 @@ def rigid_rolling(t: np.ndarray, scene: dict[str, Value]) -> tuple[np.ndarray, n
 
 @dataclass(frozen=True)
 class Pose:
-    """The body at time t [s]: centre of mass (2,), closed outline (n, 2) and a material
-    diameter (m, 2), marked at its first point.
+    """Position and shape of the body at time t [s]: centre of mass (2,), closed outline (n, 2) and
+    a material diameter (m, 2), all in m. The first point of the diameter is marked.
     """
 
     t: float
@@ -496,8 +505,8 @@ class Pose:
 
 
 def goes_along(history: dict[str, np.ndarray], scene: dict[str, Value]) -> bool:
-    """Whether the body goes along the plane or turns, so that its way shows more than its
-    shapes do.
+    """Returns whether the body moves along the plane or rotates, so that its path is more
+    informative than its shapes.
     """
     along = max(np.abs(history["vx"]).max(), scene["radius"] * np.abs(history["spin"]).max())
     return along > 1e-3 * max(np.abs(history["vy"]).max(), along)
@@ -506,11 +515,12 @@ def goes_along(history: dict[str, np.ndarray], scene: dict[str, Value]) -> bool:
 def flight(
     history: dict[str, np.ndarray], scene: dict[str, Value], series: list[tuple[float, Path]]
 ) -> plt.Figure:
-    """Figure 4b: the body along its flight with a material diameter that shows how it turns,
-    and the way of its centre.
+    """Draws the path of the centre of the body and the body at some instants (figure 4b). A
+    material diameter shows the rotation.
 
-    A run begins at the touch and ends soon after the contact: before and after it the motion is
-    continued as that of a rigid body (parabola, constant spin), dashed and named so.
+    A run begins at the onset of contact and ends soon after the contact. Before and after it the
+    motion is continued as that of a rigid body (parabola, constant spin); this part is dashed and
+    labelled.
     """
     row = lambda t: int(np.argmin(np.abs(history["t"] - t)))  # noqa: E731
     impact = history["vy"][0] < 0 or scene.get("height", 0) > 0
@@ -547,7 +557,8 @@ def flight(
         axes.plot(
             [], [], color=BLUE, linestyle=DASHED, label="continued as rigid motion, shape frozen"
         )
-        if history["normal_force"][-1] == 0 and history["vy"][-1] > 0:  # it has left the plane
+        # The body has left the plane.
+        if history["normal_force"][-1] == 0 and history["vy"][-1] > 0:
             _draw_flight(axes, poses[-1], 1, -1, history, scene, GREEN)
             at, ahead = row(poses[0].t), np.sign(history["vx"][0]) or 1.0
             before, after = (
@@ -558,7 +569,7 @@ def flight(
                 f"angle to the plane: {before:.1f}° before, {after:.1f}° after"
                 + " (backwards)" * bool(after > 90.05)
             )
-        room = 1.2 * scene["radius"]  # for the times beside the outlines
+        room = 1.2 * scene["radius"]  # space for the times beside the outlines
     left, right = axes.get_xlim()
     high = axes.get_ylim()[1] + (0 if impact else 0.2 * scene["radius"])
     axes.axhline(0, color=BLACK, linewidth=0.8)
@@ -583,14 +594,13 @@ def _draw_flight(
     scene: dict[str, Value],
     colour: str,
 ) -> None:
-    """Two more outlines after (sign 1) or before (-1) the pose, in rigid motion with the
-    velocities of history's `row`.
+    """Draws two outlines after (`sign` 1) or before (`sign` -1) the pose, in rigid motion with the
+    velocities in `row` of the history.
     """
-    pause = (
-        3 * scene["radius"] / np.hypot(history["vx"][row], history["vy"][row])
-    )  # one and a half diameters apart
+    # The distance between the outlines is one and a half diameters.
+    pause = 3 * scene["radius"] / np.hypot(history["vx"][row], history["vy"][row])
     if sign < 0 and scene.get("height", 0) > 0:
-        pause = min(pause, pose.t / 2)  # not before the start
+        pause = min(pause, pose.t / 2)  # avoids times before the start
     for k in (1, 2):
         moved = fly(pose, sign * k * pause, row, history, scene)
         _draw_pose(axes, moved, colour, DASHED, None)
@@ -609,8 +619,8 @@ def _draw_flight(
 
 
 def pose_at(t: float, path: Path, history: dict[str, np.ndarray]) -> Pose:
-    """The deformed outline and the deformed upright diameter of a snapshot of a whole disc, the
-    mark at its top.
+    """Returns the deformed outline of a snapshot of a whole disc and its deformed diameter that is
+    vertical in the reference configuration. The mark is at the top.
     """
     snapshot = vtu.read(path)
     moved = snapshot.points + snapshot.fields["displacement"][:, :2]
@@ -623,12 +633,12 @@ def pose_at(t: float, path: Path, history: dict[str, np.ndarray]) -> Pose:
 
 
 def diameter(snapshot: vtu.Snapshot) -> np.ndarray:
-    """The deformed places (m, 2) [m] of the upright material diameter of a whole body, from its
-    top down.
+    """Returns the deformed positions (m, 2) [m] of the material diameter of a whole body that is
+    vertical in the reference configuration, from top to bottom.
     """
     low, high = snapshot.points.min(axis=0), snapshot.points.max(axis=0)
     x = np.full(41, (low[0] + high[0]) / 2)
-    y = np.linspace(high[1], low[1], 43)[1:-1]  # not quite to the outline, which is a polygon here
+    y = np.linspace(high[1], low[1], 43)[1:-1]  # without the end points: the outline is a polygon
     grid = Triangulation(*snapshot.points.T, snapshot.triangles)
     moved = snapshot.points + snapshot.fields["displacement"][:, :2]
     return np.ma.compress_rows(
@@ -639,8 +649,8 @@ def diameter(snapshot: vtu.Snapshot) -> np.ndarray:
 def fly(
     pose: Pose, wait: float, row: int, history: dict[str, np.ndarray], scene: dict[str, Value]
 ) -> Pose:
-    """The pose after another `wait` seconds (before, if negative) of rigid flight with the
-    velocities of history's `row`.
+    """Returns the pose after another `wait` seconds (before, if negative) of rigid flight with the
+    velocities in `row` of the history.
     """
     velocity = np.array([history["vx"][row], history["vy"][row]])
     pull = np.array(
@@ -661,7 +671,7 @@ def _draw_pose(axes: plt.Axes, pose: Pose, colour, line, label: str | None) -> N
 
 
 def evenly(items: Sequence, most: int) -> list:
-    """Up to so many of the items, from the first to the last."""
+    """Returns up to `most` of the items, evenly spaced from the first to the last."""
     return [items[k] for k in np.unique(np.linspace(0, len(items) - 1, most).round().astype(int))]
 
 
@@ -673,12 +683,13 @@ def side_by_side(
     behind: Callable,
     label: str,
 ) -> plt.Figure:
-    """The bodies in rows, each at its time [s] within the limits `view` [m] with what
-    behind(axes, times, places) draws there, coloured by their stress, of which `label` says
-    what it is: in one panel, as each of its own would take as long as its body.
+    """Draws the bodies in rows, each at its time [s] within the limits `view` [m]. The function
+    behind(axes, times, places) draws the background. The bodies are coloured by their stress, with
+    `label` at the colour bar. All share one panel, because drawing a panel takes as long as drawing
+    a body.
     """
     left, right, low, high = view
-    rows, inch = -(-len(found) // columns), (right - left) * columns / 6.5  # [m]
+    rows, inch = -(-len(found) // columns), (right - left) * columns / 6.5  # [m] per inch
     step = np.array([right - left + 0.1 * inch, high - low + 0.3 * inch])
     figure, axes = plt.subplots(figsize=(7.5, rows * step[1] / inch + 0.4), subplot_kw=BARE)
     axes.set_axis_off()
@@ -687,8 +698,8 @@ def side_by_side(
         ylim=(low - (rows - 1) * step[1], low + step[1]),
         aspect="equal",
     )
-    # 0 or less and more: five in a thousand of all nodes are beyond each, so that one spot does not
-    # darken all the rest
+    # The colour scale ends at the 0.5 % and 99.5 % quantiles of all nodes and includes 0, so that a
+    # single spot does not dominate it.
     low_stress, high_stress = np.quantile(
         np.concatenate([body.stress for body in found]), [0.005, 0.995]
     )
@@ -711,8 +722,8 @@ def side_by_side(
 
 
 def scale_bar(axes: plt.Axes, share: float = 0.25) -> None:
-    """Below axes in m, which have no ticks, a length of 1, 2 or 5 times a power of ten, at most
-    this share of the width.
+    """Draws a scale bar below axes in m without ticks. Its length is 1, 2 or 5 times a power of ten
+    and at most `share` of the width.
     """
     left, right = axes.get_xlim()
     wanted = share * (right - left)
@@ -721,9 +732,8 @@ def scale_bar(axes: plt.Axes, share: float = 0.25) -> None:
         for digit in (1, 2, 5)
         if (length := digit * 10.0 ** np.floor(np.log10(wanted))) <= wanted
     )
-    below = axes.get_xaxis_transform() + ScaledTranslation(
-        0, -9 / 72, axes.figure.dpi_scale_trans
-    )  # [m] along, nine points down
+    # x in m, y in typographic points: nine points below the axes.
+    below = axes.get_xaxis_transform() + ScaledTranslation(0, -9 / 72, axes.figure.dpi_scale_trans)
     axes.plot(
         [left, left + size],
         [0, 0],
@@ -748,8 +758,8 @@ def scale_bar(axes: plt.Axes, share: float = 0.25) -> None:
 
 @dataclass(frozen=True)
 class Body:
-    """The whole deformed body: points (n, 2) in m, triangles (t, 3), von Mises stress or
-    another field of stress (n,) in MPa.
+    """The whole deformed body: points (n, 2) in m, triangles (t, 3), and von Mises stress or
+    another stress field (n,) in MPa.
     """
 
     points: np.ndarray
@@ -758,8 +768,8 @@ class Body:
 
 
 def is_half(scene: dict[str, Value]) -> bool:
-    """Whether only the half of the body, or of a meridian plane of it, to the right of its axis
-    was computed; of a body in three dimensions a quarter.
+    """Returns whether only the part to the right of the axis was computed: half of the body or of
+    its meridian plane, or a quarter of a body in three dimensions.
     """
     script = scene.get("script", "")
     return scene.get("symmetry") == (
@@ -768,8 +778,8 @@ def is_half(scene: dict[str, Value]) -> bool:
 
 
 def deformed(snapshot: vtu.Snapshot, half: bool, field: str = "von_mises") -> Body:
-    """The body of a snapshot; where half of it was computed, the other half is the mirror image
-    in its left end, the axis.
+    """Returns the deformed body of a snapshot. If half of the body was computed, its mirror image
+    at the left end, the axis, is added.
     """
     points = snapshot.points + snapshot.fields["displacement"][:, :2]
     triangles, stress = snapshot.triangles, 1e-6 * snapshot.fields[field]
@@ -785,7 +795,9 @@ def deformed(snapshot: vtu.Snapshot, half: bool, field: str = "von_mises") -> Bo
 def draw_body(
     axes: plt.Axes, body: Body, ends: tuple[float, float], place: np.ndarray = ORIGIN
 ) -> TriMesh:
-    """The body coloured by its stress, on a scale with these ends [MPa], drawn at a place [m]."""
+    """Draws the body, shifted by `place` [m], and coloured by its stress on a scale with the given
+    `ends` [MPa].
+    """
     picture = axes.tripcolor(
         *(body.points + place).T,
         body.triangles,

@@ -1,5 +1,5 @@
-"""Figure 3 of the paper: the friction laws (11)-(13), drawn from the function of
-edp/core/contact/friction.idp that runs use.
+"""Figure 3 of the paper: the friction laws (11)-(13). The curves are computed by the same function
+of edp/core/contact/friction.idp that the runs use.
 """
 
 import argparse
@@ -17,11 +17,8 @@ from .figures import BELOW, BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE, leg
 
 __all__ = ["VALUES", "draw", "main", "tabulate"]
 
-VALUES = {
-    "friction_static": 0.7,
-    "friction_dynamic": 0.5,
-    "slip_velocity": 0.1,
-}  # of section 3.1 and figure 3
+# The values of section 3.1 and figure 3 of the paper.
+VALUES = {"friction_static": 0.7, "friction_dynamic": 0.5, "slip_velocity": 0.1}
 LABELS = {
     "linear": (r"linear, $\phi^3$ with $v_T/\varepsilon$", BLUE, "-"),
     "sqrt": (r"sqrt, $\phi^1$", GREEN, "-"),
@@ -56,8 +53,9 @@ def main(argv: list[str]) -> int:
 
 
 def tabulate(folder: Path, values: dict[str, parameters.Value]) -> pd.DataFrame:
-    """The table of edp/friction-laws.edp: panel, law, transition, side, v [m/s], ratio [-],
-    slope [s/m]; see there.
+    """Returns the table that edp/friction-laws.edp writes: panel, law, transition, side, v [m/s],
+    ratio [-], slope [s/m]. The script describes the columns. Raises Unreadable if the folder cannot
+    be written, else Failure.
     """
     program = freefem.find()
     try:
@@ -80,8 +78,8 @@ def tabulate(folder: Path, values: dict[str, parameters.Value]) -> pd.DataFrame:
 
 
 def draw(laws: pd.DataFrame, values: dict[str, float], path: Path) -> None:
-    """The three panels of figure 3, the sides of a jump apart, the velocity in units of
-    slip_velocity.
+    """Draws the three panels of figure 3 with the velocity in units of `slip_velocity`. At a jump
+    of a law both sides are separate.
     """
     laws = laws.assign(size_=laws.v / values["slip_velocity"])
     with plt.rc_context(STYLE):
@@ -144,8 +142,8 @@ def draw(laws: pd.DataFrame, values: dict[str, float], path: Path) -> None:
 def _curve(
     axes: plt.Axes, points: pd.DataFrame, colour: str, line: str, label: str, width: float
 ) -> None:
-    """One law: sticking and sliding sides are separate lines, with a dotted line over a jump
-    between them.
+    """Draws one law. The sticking and the sliding sides are separate lines; a dotted line marks a
+    jump between them.
     """
     stick = points[points.side == "stick"]
     left, right = points[points.size_ < stick.size_.min()], points[points.size_ > stick.size_.max()]

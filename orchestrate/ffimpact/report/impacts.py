@@ -1,6 +1,6 @@
-"""The impacts of a run, a row each (contacts.csv), and restitution over several of them; the
-vibration that they leave: the energy in each natural mode (modes.csv), beside the spectrum of the
-force.
+"""The impacts of a run (contacts.csv, one row for each impact), the restitution over several
+impacts, and the vibration after them: the energy in each natural mode (modes.csv) and the spectrum
+of the force.
 """
 
 from pathlib import Path
@@ -22,19 +22,21 @@ __all__ = [
     "with_flights",
 ]
 
-LIGHTEST = 0.01  # of the largest impulse of a meeting: what is less is the grazing end of an impact
-# of the approach, and of the largest slip of a meeting: of less the restitution along the partner
-# is that of vibrations
+# Smallest impulse of an impact, relative to the largest impulse of the contact pair. An interval of
+# contact with a smaller impulse is the grazing end of an impact.
+LIGHTEST = 0.01
+# Smallest slip velocity before an impact, relative to the approach velocity and to the largest slip
+# velocity of the contact pair. Below it the tangential restitution is due to vibrations.
 LEAST_SLIP = 0.05
-# of the largest of a meeting: of less, as of a body that lies on its partner, there is no
-# restitution
+# Smallest approach velocity, relative to the largest one of the contact pair. Below it, as for a
+# body that rests on the other surface, no restitution is drawn.
 LEAST_APPROACH = 0.01
-# restitution that is drawn to scale: above it a body that vibrates was pushed off as it hardly
-# approached
+# Largest restitution that is drawn to scale. A larger value means that a vibrating body with a
+# small approach velocity was pushed off.
 HIGHEST = 1.5
 COLOURS = [BLUE, ORANGE, GREEN, "#cc79a7", "#e69f00", "#56b4e9"]
-TOLD = 5  # restitutions written beside the first impacts
-INSIDE = 40  # rows inside a flight
+TOLD = 5  # number of first impacts that are labelled with their restitution
+INSIDE = 40  # number of rows that are inserted into a flight
 MODES = ["mode", "frequency", "energy", "strain_energy", "kinetic_energy"]
 NEEDED = [
     "body",
@@ -50,17 +52,19 @@ NEEDED = [
 
 
 def read(folder: Path) -> np.recarray:
-    """contacts.csv of the run in `folder`: a row for every interval of contact of two bodies,
-    or of a body with an obstacle (partner < 0).
+    """Reads contacts.csv of the run in `folder`: one row for every interval of contact of two
+    bodies, or of a body with an obstacle (`partner` < 0).
 
-    Columns and units: edp/core/run/columns.idp. Unreadable where it is not such a table.
+    edp/core/run/columns.idp describes the columns and their units. Raises Unreadable if the file is
+    not such a table.
     """
     return read_table(folder / "contacts.csv", NEEDED)
 
 
 def several(table: np.recarray) -> list[np.recarray]:
-    """The impacts of each meeting, where one has more than one; intervals with less than
-    LIGHTEST of the largest impulse of their meeting are none.
+    """Returns the impacts of each contact pair, or an empty list if no pair has more than one
+    impact. Intervals with an impulse below LIGHTEST times the largest impulse of the pair do not
+    count.
     """
     meetings = [
         table[(table.body == body) & (table.partner == partner)]
@@ -71,9 +75,9 @@ def several(table: np.recarray) -> list[np.recarray]:
 
 
 def draw(table: np.recarray, names: list[str], rigid: list[str]) -> plt.Figure | None:
-    """Restitution, across and along the partner, over the impacts of each meeting, and below
-    them the speeds before each; None where there are not several, or none has a restitution.
-    `names`: of the bodies; `rigid`: of the obstacles.
+    """Draws normal and tangential restitution over the impacts of each contact pair, and below them
+    the speeds before each impact. Returns None if there are not several impacts or if none has a
+    restitution. `names` are those of the bodies, `rigid` those of the obstacles.
     """
     impacts = several(table)
     if not any(
@@ -146,10 +150,13 @@ def draw(table: np.recarray, names: list[str], rigid: list[str]) -> plt.Figure |
 
 
 def with_flights(history: dict[str, np.ndarray]) -> Contents:
-    """The history with rows inside its flights, of which a run has one each. With s from 0 to 1
-    in a flight of duration T, in which every velocity changes by dv = g T, all is linear in s
-    but places, less by s (1 - s) dv T/2, and kinetic energy and work of gravity, less by s (1 -
-    s) m dv^2/2. No force acts from its very beginning on.
+    """Returns the history with INSIDE + 1 additional rows in each flight, for which a run has one
+    row only.
+
+    Let s in [0, 1] be the fraction of a flight of duration T, in which a velocity changes by dv = g
+    T. All columns are linear in s with two exceptions: positions are reduced by s (1 - s) dv T/2,
+    and kinetic energy and work of gravity by s (1 - s) m dv^2/2. Forces vanish from the very
+    beginning of the flight on.
     """
     t = history["t"]
     flies = (history["newton_iterations"][1:] == 0) & (history["normal_force"][1:] == 0)
@@ -179,8 +186,9 @@ def with_flights(history: dict[str, np.ndarray]) -> Contents:
 
 
 def heights(history: dict[str, np.ndarray], table: np.recarray, names: list[str]) -> plt.Figure:
-    """The height of each body's centre above its last one [mm] over time [s], with the instants
-    of its impacts and the first restitutions: of a run until rest, with_flights().
+    """Draws the height of each body's centre above its final position [mm] over time [s], with the
+    instants of the impacts and the first restitutions. It is meant for a run until rest, with the
+    history of with_flights().
     """
     figure, axes = plt.subplots(figsize=(6.4, 3.4))
     t = history["t"]
@@ -219,10 +227,10 @@ def heights(history: dict[str, np.ndarray], table: np.recarray, names: list[str]
 
 
 def read_modes(folder: Path) -> np.recarray:
-    """modes.csv of the run in `folder`: mode (from 1), frequency [Hz], energy of the last state
-    in it and its two parts [J; of a plane problem J/m].
+    """Reads modes.csv of the run in `folder`: mode (from 1), frequency [Hz], energy of the last
+    state in the mode and its two parts, strain and kinetic energy [J; in a plane problem J/m].
 
-    Unreadable where it is not such a table.
+    Raises Unreadable if the file is not such a table.
     """
     return read_table(folder / "modes.csv", MODES)
 
@@ -230,8 +238,8 @@ def read_modes(folder: Path) -> np.recarray:
 def spectrum(
     t: np.ndarray, dt: np.ndarray, force: np.ndarray, frequencies: np.ndarray
 ) -> np.ndarray:
-    """|integral of F exp(-i 2 pi f t) dt| [N s] at `frequencies` [Hz], of a force that is
-    constant in each step (t: its end).
+    """Returns |integral of F exp(-i 2 pi f t) dt| [N s] at `frequencies` [Hz] for a force that is
+    constant in each step; t is the end of a step.
     """
     turns = np.exp(-2j * np.pi * np.outer(frequencies, t - dt / 2)) * np.sinc(
         np.outer(frequencies, dt)
@@ -240,8 +248,8 @@ def spectrum(
 
 
 def vibration(table: np.recarray, history: dict[str, np.ndarray], per: str) -> plt.Figure | None:
-    """Energy by mode over frequency, and above it the force's spectrum up to the last mode;
-    None where there are no modes, or no energies. `per`: "/m" in plane strain.
+    """Draws the energy of each mode over its frequency and, above, the spectrum of the force up to
+    the last mode. Returns None without modes or energies. `per` is "/m" in plane strain.
     """
     if np.isnan(table.energy).all():
         return None

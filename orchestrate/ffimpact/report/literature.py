@@ -1,4 +1,4 @@
-"""Numbers that were published, or that others have computed: reference/*.toml."""
+"""Numbers from publications and from computations of others: reference/*.toml."""
 
 import tomllib
 from collections.abc import Container
@@ -9,13 +9,13 @@ from ..input.parameters import Value
 __all__ = ["REFERENCE", "published", "references"]
 
 REFERENCE = Path(__file__).resolve().parent / "reference"
-# No source has damping: what `when` does not name of these is 0 there.
+# No source has damping: a parameter of these that `when` does not list is 0.
 UNDAMPED = dict.fromkeys(("viscosity", "bulk_viscosity", "relaxation_modulus", "loss"), 0)
 
 
 def references(script: str, scene: dict[str, Value]) -> dict[str, list[dict]]:
-    """Published numbers whose conditions this scene meets: by key of summary.json, each {value,
-    [error], source, [note]}.
+    """Returns the published numbers whose conditions this scene fulfils: for each key of
+    summary.json a list of {value, [error], source, [note]}.
     """
     found: dict[str, list[dict]] = {}
     for run in published(script, scene):
@@ -27,9 +27,9 @@ def references(script: str, scene: dict[str, Value]) -> dict[str, list[dict]]:
 
 
 def published(script: str, scene: dict[str, Value], whatever: Container[str] = ()) -> list[dict]:
-    """The runs with published numbers whose conditions this scene meets, `whatever` these
-    parameters are: script, when (its parameters), numbers by key of summary.json, source,
-    [note].
+    """Returns the runs with published numbers whose conditions this scene fulfils. The parameters
+    in `whatever` may have any value. Each run has script, when (its parameters), numbers by key of
+    summary.json, source and [note].
     """
     every = (
         run

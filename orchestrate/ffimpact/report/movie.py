@@ -1,6 +1,6 @@
-"""A film of a scene: the deforming body coloured by its stress above the ground, and the contact
-force over time under it. Of a body in three dimensions, where PyVista is installed (solid.py), the
-body cut open and from below; elsewhere its cut with the plane z = 0.
+"""A film of a scene: the deforming body, coloured by its stress, above the contact force over time.
+A body in three dimensions is shown cut open and from below if PyVista is installed (solid.py),
+otherwise by its cut with the plane z = 0.
 """
 
 import argparse
@@ -41,17 +41,17 @@ from .figures import (
 
 __all__ = ["Motion", "PlaneStage", "SolidStage", "Stage", "main", "of", "write"]
 
-SECONDS = 8.0  # of the film
-MOST = 400  # frames, 50 a second: players show a faster GIF slower
+SECONDS = 8.0  # duration of the film [s]
+# Largest number of frames, 50 per second. Players show a GIF with a higher frame rate more slowly.
+MOST = 400
 DPI = 110
-logging.getLogger("matplotlib.animation").setLevel(
-    logging.ERROR
-)  # what ffmpeg says is said in one line
+# A failure of ffmpeg is reported in one line, see write().
+logging.getLogger("matplotlib.animation").setLevel(logging.ERROR)
 
 
 def main(argv: list[str]) -> int:
-    """Runs or reuses the scene with a snapshot a frame in DIR and writes DIR/<scene>.mp4 (or
-    .gif), or reuses the film too.
+    """Runs or reuses the scene in DIR, with one snapshot for each frame, and writes DIR/<scene>.mp4
+    (or .gif). A finished film is reused, too.
     """
     parser = argparse.ArgumentParser(prog="ffimpact movie", description=__doc__)
     parser.add_argument(
@@ -98,8 +98,8 @@ def main(argv: list[str]) -> int:
 
 
 def write(film: Path, result: Record, frames: int) -> None:
-    """Writes `frames` frames, evenly spaced from the touch to the end, of SECONDS seconds
-    together; complete or not at all.
+    """Writes `frames` frames, evenly spaced from the first to the last snapshot, as a film of
+    SECONDS seconds. An incomplete film is removed. Raises NotInstalled if ffmpeg fails.
     """
     with plt.rc_context(STYLE):
         stage = of(result)
@@ -114,9 +114,8 @@ def write(film: Path, result: Record, frames: int) -> None:
                     writer.grab_frame()
             os.replace(part, film)
         except (BrokenPipeError, subprocess.CalledProcessError) as error:
-            if error.__context__ and not isinstance(
-                error.__context__, BrokenPipeError
-            ):  # something stopped us, and so ffmpeg
+            # ffmpeg failed because another exception had stopped this program.
+            if error.__context__ and not isinstance(error.__context__, BrokenPipeError):
                 raise error.__context__ from None
             raise NotInstalled(
                 "ffmpeg could not write the film: it lacks H.264, or the disk is full; take --format gif"
@@ -127,11 +126,11 @@ def write(film: Path, result: Record, frames: int) -> None:
 
 
 class Motion:
-    """The snapshots of a run, and the body at any time between them, where places and stresses
-    are linear in time.
+    """The snapshots of a run and the body at any time between them. Positions and stresses are
+    interpolated linearly in time.
 
-    `times` (s,) in s from the touch to the end; `bodies`, one a time (of several bodies all of
-    them); `diameters` (s, m, 2) in m, None where half a body was computed, or `several`.
+    `times` (s,) in s; `bodies`, one Body for each time, which contains all bodies; `diameters` (s,
+    m, 2) in m, None if half a body was computed or if there are `several`.
     """
 
     def __init__(self, pvd: Path, half: bool, several: bool = False):
@@ -146,7 +145,7 @@ class Motion:
         )
 
     def at(self, t: float) -> tuple[Body, np.ndarray | None]:
-        """The body and its diameter (m, 2) at time t [s]."""
+        """Returns the body and its diameter (m, 2) [m] at time t [s]."""
         points, stress = (
             vtu.between(self.times, [getattr(body, name) for body in self.bodies], t)
             for name in ("points", "stress")
@@ -156,17 +155,17 @@ class Motion:
 
 
 class Stage:
-    """The figure of all frames: axes, colours and curves are drawn once, `show` moves the rest
-    to a time between `times` [s].
+    """The figure of all frames. Axes, colours and curves are drawn once; `show` updates the rest to
+    a time between `times` [s].
 
-    A subclass draws the body into a panel of width x height inches, and moves it.
+    A subclass draws the body into a panel with a given width and height in inches, and updates it.
     """
 
     times: np.ndarray
     figure: plt.Figure
 
     def _lay_out(self, result: Record, width: float, height: float) -> plt.Axes:
-        """The figure with its title and forces; the panel of the body."""
+        """Makes the figure with its title and forces, and returns the panel of the body."""
         self.figure, (self.above, below) = plt.subplots(
             2,
             figsize=(width + 2.0, height + 3.2),
@@ -178,7 +177,9 @@ class Stage:
         return self.above
 
     def _draw_force(self, axes: plt.Axes, history: dict[str, np.ndarray], per: str) -> None:
-        """Normal force, and friction force where there is any [kN/m], over the time of the film."""
+        """Draws the normal force and, if it is not zero, the friction force [kN/m] over the time of
+        the film.
+        """
         inside = history["t"] >= self.times[0]
         self.t = 1e3 * history["t"][inside]
         forces = (
@@ -201,13 +202,13 @@ class Stage:
             legend(axes, loc="lower right", bbox_to_anchor=(1, 1), ncols=2, borderaxespad=0)
 
     def _settle(self) -> None:
-        """The axes stay where the first frame has them."""
+        """Fixes the axes at their positions in the first frame."""
         self.show(self.times[0])
         self.figure.draw_without_rendering()
         self.figure.set_layout_engine("none")
 
     def show(self, t: float) -> None:
-        """Everything that moves, at time t [s]."""
+        """Updates all moving parts to time t [s]."""
         self._move(t)
         self.above.set_title(f"t = {1e3 * t:.2f} ms")
         self.now.set_xdata([1e3 * t] * 2)
@@ -216,8 +217,8 @@ class Stage:
 
 
 class PlaneStage(Stage):
-    """A body in the plane, or the cut of one in three dimensions with the plane z = 0, among
-    its obstacles.
+    """A body in the plane, or the cut of a body in three dimensions with the plane z = 0, with its
+    obstacles.
     """
 
     def __init__(self, result: Record, motion: Motion):
@@ -230,15 +231,14 @@ class PlaneStage(Stage):
         self.above.set(
             xlim=(left, right), ylim=(floor, top), aspect="equal", xlabel="x [m]", ylabel="y [m]"
         )
-        self.largest = (
-            np.quantile([body.stress for body in motion.bodies], 0.999) or 1.0
-        )  # one spot does not darken all the rest
+        # The end of the colour scale is a quantile, so that a single spot does not dominate it.
+        self.largest = np.quantile([body.stress for body in motion.bodies], 0.999) or 1.0
         self.picture = draw_body(self.above, motion.bodies[0], (0, self.largest))
         self.figure.colorbar(
             self.picture, ax=self.above, label=STRESS, extend="max", aspect=30, pad=0.02
         )
         self.marks = []
-        if motion.diameters is not None:  # shows how the body turns
+        if motion.diameters is not None:  # shows the rotation of the body
             outlined = [withStroke(linewidth=2.5, foreground=BLACK)]
             self.marks = [
                 self.above.plot([], [], color="white", linewidth=1.2, path_effects=outlined)[0],

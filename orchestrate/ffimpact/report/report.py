@@ -1,4 +1,4 @@
-"""What a finished run is told in: its key figures, beside the published numbers of the same
+"""The printed report of a finished run: its key figures beside the published numbers of the same
 scene.
 """
 
@@ -33,7 +33,7 @@ LEFT_OUT_AT_ZERO = (
     "reverse_slip_time",
     "unsolved_jumps",
 )
-# the numbers that are printed of every run, the most wanted first; MOST of them at most
+# The numbers that are printed for every run, in order of importance; at most MOST of them.
 MAIN = (
     "contact_time",
     "peak_force",
@@ -53,8 +53,8 @@ MOST = 10
 
 @dataclass(frozen=True)
 class Quantity:
-    """A row of the report: a key of summary.json, its name for the reader, the factor from SI
-    and the unit shown.
+    """A row of the report: a key of summary.json, its label, the displayed unit, the factor from SI
+    units to that unit, and the number format.
     """
 
     key: str
@@ -64,20 +64,20 @@ class Quantity:
     digits: str = ".4g"
 
     def text(self, value: float, error: float | None = None) -> str:
-        """The value with its error estimate (in SI) and unit."""
+        """Returns the value with its error estimate (both passed in SI units) and its unit."""
         bar = "" if error is None else f" ± {self.factor * error:.2g}"
         return f"{self.factor * value:{self.digits}}{bar} {self.unit}".rstrip()
 
     def beside(self, number: dict) -> str:
-        """A published number, its error bar where it has one, and where it comes from."""
+        """Returns a published number with its error bar, if it has one, and its source."""
         error = f" ± {self.factor * number['error']:.1g}" if "error" in number else ""
         source = "; ".join(number[key] for key in ("source", "note") if key in number)
         return f"{self.factor * number['value']:{self.digits}}{error} ({source})"
 
 
 def rows(per: str) -> list[Quantity]:
-    """The key figures; `per` stands behind the units of forces, impulses and energies:
-    dimension.per_metre().
+    """Returns all key figures. `per` is the suffix for the units of forces, impulses and energies,
+    see dimension.per_metre().
     """
     return [
         Quantity("contact_time", "contact time", "ms", 1e3),
@@ -135,13 +135,13 @@ def rows(per: str) -> list[Quantity]:
 
 
 def draw(result: Record) -> None:
-    """The figures of the run into its folder, unless they are there; a picture is no reason to
-    lose a run: what hinders it is said.
+    """Draws the figures of the run into its folder, unless they exist. An error is only printed,
+    because a run must not be lost if a figure fails.
     """
     if result.reused and (result.folder / "figures/energies.png").exists():
         return
     try:
-        from . import drawing  # matplotlib: only where something is drawn
+        from . import drawing  # loads matplotlib, which is needed only here
 
         drawing.draw(result.folder)
     except Exception as error:
@@ -154,13 +154,13 @@ def draw(result: Record) -> None:
 
 
 def stiffness(contact: dict[str, Value]) -> str:
-    """The penalty k of a contact t_N = k p^m (10) with its unit."""
+    """Returns the penalty k of a contact t_N = k p^m (10) with its unit."""
     m = contact["exponent"]
     return f"{contact['penalty']:.4g} Pa/m" + f"^{m:g}" * (m != 1)
 
 
 def _scene(scene: dict[str, Value]) -> list[str]:
-    """What was run: bodies, speed, contact."""
+    """Returns lines that describe the scene: bodies, speed and contact."""
     contact = scene.get("contact", scene)
     pull = f"gravity {scene['gravity']:g} m/s2, " if scene.get("gravity") else ""
     words = f"{pull}penalty {stiffness(contact)}{_friction(contact)}"
@@ -197,7 +197,9 @@ def _friction(contact: dict[str, Value]) -> str:
 
 
 def marks(summary: dict) -> dict[str, str]:
-    """The mark of each number that has a note, by its key, in the order of the notes."""
+    """Returns the footnote mark of each number that has a note, by key, in the order of the
+    notes.
+    """
     return {
         key: f" [{k}]"
         for k, key in enumerate(dict.fromkeys(map(notes.number, summary.get("notes", []))), 1)
@@ -205,8 +207,8 @@ def marks(summary: dict) -> dict[str, str]:
 
 
 def notices(summary: dict, verbose: bool = False) -> list[str]:
-    """A line for each warning, then for each note of a main number behind its mark. If `verbose`
-    all notes, in whole sentences.
+    """Returns a line for each warning, then a line for each note of a main number, with its mark.
+    If `verbose` it returns all notes, in full sentences.
     """
     mark = {key: text for key, text in marks(summary).items() if verbose or _bare(key) in MAIN}
     footnotes = sorted(
@@ -221,7 +223,7 @@ def notices(summary: dict, verbose: bool = False) -> list[str]:
 
 
 def _of_bodies(quantity: Quantity, scene: dict[str, Value], summary: dict) -> list[Quantity]:
-    """A row of each of several bodies, where the summary has it of each."""
+    """Returns a row for each of several bodies if the summary has the number for each body."""
     of = suffixes(summary)
     if f"{quantity.key}{of[0]}" not in summary or of == [""]:
         return [quantity]
@@ -232,8 +234,9 @@ def _of_bodies(quantity: Quantity, scene: dict[str, Value], summary: dict) -> li
 
 
 def report(result: Record, verbose: bool = False) -> str:
-    """What is printed of a finished run: what was run, its main numbers with their error estimates,
-    a line for each warning, and where to look next. All numbers and whole sentences if `verbose`.
+    """Returns the printed report of a finished run: the scene, the main numbers with their error
+    estimates, a line for each warning, and where to find more. If `verbose` it contains all numbers
+    and full sentences.
     """
     summary, scene, place = result.summary, result.scene, shown(result.folder)
     lines = [
@@ -263,7 +266,7 @@ def report(result: Record, verbose: bool = False) -> str:
 
 
 def _numbers(result: Record, verbose: bool) -> list[str]:
-    """A line for each number: label, value with its error estimate, the mark of its note, and
+    """Returns a line for each number: label, value with error estimate, mark of its note, and
     published numbers of the same scene.
     """
     summary, scene = result.summary, result.scene
@@ -281,7 +284,7 @@ def _numbers(result: Record, verbose: bool) -> list[str]:
             key=lambda quantity: MAIN.index(_bare(quantity.key)),
         )[:MOST]
         quantities = [replace(quantity, label=quantity.label.strip()) for quantity in quantities]
-    if scene.get("end_time"):  # not of an impact alone
+    if scene.get("end_time"):  # the run may continue after the impact
         quantities = [
             replace(quantity, label=quantity.label.replace("rebound", "final"))
             for quantity in quantities
@@ -297,7 +300,9 @@ def _numbers(result: Record, verbose: bool) -> list[str]:
 
 
 def _published(summary: dict, scene: dict[str, Value]) -> dict[str, list[dict]]:
-    """Published numbers of the same scene by key; none if its mesh is the user's: another body."""
+    """Returns the published numbers of the same scene by key. A scene with a mesh of the user has
+    none, because it is another body.
+    """
     provenance = summary["provenance"]
     if provenance.get("mesh") and not provenance.get("gmsh"):
         return {}
@@ -305,11 +310,11 @@ def _published(summary: dict, scene: dict[str, Value]) -> dict[str, list[dict]]:
 
 
 def _is_told(quantity: Quantity, summary: dict) -> bool:
-    """Whether a run has the number, and whether it says anything."""
+    """Returns whether the run has the number and whether the number is informative."""
     value = summary.get(quantity.key)
     return value is not None and (abs(value) >= 1e-9 or _bare(quantity.key) not in LEFT_OUT_AT_ZERO)
 
 
 def _bare(key: str) -> str:
-    """The name of a number without that of its body."""
+    """Returns the name of a number without the suffix of its body."""
     return re.sub("_[0-9]+$", "", key)

@@ -1,6 +1,6 @@
 """Pictures of a body in three dimensions: cut open, with the von Mises stress, and from below, with
-the contact pressure. They are rendered by PyVista, where it is installed (INSTALL). The arrays that
-they are drawn from need it not.
+the contact pressure. PyVista renders them if it is installed (INSTALL). The arrays in the pictures
+are computed without PyVista.
 """
 
 import os
@@ -40,27 +40,24 @@ PROBE = (
     "import pyvista; p = pyvista.Plotter(off_screen=True, window_size=(8, 8)); p.add_mesh(pyvista.Sphere()); "
     "p.screenshot(None, return_img=True)"
 )
-INSTANTS = 4  # of the picture at most
-FINE = 4  # parts of the side of a face
-PIXELS = (700, 620)  # of a view
+INSTANTS = 4  # largest number of instants in the picture
+FINE = 4  # number of segments into which an edge of a face is split
+PIXELS = (700, 620)  # width and height of a view
 COLOURS = {"stress": "viridis", "pressure": "YlOrRd"}
 GROUND = "#d0d0d0"
-GRID = 60  # points along each side of the box in which an obstacle's surface is looked for
-AXES = {
-    "quarter": (0, 2),
-    "half": (2,),
-}  # of a symmetric body: along which the computed part has a mirror image
+GRID = 60  # grid points along each side of the box in which an obstacle's surface is computed
+# Axes along which the computed part of a symmetric body has a mirror image.
+AXES = {"quarter": (0, 2), "half": (2,)}
 
 
 @cache
 def missing() -> str:
-    """Why nothing can be rendered here; empty where it can. Asked of another process: where
-    there is no OpenGL at all VTK crashes.
+    """Returns the reason why nothing can be rendered on this machine, or an empty text if rendering
+    works. Another process tests this, because VTK crashes if there is no OpenGL.
     """
     if not os.environ.get("DISPLAY"):
-        os.environ.setdefault(
-            "VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow"
-        )  # off-screen, without a look for a screen
+        # Renders off-screen without searching for a screen.
+        os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
     try:
         probe = subprocess.run(
             [sys.executable, "-c", PROBE], capture_output=True, text=True, timeout=120
@@ -80,7 +77,7 @@ def missing() -> str:
 
 
 def skin(tetrahedra: np.ndarray) -> vtu.Skin:
-    """The faces that bound quadratic tetrahedra."""
+    """Returns the boundary faces of quadratic tetrahedra."""
     faces = tetrahedra[:, vtu.FACES].reshape(-1, 6)
     _, first, count = np.unique(
         np.sort(faces[:, :3], axis=1), axis=0, return_index=True, return_counts=True
@@ -89,8 +86,8 @@ def skin(tetrahedra: np.ndarray) -> vtu.Skin:
 
 
 def whole(solid: vtu.Solid, axes: tuple[int, ...]) -> vtu.Solid:
-    """The body of which the part where the coordinates `axes` are positive was computed, of one
-    mesh with its mirror images.
+    """Returns the whole body as one mesh: the computed part, in which the coordinates `axes` are
+    positive, and its mirror images.
     """
     for axis in axes:
         points, n = solid.points, len(solid.points)
@@ -109,22 +106,24 @@ def whole(solid: vtu.Solid, axes: tuple[int, ...]) -> vtu.Solid:
 
 
 def in_front(solid: vtu.Solid, axes: tuple[int, ...]) -> np.ndarray:
-    """Which tetrahedra (t,) are taken away to look into the body: those before z = 0, of a
-    quarter's mirror images one.
+    """Returns which tetrahedra (t,) are removed to look into the body: those with z > 0. Of a
+    quarter with its mirror images, only those with x > 0 and z > 0 are removed.
     """
     middle = solid.points[solid.tetrahedra[:, :4]].mean(axis=1)
     return (middle[:, 2] > 0) & ((middle[:, 0] > 0) | (0 not in axes))
 
 
-# ---- the pressure on it
+# ---- the pressure on the surface
 
 
 class Pressure:
-    """The pressure (m,) [Pa] at the vertices (m, 3) of a skin in the reference configuration:
-    the mean of the points of contact nearby, weighted with their area A and
-    exp(-(distance/h)^2), h^2 the largest A. Points that bear no load at the time have none, and
-    where points that ever bear some fill less than all of the neighbourhood, of radius 2 h, the
-    rest of it has none: the force is kept.
+    """The pressure (m,) [Pa] at the vertices (m, 3) of a skin in the reference configuration. It is
+    the mean over contact points in the neighbourhood, weighted with their area A and
+    exp(-(distance/h)^2), where h^2 is the largest A.
+
+    Points that bear no load at the time have zero pressure. If the points that ever bear load cover
+    only part of the neighbourhood of radius 2 h, the rest of it has zero pressure. This preserves
+    the total force.
     """
 
     def __init__(self, table: np.recarray, axes: tuple[int, ...], vertices: np.ndarray):
@@ -156,8 +155,8 @@ class Pressure:
         return found
 
     def _instant(self, t: float) -> float:
-        """The time of the table that is `t` to the digits that are written; nan where no
-        point bears load then.
+        """Returns the time in the table that equals `t` within the digits that are written, or nan
+        if no point bears load at that time.
         """
         times = np.unique(self.table.t)
         nearest = times[np.abs(times - t).argmin()] if len(times) else np.nan
@@ -173,8 +172,8 @@ class Pressure:
 
 @dataclass(frozen=True)
 class Sight:
-    """What is seen at an instant t [s]: vertices (m, 3) [m] and von Mises stress [MPa] of the
-    cut body, vertices and pressure [MPa] of all of it.
+    """The data of a view at time t [s]: vertices (m, 3) [m] and von Mises stress [MPa] of the cut
+    body, vertices [m] and contact pressure [MPa] of the whole body.
     """
 
     t: float
@@ -185,9 +184,9 @@ class Sight:
 
 
 class Views:
-    """The snapshots `series` of a body in three dimensions, rendered. `times` [s]; `stress`,
-    `pressure`: the largest that is drawn [MPa]; `loaded`: at which snapshots the body is
-    touched.
+    """Renders the snapshots `series` of a body in three dimensions. `times` [s]; `stress`,
+    `pressure`: upper ends of the colour scales [MPa]; `loaded`: indices of the snapshots with
+    contact (more than 5 % of the largest pressure).
     """
 
     def __init__(
@@ -203,14 +202,14 @@ class Views:
         self.sights = [
             self._sight(t, solid, pressure.at(t)) for t, solid in zip(self.times, solids)
         ]
-        self.stress = (
-            float(np.quantile([sight.stress for sight in self.sights], 0.999)) or 1.0
-        )  # one spot does not darken all the rest
+        # The end of the colour scale is a quantile, so that a single spot does not dominate it.
+        self.stress = float(np.quantile([sight.stress for sight in self.sights], 0.999)) or 1.0
         self.pressure = max(float(sight.pressure.max()) for sight in self.sights) or 1.0
         self.loaded = [
             k for k, sight in enumerate(self.sights) if sight.pressure.max() > 0.05 * self.pressure
         ]
-        self.towards = (0.75, 0.42, 1.0) if 0 in axes else (0.3, 0.3, 1.0)  # the eye
+        # The direction from the centre to the eye.
+        self.towards = (0.75, 0.42, 1.0) if 0 in axes else (0.3, 0.3, 1.0)
         ends = np.array(
             [[sight.outside.min(axis=0), sight.outside.max(axis=0)] for sight in self.sights]
         )
@@ -227,7 +226,7 @@ class Views:
         )
 
     def at(self, t: float) -> Sight:
-        """What is seen at the time t [s], between two snapshots linear in time."""
+        """Returns the data of a view at time t [s], linearly interpolated between snapshots."""
         return Sight(
             *(
                 vtu.between(self.times, [getattr(sight, name) for sight in self.sights], t)
@@ -236,8 +235,8 @@ class Views:
         )
 
     def render(self, sight: Sight) -> tuple[np.ndarray, np.ndarray]:
-        """Both views as images (height, width, 3): the cut body from the front, all of it
-        from below, through the obstacles.
+        """Returns both views as images (height, width, 3): the cut body from the front, and the
+        whole body from below, without obstacles.
         """
         return (
             self._image(
@@ -322,9 +321,9 @@ class Views:
 def draw(
     series: list[tuple[float, Path]], table: np.recarray, scene: dict[str, Value]
 ) -> plt.Figure | None:
-    """The body at up to INSTANTS times at which it is touched: above cut open, with its stress,
-    below from below, with the contact pressure. None of a body in the plane, without contact,
-    and where nothing can be rendered.
+    """Draws the body at up to INSTANTS times with contact: in the upper row cut open, with its
+    stress; in the lower row from below, with the contact pressure. Returns None for a body in the
+    plane, without contact, and if nothing can be rendered.
     """
     if not len(table) or vtu.read_solid(series[0][1]) is None or missing():
         return None
@@ -344,7 +343,7 @@ def draw(
 
 
 def bars(views: Views) -> list[tuple[ScalarMappable, str]]:
-    """Colours and label of the stress and of the pressure."""
+    """Returns the colour scales and the labels of stress and pressure."""
     return [
         (ScalarMappable(plt.Normalize(0, largest), COLOURS[name]), label)
         for name, largest, label in (

@@ -1,1 +1,1 @@
-"""One run of a script, and the others that its stated error needs."""
+"""Runs a scene in FreeFem++, together with the further runs that its error estimate needs."""

@@ -1,8 +1,8 @@
-"""One scene, one run, one folder: the run contract.
+"""Runs one scene in one result folder, as the run contract states.
 
-A run that failed leaves its files for a look (log.txt, history.csv, scene.toml, failure.json), in
-DIR, or in DIR.failed where DIR holds an earlier finished run, which is not lost. How a folder is
-made, locked and put in its place: folder.py.
+A failed run leaves its files for inspection (log.txt, history.csv, scene.toml, failure.json) in the
+folder DIR. If DIR holds an earlier finished run, the files of the failed run go to DIR.failed. The
+module output/folder.py makes, locks and replaces folders.
 """
 
 import hashlib
@@ -51,18 +51,13 @@ from .solver import FAILURES, USED, Solver, runs
 
 __all__ = ["ENTRANCE", "HARMLESS", "states", "code_hash", "commit", "imported", "reusable", "run"]
 
-STATES = 60  # kept of a run by default, for figures and the player
-ENTRANCE = (
-    "scenes/assembly"  # the module that makes flags, mesh and scene.dat, with all that it imports
-)
-# of these: what asks, starts, says and reads, and does not decide a result
+STATES = 60  # states that a run keeps by default, for figures and the player
+# The module that makes flags, mesh and scene.dat. Results depend on it and on all that it imports.
+ENTRANCE = "scenes/assembly"
+# Of these modules, the ones that only query, start, report or read. Results do not depend on them.
 HARMLESS = {"failure", "places", "freefem/describe", "freefem/freefem"}
-ESTIMATING = (
-    "output/estimate",
-    "output/notes",
-    "output/results",
-    "scenes/finer",
-)  # what decides the stated errors besides
+# Further modules, on which the error estimates depend.
+ESTIMATING = ("output/estimate", "output/notes", "output/results", "scenes/finer")
 
 
 def run(
@@ -75,21 +70,21 @@ def run(
     progress: bool | None = None,
     estimate: bool = True,
 ) -> Record:
-    """Runs `scene` with some parameters overridden in the folder `out` (default
-    results/<scene>), or reuses it.
+    """Runs `scene`, with the parameters `overrides`, in the folder `out` (default:
+    results/<scene>), or reuses the finished run in that folder. Returns the Record of the run.
 
-    Raises Failure with the exit code of the run contract. `force` runs again, from the start,
-    even if the folder is up to date; else a run that was killed goes on from its last
-    checkpoint. `progress`: whether a line shows how far it is (None: on a terminal, in a
-    notebook). With `estimate` a second, coarser run estimates the error, and finer ones follow
-    until it is below the accuracy (estimate.py).
+    `force` runs again from the start, even if the folder is up to date. Otherwise an interrupted
+    run continues from its last checkpoint. `progress` states whether a progress line is shown
+    (None: only on a terminal and in a notebook). With `estimate` a second, coarser run estimates
+    the error; finer runs follow until the error is below the requested accuracy
+    (output/estimate.py). Raises Failure with the exit code of the run contract.
     """
     started = time.monotonic()
     scene = scene.override(_sizes_left_to(mesh_file, scene) | (overrides or {}))
     folder = result_folder(Path(out or RESULTS / scene.name))
     mesh_file = mesh_file and _mesh_path(Path(mesh_file))
     foreign = gmsh_file.load(mesh_file, alone=True) if mesh_file else None
-    scene.description(foreign, mesh_file)  # BadInput before anything is made
+    scene.description(foreign, mesh_file)  # raises BadInput before any file is made
     finished = finished_in(folder, force)
     if not force and (there := reusable(scene, folder, mesh_file, estimate)):
         return there
@@ -98,9 +93,8 @@ def run(
     if scene.meshed and not foreign:
         mesh.start_gmsh()
     with Line(scene.name, runs(estimate), progress) as line, staging(folder) as (stage, lock):
-        if not force and (
-            there := reusable(scene, folder, mesh_file, estimate)
-        ):  # another run has finished it meanwhile
+        # Another process may have finished the run in the meantime.
+        if not force and (there := reusable(scene, folder, mesh_file, estimate)):
             return there
         provenance = {
             "script": scene.script,
@@ -130,13 +124,11 @@ def run(
                 )
                 found = estimates.settle(*settled) if estimate else {}
         except Failure as failure:
-            if checkpoints(stage):  # a script that comes to its end, good or bad, removes it
+            # A script that reaches its end, with success or failure, removes its checkpoint.
+            if checkpoints(stage):
                 failure.folder = stage
-            elif failure.code not in (
-                TooLong.code,
-                BadInput.code,
-                Unreadable.code,
-            ):  # these leave nothing behind
+            # Failures of these three kinds leave no files.
+            elif failure.code not in (TooLong.code, BadInput.code, Unreadable.code):
                 failure.folder = failed_beside(folder) if finished else folder
                 _keep_failed(stage, failure, scene, provenance | asked_for)
                 _put(stage, failure.folder, scene, mesh_file)
@@ -152,15 +144,17 @@ def run(
 
 
 def states(scene: Scene) -> dict[str, Value]:
-    """The entry `fields` that a scene leaves open; a case of the paper has 0 there by default."""
+    """Returns the default of the entry `fields` if the scene leaves it open, else nothing. For a
+    case of the paper, `fields` = 0 counts as open.
+    """
     given = scene.given.get("fields")
     left_open = given is None if scene.bodies else not given
     return {"fields": STATES} if left_open else {}
 
 
 def _put(stage: Path, folder: Path, scene: Scene, mesh_file: Path | None) -> None:
-    """In its place; the log names the folder that the run ends up in, not the one it was made
-    in.
+    """Moves a run from `stage` to `folder`. In its log the path of `stage` is replaced by that of
+    `folder`.
     """
     log = stage / "log.txt"
     log.write_text(log.read_text(errors="replace").replace(str(stage), str(shown(folder))))
@@ -168,8 +162,8 @@ def _put(stage: Path, folder: Path, scene: Scene, mesh_file: Path | None) -> Non
 
 
 def _tell_accuracy(path: Path, asked: float) -> None:
-    """scene.toml says what was asked for beside the accuracy as used, where finer runs were
-    made for it.
+    """Adds the requested accuracy `asked` as a comment to scene.toml, if finer runs used another
+    accuracy.
     """
     used = read_scene(path.parent)["accuracy"]
     if not math.isclose(used, asked):
@@ -181,7 +175,9 @@ def _tell_accuracy(path: Path, asked: float) -> None:
 
 
 def _finish(stage: Path, scene: Scene, found: dict, provenance: dict) -> None:
-    """The summary with what was `found` beside the run and its provenance, last and by rename."""
+    """Adds the results `found` of the error estimate and the provenance to summary.json. The
+    complete file is put in place by a rename, as the last step.
+    """
     summary = read_summary(stage)
     found |= notes.settled(
         *(summary.get(kind, []) + found.get(kind, []) for kind in ("warnings", "notes"))
@@ -202,7 +198,9 @@ def _finish(stage: Path, scene: Scene, found: dict, provenance: dict) -> None:
 
 
 def _keep_failed(stage: Path, failure: Failure, scene: Scene, provenance: dict) -> None:
-    """failure.json: the one the script wrote, or what is known; never a summary.json."""
+    """Writes failure.json with the entries that the script wrote, or else with status and message
+    of the failure. Removes summary.json.
+    """
     (stage / "summary.json").unlink(missing_ok=True)
     if not (stage / "scene.toml").exists():
         (stage / USED).exists() or (stage / USED).write_text(
@@ -223,8 +221,9 @@ def _keep_failed(stage: Path, failure: Failure, scene: Scene, provenance: dict) 
 def reusable(
     scene: Scene, folder: Path, mesh_file: Path | None = None, estimate: bool = False
 ) -> Record | None:
-    """The finished run in `folder` if it is of this very scene, mesh and code, with an estimate
-    of its error where that is asked for, else None; Unreadable if it is not ours.
+    """Returns the finished run in `folder` if it has the same scene, mesh and code, and an error
+    estimate where `estimate` is set; else None. Raises Unreadable if the folder was not written by
+    this program.
     """
     summary = finished_in(folder, force=False)
     same = (
@@ -241,8 +240,8 @@ def reusable(
 
 
 def code_hash() -> str:
-    """sha256 over what decides a result besides the scene: the FreeFEM scripts, their kernels
-    and what makes meshes and scene.dat.
+    """Returns the sha256 of the code that results depend on besides the scene: the FreeFEM scripts,
+    their kernels and the Python modules that make meshes and scene.dat.
     """
     return _hash(
         sorted(imported(ENTRANCE) - HARMLESS),
@@ -256,8 +255,9 @@ def code_hash() -> str:
 
 @cache
 def imported(name: str, package: Path = PACKAGE) -> set[str]:
-    """A module of the package and those of it that it imports, wherever in it, or they do: as
-    their paths in the package, without .py.
+    """Returns a module of the package together with all modules of the package that it imports
+    directly or indirectly, at any place in their code. The modules are given as paths in the
+    package without .py.
     """
     found, open_ones = set(), {name}
     while open_ones:
@@ -283,8 +283,8 @@ def _hash(modules: Iterable[str], files: Iterable[Path] = ()) -> str:
 
 
 def _same_scene(folder: Path, scene: Scene, mesh_file: Path | None) -> bool:
-    """Whether the run in `folder`, finished or failed, is one of this scene on this mesh, by
-    whatever code.
+    """Returns whether the finished or failed run in `folder` has this scene and this mesh, whatever
+    the version of the code.
     """
     name = "summary.json" if (folder / "summary.json").exists() else "failure.json"
     try:
@@ -294,7 +294,7 @@ def _same_scene(folder: Path, scene: Scene, mesh_file: Path | None) -> bool:
         else:
             same_mesh = provenance["gmsh"] == _gmsh(scene, None)
         same_script, asked = provenance["script"] == scene.script, provenance["asked"]
-    except (FileNotFoundError, ValueError, KeyError, TypeError):  # it does not say
+    except (FileNotFoundError, ValueError, KeyError, TypeError):  # it has no such record
         return False
     return same_mesh and same_script and asked == scene.asked
 
@@ -303,8 +303,8 @@ def _same_scene(folder: Path, scene: Scene, mesh_file: Path | None) -> bool:
 
 
 def _sizes_left_to(mesh_file: Path | str | None, scene: Scene) -> dict[str, Value]:
-    """The element sizes of a scene, open where a mesh file has its own: those it fixes are for
-    another mesh.
+    """Returns the element sizes of a scene, reset to automatic if there is a mesh file: the sizes
+    of the scene are meant for another mesh. A scene of bodies keeps its sizes.
     """
     return dict.fromkeys(SIZES, 0) if mesh_file and not scene.bodies else {}
 
@@ -312,9 +312,11 @@ def _sizes_left_to(mesh_file: Path | str | None, scene: Scene) -> dict[str, Valu
 def _mesh_path(given: Path) -> Path:
     try:
         path = given.resolve()
-        if path.exists() and not path.is_file():  # reading a pipe or a device might never end
+        # Reading a pipe or a device might never end.
+        if path.exists() and not path.is_file():
             raise BadInput(f"mesh: {given} is no file")
-    except (OSError, RuntimeError) as error:  # a loop of links, a name too long
+    # For example a loop of links, or a name that is too long.
+    except (OSError, RuntimeError) as error:
         raise BadInput(
             f"mesh: {given} cannot be read: {getattr(error, 'strerror', None) or error}"
         ) from None
@@ -322,8 +324,8 @@ def _mesh_path(given: Path) -> Path:
 
 
 def _gmsh(scene: Scene, mesh_file: Path | None) -> str | None:
-    """The version of the gmsh that makes the mesh, None where a file or the script itself
-    brings it.
+    """Returns the version of the gmsh that makes the mesh, or None if the mesh comes from a file or
+    from the script.
     """
     return mesh.start_gmsh().__version__ if scene.meshed and not mesh_file else None
 
@@ -336,8 +338,8 @@ def _sha256(path: Path) -> str:
 
 
 def commit(digits: int = 40) -> str:
-    """The commit, with -dirty where the tree differs from it; unknown where the program is
-    installed, in whosever folder.
+    """Returns the git commit, with -dirty if the source tree differs from it. If the program is
+    installed, the answer is "unknown": the surrounding folder may belong to another repository.
     """
     if INSTALLED:
         return "unknown"

@@ -1,6 +1,6 @@
-"""FreeFem++ runs of one scene in the folder of a run: the main one, those that estimate its error,
-and what each has left. While they go on it is told which of them is at what; of one that will take
-long about how long, and which entry makes it so.
+"""The FreeFem++ runs of a scene: the main run and the runs that estimate its error. The module
+checks what each run has left and shows the progress. For a long run it prints a forecast of its
+duration and the entry of the scene that makes it long.
 """
 
 import bisect
@@ -37,28 +37,27 @@ FAILURES = {
     13: "not installed",
     14: "unreadable",
 }
-COST = (
-    estimate.COARSER**-3
-)  # of a run with larger elements and steps, over that of the one beside it
-LONG = 60.0  # s
-FIRST = 2.0  # s of steps from which on its end is foretold
-AGAIN = (
-    1.5  # a forecast is renewed where the run takes at least so many times what was said at most
-)
-USUAL = freefem.At(
-    1.0, 0.0, 200, 2000
-)  # steps and unknowns of a usual run: what is further above them makes a run long
-# scene.toml as Python writes it, there from the start: whoever finds the run finished puts it in
-# its place
+# Cost ratio of a run to the run with elements and steps smaller by the factor COARSER.
+COST = estimate.COARSER**-3
+LONG = 60.0  # a run with a longer forecast [s] is reported as long
+FIRST = 2.0  # time [s] after the first report from which on the duration is forecast
+# A forecast is printed again once its lower bound exceeds the last upper bound by this factor.
+AGAIN = 1.5
+# 200 steps and 2000 unknowns of a usual run. The number that exceeds its usual value by the larger
+# factor makes a run long.
+USUAL = freefem.At(1.0, 0.0, 200, 2000)
+# Name of the scene.toml that Python writes before the run. When the run has finished, this file
+# replaces the scene.toml of the script.
 USED = "scene.used"
-# times that the slow body waits for the quick one's steps: more than mesh or accuracy cost
+# Ratio of the wave transit times of the slowest and the quickest body. A larger ratio costs more
+# time than mesh or accuracy.
 APART = 10.0
 
 
 class Solver(AbstractContextManager):
-    """Runs the scene with some values in a folder, one run after the other, but the coarser one
-    beside the main one where `pair` says that it will be wanted and a core is free. A thread
-    beside the main one belongs to a study, which has a run on every core already.
+    """Runs a scene with given values in given folders, one run after the other. If `pair` is set
+    and a core is free, the coarser run starts at the same time as the main run. In a thread other
+    than the main thread it does not, because a study already has a run on every core.
     """
 
     def __init__(
@@ -84,14 +83,16 @@ class Solver(AbstractContextManager):
         self.leaving = ExitStack()
 
     def __exit__(self, *_) -> None:
-        """Ends a run beside; of a main one that is lost nothing else is of use."""
+        """Ends the coarser run. Removes its folder if the main run has neither a summary nor a
+        checkpoint.
+        """
         self.leaving.close()
         if not any((self.stage / name).exists() for name in ("summary.json", "checkpoint")):
             shutil.rmtree(self.stage / estimate.COARSE, ignore_errors=True)
 
     def __call__(self, given: dict[str, Value], where: Path) -> None:
-        """Runs in the folder `where`: from its checkpoint where there is one, not again
-        where it is finished.
+        """Runs the scene, with the values `given`, in the folder `where`: from its checkpoint if
+        there is one, and not at all if it has finished. Raises Failure.
         """
         self.number += 1
         display = Display(
@@ -119,13 +120,15 @@ class Solver(AbstractContextManager):
         leaving: ExitStack,
         display: "Display | None" = None,
     ) -> freefem.Process:
-        """A process at work in the folder until `leaving`."""
+        """Starts the scene, with the values `given`, in the folder `where`. The process is ended
+        when `leaving` is closed.
+        """
         scene, goes_on = self.scene.override(given), (where / "checkpoint").exists()
         if not goes_on:
             if where != self.stage:
                 shutil.rmtree(where, ignore_errors=True)
             where.mkdir(exist_ok=True)
-            if not (where / "checkpoint.json").exists():  # what makes the folder ours
+            if not (where / "checkpoint.json").exists():  # marks the folder as ours
                 write_json(where / "checkpoint.json", scene.asked)
         if display:
             display.at("mesh")
@@ -145,7 +148,9 @@ class Solver(AbstractContextManager):
         return process
 
     def _start_beside(self, used: Mapping) -> None:
-        """The coarser run, as settle() will ask for it. What hinders it is said then."""
+        """Starts the coarser run as estimate.settle() will request it. A Failure is ignored here;
+        settle() then raises it again.
+        """
         where = self.stage / estimate.COARSE
         given = self.scaled(
             self.scene.values | self.scene.sizes, used, estimate.COARSER, self.own_mesh
@@ -155,7 +160,9 @@ class Solver(AbstractContextManager):
                 self.beside = where, given, self._started(given, where, self.leaving)
 
     def _taken(self, given: dict[str, Value], where: Path) -> freefem.Process | None:
-        """The process beside the main one, where it is the one that is asked for; else it ends."""
+        """Returns the process of the coarser run if the request is for this run, else None. If the
+        request is for another run, the coarser run is ended and its folder removed.
+        """
         if not self.beside:
             return None
         place, values, process = self.beside
@@ -168,11 +175,11 @@ class Solver(AbstractContextManager):
 
 
 def _check(stage: Path, exit_code: int, said: str) -> None:
-    """Failure unless FreeFem++ ended well AND left a finished summary and a finite history (0
-    alone says little).
+    """Raises Failure unless FreeFem++ ended with exit code 0 and left a finished summary and a
+    finite history. The exit code 0 alone does not prove success.
 
-    Its code is that of the process, its words those of the failure.json that the script wrote,
-    else what it `said`.
+    The failure has the exit code of the process. Its message is that of the failure.json that the
+    script wrote, or else `said`.
     """
     if exit_code == 0:
         try:
@@ -224,30 +231,32 @@ def _tail(stage: Path) -> str:
 
 
 def runs(estimate: bool) -> dict[str, float]:
-    """The runs that are foreseen, with their costs."""
+    """Returns the foreseen runs with their costs."""
     return {"main run": 1.0} | ({"coarser run": COST} if estimate else {})
 
 
 class Display:
-    """One run, the `number`th of those in the line."""
+    """Shows the progress of a run, the `number`th run of the progress line."""
 
     def __init__(self, line: Line, scene: Scene, mesh_file: Path | None, kind: str, number: int):
         self.line, self.scene, self.mesh_file, self.number = line, scene, mesh_file, number
         self.words = f"{kind} {number} of {max(number, len(line.costs))}"
         self.part = kind if kind in line.costs else self.words
         self.seen: list[tuple[float, freefem.At]] = []
-        self.foretold = math.inf if kind == "coarser run" else LONG  # s of all runs, at most
+        # The upper bound [s] of the last forecast for all runs.
+        self.foretold = math.inf if kind == "coarser run" else LONG
 
     def at(self, what: str, share: float = 0.0) -> None:
-        """It is at this, and so far."""
+        """Shows the current work `what` and the completed fraction `share`, in [0, 1]."""
         self.line.at(self.part, share, f"{self.words}, {what}", COST ** (2 - self.number))
 
     def show(self, at: freefem.At) -> None:
-        """What FreeFem++ says of it."""
+        """Shows the progress that FreeFem++ reports. Prints a forecast if the runs will take
+        long.
+        """
         self.at(f"t = {at.t * 1e3:.3f} ms, {at.steps} steps", at.share)
-        self.seen.append(
-            (time.monotonic(), at)
-        )  # from the first steps on, with the set-up behind it
+        # The first report comes with the first steps, after the set-up.
+        self.seen.append((time.monotonic(), at))
         if self.seen[-1][0] - self.seen[0][0] < FIRST:
             return
         seconds, steps = forecast(self.seen)
@@ -265,10 +274,12 @@ class Display:
 def forecast(
     seen: list[tuple[float, freefem.At]],
 ) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Seconds and steps of a run from its first report on, each (at least, at most): by its
-    pace since then, and by its pace since half of that time. They differ where its steps become
-    shorter, or where the impact lasts longer than it seemed; a pace by which the end recedes
-    makes it infinite.
+    """Returns the duration [s] of a run from its first report on and its number of steps, each as
+    (lower bound, upper bound). `seen` has the reports with their times [s].
+
+    One forecast uses the pace since the first report, the other one the pace since half of the
+    elapsed time. They differ if the steps become shorter or if the impact lasts longer than it
+    seemed. If the completed fraction has not increased, a forecast is infinite.
     """
     (start, first), (now, at) = seen[0], seen[-1]
     middle = seen[max(0, bisect.bisect(seen, (start + now) / 2, key=lambda one: one[0]) - 1)]
@@ -281,7 +292,7 @@ def forecast(
 
 
 def between(low: float, high: float) -> str:
-    """A range of numbers in words."""
+    """Returns a range of numbers in words."""
     if high == math.inf:
         return f"at least {low:.0f}"
     return (
@@ -292,7 +303,7 @@ def between(low: float, high: float) -> str:
 
 
 def entry(scene: Scene, at: freefem.At, mesh_file: Path | None) -> str:
-    """The entry of the scene that makes it long."""
+    """Returns the entry of the scene that makes the run long."""
     given = scene.values | scene.sizes
     if at.apart > APART:
         return f"a stiff body beside a soft one, whose waves take {at.apart:.0f} times as long as those that set the steps (young, density)"
