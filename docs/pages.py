@@ -5,6 +5,7 @@ columns, warnings, exit codes, commands, equations, and the Python interface.
 """
 
 import argparse
+import ast
 import contextlib
 import importlib
 import inspect
@@ -20,11 +21,10 @@ from pydantic.fields import FieldInfo
 
 import ffimpact
 from ffimpact import __main__ as command_line, failure, schema
-from ffimpact.freefem.describe import describe_results
 from ffimpact.input import models, parameters
 from ffimpact.input.parameter import Parameter, Rule
-from ffimpact.output.fields import POINT_COLUMNS
-from ffimpact.places import ROOT, shown
+from ffimpact.output.meanings import describe_results
+from ffimpact.places import PACKAGE, ROOT, shown
 
 TABLES = (
     ("history.csv", "history", ("columns", "body_columns")),
@@ -207,7 +207,7 @@ def kinds(word: str, table: Mapping[str, type], common: type[models.Entries]) ->
 def results() -> str:
     """Tables of the files, columns and numbers of a run."""
     told = [describe_results({}, script) for script in SCRIPTS]
-    text, meanings = "", told[0]["meanings"] | {"points": POINT_COLUMNS}
+    text, meanings = "", told[0]["meanings"]
     for file, table, lists in TABLES:
         known = {
             name: entry for each in reversed(meanings.values()) for name, entry in each.items()
@@ -226,14 +226,14 @@ def results() -> str:
 
 
 def warnings() -> str:
-    """A table of the warnings and notes of warnings.idp and estimate.py by name, with fact and
+    """A table of the warnings and notes of output/warnings.py and output/estimate.py by name, with fact and
     advice."""
-    rows = {}
-    for path in sorted((ROOT / "edp/core").rglob("*.idp")):
-        for call in re.finditer(r"\b(warn|note)\((.*?)\);\n", path.read_text(), re.DOTALL):
-            sentence = _literal(call[2])
+    rows: dict[str, list[tuple[str, str]]] = {}
+    for call in ast.walk(ast.parse((PACKAGE / "output/warnings.py").read_text("utf-8"))):
+        if isinstance(call, ast.Call) and getattr(call.func, "id", "") in KINDS:
+            sentence = _literal(call.args[0])
             rows.setdefault(sentence.partition(":")[0], []).append(
-                (call[1], sentence.partition(": ")[2])
+                (call.func.id, sentence.partition(": ")[2])
             )
     found = ""
     for name, told in sorted(rows.items()):
@@ -258,19 +258,22 @@ def split(words: str) -> tuple[str, str]:
     return (": ".join(parts[:-1]), parts[-1]) if len(parts) > 1 else (words, "")
 
 
-def _literal(expression: str) -> str:
-    """The string literals of a FreeFEM expression, with ellipses between them."""
-    parts = re.split(r'"((?:[^"\\]|\\.)*)"', expression.replace("string(", "("))
-    text = "".join(
-        part if k % 2 else ("…" if part.strip(" +()\n") else "") for k, part in enumerate(parts)
-    )
-    return (
-        re.sub(r"(…\s*)+", "… ", text)
-        .replace("… )", "…)")
-        .replace("… :", "…:")
-        .replace("… ,", "…,")
-        .strip()
-    )
+def _literal(expression: ast.expr) -> str:
+    """The text of a string expression: alternatives joined by "or", and ellipses for other values."""
+    match expression:
+        case ast.Constant(value=value):
+            return str(value)
+        case ast.FormattedValue(value=value):
+            return _literal(value)
+        case ast.IfExp(body=body, orelse=other):
+            return f"{_literal(body)} or {_literal(other)}"
+        case ast.Call(func=ast.Attribute(attr="finer"), args=[sizes, *_]):
+            return _literal(sizes)
+        case ast.JoinedStr(values=parts):
+            text = "".join(map(_literal, parts))
+            return re.sub(r"(…\s*)+", "… ", text).replace("… )", "…)").replace("… :", "…:").replace("… ,", "…,").replace("… .", "….").strip()
+        case _:
+            return "…"
 
 
 def equations(prefix: str = "") -> str:

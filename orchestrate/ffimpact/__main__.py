@@ -157,7 +157,7 @@ def _parser() -> argparse.ArgumentParser:
     command.set_defaults(command=_view)
 
     command = commands.add_parser(
-        "evaluate", help="write the fields of a run of an .edp script, for view and ParaView"
+        "evaluate", help="evaluate the record of a run of an .edp script: summary, contacts, fields"
     )
     command.add_argument("folder", metavar="DIR", type=Path, help="the folder of the run")
     command.set_defaults(command=_evaluate)
@@ -219,16 +219,17 @@ def _view(options: argparse.Namespace) -> None:
 
 
 def _evaluate(options: argparse.Namespace) -> None:
-    from .output import fields, results
+    from .output import evaluate, results
 
-    results.read_summary(options.folder)  # raises Unreadable without a finished run
-    if not (options.folder / fields.RECORDED).exists():
+    record = options.folder / evaluate.RECORD
+    if not record.exists():
         raise Unreadable(
-            f"{options.folder / fields.RECORDED} cannot be read: there is no such file "
-            "(accepted: the folder of a run of an .edp script with -fields 1 or more)"
+            f"{record} cannot be read: there is no such file (accepted: the folder of a run of an .edp script)"
         )
-    fields.write_fields(options.folder)
-    print(shown(options.folder / "fields.pvd"))
+    evaluate.evaluate(options.folder)
+    for sentence in results.read_summary(options.folder)["warnings"]:
+        print(f"ffimpact: warning: {sentence}", file=sys.stderr)
+    print(shown(options.folder / "summary.json"))
 
 
 def _list(options: argparse.Namespace) -> None:

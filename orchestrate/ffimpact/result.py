@@ -18,10 +18,10 @@ from typing import TYPE_CHECKING, Any
 import pandas as pd
 
 from .failure import BadInput, NotInstalled, Unreadable, unknown
-from .freefem.describe import describe_results
 from .input.dimension import per_metre
 from .output import vtu
 from .output.errors import errors
+from .output.meanings import describe_results
 from .output.results import Record, numbers, read_record, read_summary
 from .places import shown
 from .report import report

@@ -14,10 +14,10 @@ import pytest
 from ffimpact import scene
 from ffimpact.failure import NotInstalled
 from ffimpact.freefem import freefem
-from ffimpact.freefem.describe import describe, describe_results
+from ffimpact.freefem.describe import describe
 from ffimpact.input import parameters
 from ffimpact.output import results, vtu
-from ffimpact.output.fields import POINT_COLUMNS
+from ffimpact.output.meanings import describe_results
 from ffimpact.report import literature, report
 from ffimpact.running import run
 from tests.support.end_to_end import COARSE, call, direct
@@ -244,7 +244,7 @@ def test_chatter_is_11_or_a_warning(tmp_path, how):
 
 def test_every_number_of_a_run_has_a_unit_and_a_meaning(result):
     """Each key of the summary and each column of the tables that a run writes is one that the scripts explain (docs/reference/results.md)."""
-    told = {name for table in describe_results()["meanings"].values() for name in table} | set(POINT_COLUMNS)
+    told = {name for table in describe_results()["meanings"].values() for name in table}
     assert set(result.summary) <= told, set(result.summary) - told
     for name in ("history.csv", "contacts.csv", "fields/contact.csv"):
         columns = set((result.folder / name).read_text().partition("\n")[0].split(","))

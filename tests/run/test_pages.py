@@ -9,7 +9,7 @@ import ffimpact
 import pages
 from benchmarks import figures, page
 from ffimpact import scene
-from ffimpact.freefem.describe import describe_results
+from ffimpact.output.meanings import describe_results
 from ffimpact.places import ROOT
 
 PAGES = [

@@ -13,9 +13,9 @@ import pytest
 
 from ffimpact.__main__ import main
 from ffimpact.failure import BadInput
-from ffimpact.freefem.describe import describe_results
 from ffimpact.input import parameters
 from ffimpact.output import results
+from ffimpact.output.meanings import describe_results
 from ffimpact.report.figures import plt
 from ffimpact.running import run
 from ffimpact.sweeps import study, sweep, sweep_figures

@@ -10,7 +10,7 @@ from functools import cache
 from ..failure import BadInput, NotInstalled
 from . import freefem
 
-__all__ = ["describe", "describe_results"]
+__all__ = ["describe", "describe_record"]
 
 LIMIT = 60  # time limit of a query [s]
 
@@ -30,15 +30,9 @@ def describe(values: dict | None = None, script: str = "disc-plane") -> dict:
     )
 
 
-def describe_results(values: dict | None = None, script: str = "disc-plane") -> dict:
-    """Returns the answer of edp/describe-results.edp for the same arguments. Its names are: bodies;
-    columns (of history.csv); summary (the numbers of summary.json); body_columns and body_summary
-    (for each of several bodies); damped (additional names in these four if bodies are damped);
-    projected (additional names in both lists of columns if the volume is projected, for nu above
-    plain_nu); contact_columns (of contacts.csv); and `meanings`, by file and name: unit and
-    description.
-
-    Raises the same exceptions as describe().
+def describe_record(values: dict | None = None, script: str = "disc-plane") -> dict:
+    """Returns the answer of edp/describe-results.edp: what the record of a scene holds, as
+    described for output/meanings.py. Raises as describe().
     """
     return json.loads(
         _ask("edp/describe-results.edp", *freefem.words_of({"script": script} | (values or {})))

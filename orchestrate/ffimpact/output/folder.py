@@ -42,6 +42,8 @@ RECORDS = (
     "contacts.csv",
     "modes.csv",
     "states.bin",
+    "contacts.bin",
+    "record.json",
     "summary.json",
 )
 FIELDS = [

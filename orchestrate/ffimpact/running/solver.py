@@ -21,7 +21,7 @@ from ..failure import Failure, NotInstalled, Unreadable, of_code
 from ..freefem import freefem
 from ..input.parameters import Value
 from ..output import estimate
-from ..output.fields import write_fields
+from ..output.evaluate import evaluate
 from ..output.results import read_history, read_json, read_summary, write_json
 from ..progress import Line
 from ..scene import Scene
@@ -103,13 +103,15 @@ class Solver(AbstractContextManager):
             self.number,
         )
         taken, exit_code, said = self._taken(given, where), 0, ""
+        if not taken:
+            evaluate(where)  # what a run has left that was killed before it was evaluated
         if taken or not (where / "summary.json").exists():
             with ExitStack() as leaving:
                 process = taken or self._started(given, where, leaving, display)
                 exit_code, said = process.end(display.show)
         if (where / USED).exists() and (where / "scene.toml").exists():
             os.replace(where / USED, where / "scene.toml")
-        write_fields(where)
+        evaluate(where)
         _check(where, exit_code, said)
         display.at("ready", 1.0)
 

@@ -19,7 +19,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..failure import BadInput, brief, gathered, unknown
-from ..freefem.describe import describe, describe_results
+from ..freefem.describe import describe
 from ..geometry.outlines import Shape, normal_of
 from ..input import dimension, models, parameters
 from ..input.dimension import AXISYMMETRIC, SOLID, Dimension
@@ -27,6 +27,7 @@ from ..input.models import CONTACT, MATERIAL, OWN, listed
 from ..input.parameters import Value
 from ..input.table import MESHED, SCRIPTS
 from ..mesh.solid_file import takes_in_others
+from ..output.meanings import describe_results
 from . import bodies, conditions, mirror, obstacles
 from .bodies import SIZES, Body
 from .entries import release, set_entry, toml_value

@@ -35,10 +35,10 @@ import pandas as pd
 
 from .. import scene
 from ..failure import BadInput, Busy, Failure, Unreadable, brief, suggestion, unknown
-from ..freefem.describe import describe_results
 from ..input import dimension, parameters
 from ..input.parameters import Value
 from ..output.folder import result_folder
+from ..output.meanings import describe_results
 from ..places import RESULTS, shown
 from . import study, sweep_figures
 

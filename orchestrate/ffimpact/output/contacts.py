@@ -1,0 +1,442 @@
+"""Evaluates the contacts of a run from what FreeFEM has recorded in contacts.bin: a row of contacts.csv
+for every interval of contact of a contact pair, and the restitution and angles of the whole run.
+
+The normal n of an interval is the direction of its normal impulse; of circles and spheres it is that of the
+first and the last step, and of two about their centres of mass the line between these. The velocity jump
+is the impulse over the reduced mass of the pair. Numbers without a meaning are None:
+
+- separation, slip_after, angle_out and all restitutions if the contact is not over;
+- angles, all restitutions and impulse_ratio without one normal: the impulse along n is below 0.99 of the
+  impulse, as in a concave obstacle;
+- restitutions if the interval is no impact: the approach is below a quarter of the velocity jump, so most
+  of the impulse is that of weight, vibration or other contact pairs, or the pair does not separate;
+- restitution_tangential and angles if slip_before or the speed of the centres is below a twentieth of
+  the velocity jump, and so has no direction.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .fields import read_arrays
+
+__all__ = [
+    "CONTACT_COLUMNS",
+    "RECORDED",
+    "RUN_NUMBERS",
+    "THRESHOLD",
+    "Interval",
+    "Motion",
+    "along",
+    "impulse_ratio",
+    "intervals_of",
+    "is_impact",
+    "of_run",
+    "ratio",
+    "thresholds",
+    "write_contacts",
+]
+
+RECORDED = "contacts.bin"  # written by edp/core/run/contacts.idp
+THRESHOLD = 0.01  # of the largest force, for thresholded contact times
+SLIGHTEST, DRIVEN, STEADY = (
+    0.05,
+    0.25,
+    0.99,
+)  # shares of the velocity jump, and of the impulse (above)
+SAME = "likewise"
+# unit and meaning of the columns of contacts.csv; an empty meaning is that of the summary
+CONTACT_COLUMNS = {
+    "body": ("", "number of the body, from 1"),
+    "partner": ("", "k: body k; -k: obstacle k"),
+    "start": ("s", "first point in contact"),
+    "end": ("s", "last point out of contact"),
+    "over": ("", "0: still in contact at the end of the run"),
+    "time": ("s", "end - start"),
+    "thresholded_time": ("s", "between 1 % of the largest force of the interval"),
+    "impulse": ("", ""),
+    "impulse_x": ("", ""),
+    "impulse_y": ("", ""),
+    "impulse_z": ("", ""),
+    "peak_force": ("", ""),
+    "peak_time": ("s", "middle of the step with the largest mean force"),
+    "normal_x": ("1", "direction of the normal impulse, towards the body"),
+    "normal_y": ("1", SAME),
+    "normal_z": ("1", SAME),
+    "approach": (
+        "m/s",
+        "normal velocity to the counter-body before contact, of the rigid motions at the first contact",
+    ),
+    "separation": ("m/s", "the same after contact"),
+    "slip_before": ("m/s", "velocity along the counter-body before contact"),
+    "slip_after": ("m/s", "velocity along it in the direction of slip_before, after contact"),
+    "restitution": ("", ""),
+    "restitution_poisson": ("1", "impulse during separation over impulse during approach"),
+    "restitution_energetic": (
+        "1",
+        "root of the work of the normal force during separation over that during approach",
+    ),
+    "restitution_tangential": ("", ""),
+    "impulse_ratio": ("", ""),
+    "angle_in": ("", ""),
+    "angle_out": ("", ""),
+    "friction_work": ("", ""),
+    "creep_work": ("", ""),
+    "slip_work": ("", ""),
+    "translation_energy": ("", ""),
+    "rotation_energy": ("", ""),
+    "vibration_energy": ("", ""),
+    "viscous_work": (
+        "J/m",
+        "energy that viscosity and relaxation took of all bodies from start to end, whole steps",
+    ),
+}
+# unit and meaning of the numbers of summary.json that are evaluated here. They are those of the only contact pair of the run, from before
+# its first to after its last interval, and None if there are several pairs or impacts.
+RUN_NUMBERS = {
+    "thresholded_contact_time": ("s", "between the crossings of 1 % of the largest force"),
+    "bounces": (
+        "",
+        "impacts that are over: intervals of contact with a restitution (contacts.csv)",
+    ),
+    "restitution": (
+        "1",
+        "normal velocity after over that before contact, of the rigid motion of the point of first contact; null unless it is of one impact "
+        "that is over, along one normal, with an approach of at least a quarter of impulse over reduced mass",
+    ),
+    "restitution_tangential": (
+        "1",
+        "minus the slip after over the slip before contact, at that point; null if the slip before is less than a twentieth of impulse over reduced mass",
+    ),
+    "impulse_ratio": (
+        "1",
+        "impulse along the counter-body over that across; null if the normal turns",
+    ),
+    "angle_in": (
+        "degrees",
+        "of the velocity of the centre to the surface before contact, 90: along the normal; null if the normal turns or that velocity is less than "
+        "a twentieth of impulse over reduced mass",
+    ),
+    "angle_out": ("degrees", "the same after contact"),
+}
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Velocities [m/s] of a body relative to its counter-body before or after an interval: along the
+    normal, at the point of first contact (`normal`) and of the centres (`centres_normal`), and their
+    size (`centres_speed`); along the surface, at that point (`slip`) and of the centres
+    (`centres_slip`), (3,); the normal `n` (3,).
+    """
+
+    normal: float
+    centres_normal: float
+    centres_speed: float
+    slip: np.ndarray
+    centres_slip: np.ndarray
+    n: np.ndarray
+
+
+class Interval:
+    """One interval of contact: `rows` (steps, 36) and `head` (12,) as recorded, the reduced mass
+    [kg/m], whether the integrator takes forces at the ends of steps (`means_of_ends`), and whether
+    there is friction.
+    """
+
+    def __init__(
+        self,
+        rows: np.ndarray,
+        head: np.ndarray,
+        pair: Mapping[str, Any],
+        reduced: float,
+        means_of_ends: bool,
+        friction: bool,
+    ):
+        self.pair, self.rows = pair, rows
+        self.start, self.end, self.over = head[1], head[2], bool(head[3])
+        self.energies, self.viscous_work = head[4:7], head[7]
+        self.radii, self.arms = head[8:10], head[10:12]
+        self.step, self.middle = rows[:, 2], rows[:, 1]
+        self.force, self.all, self.friction = self._forces(means_of_ends)
+        impulses = self.force * self.step
+        self.impulse = float(impulses.sum())
+        self.total = self.step @ self.all
+        self.tangential = self.step @ self.friction if friction else np.zeros(3)
+        self.normal_impulse = impulses @ rows[:, 6:9]
+        size = float(np.linalg.norm(self.normal_impulse))
+        self.normal = self.normal_impulse / size if size > 0 else self.normal_impulse
+        self.jump = self.impulse / reduced
+        self.peak = max(0.0, float(self.force.max()))
+        # steps with a tenth of the peak: single points have other normals
+        firm = np.flatnonzero(self.force >= 0.1 * self.peak)
+        self.before = self._motion(0, 0, firm[0])
+        self.after = self._motion(len(rows) - 1, 1, firm[-1])
+        self.straight = size > 0 and size >= STEADY * self.impulse
+        self.impact = is_impact(self.over and self.straight, self.before, self.after, self.jump)
+        self.phase_impulse, self.phase_work = self._phases(impulses)
+
+    def _forces(self, means_of_ends: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Means over each step: size of the normal resultant (steps,), all forces and friction (steps, 3)."""
+        force, total = self.rows[:, 3].copy(), self.rows[:, 9:12].copy()
+        friction = total - force[:, None] * self.rows[:, 6:9]
+        if means_of_ends:
+            for values in (force, total, friction):
+                values[1:] += values[:-1].copy()
+                values *= 0.5
+        return force, total, friction
+
+    def _motion(self, row: int, after: int, firm: int) -> Motion:
+        """The motion before the first step (`after` 0) or after the last (1). Of circles and spheres the normal is
+        that of step `firm`, of two about their centres of mass the line between these.
+        """
+        rows = self.rows
+        centres, velocity, rim, line = (
+            rows[row, k + 3 * after : k + 3 * after + 3] for k in (12, 18, 24, 30)
+        )
+        n = self.normal
+        body, other = self.pair["body"], self.pair["counter_body"]
+        if self.radii[0] != 0 and (other < 0 or self.radii[1] != 0):
+            n = rows[firm, 6:9]
+            if other >= 0 and other != body and self.arms.sum() == 0:
+                n = line / (np.copysign(1.0, n @ line) * np.linalg.norm(line))
+        return Motion(
+            float(n @ velocity),
+            float(n @ centres),
+            float(np.linalg.norm(centres)),
+            velocity - (n @ velocity) * n + np.cross(rim, n),
+            centres - (n @ centres) * n,
+            n,
+        )
+
+    def _phases(self, impulses: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Normal impulse (2,), and work of the normal force on the body, lost and gained (2,), while the pair approaches (0)
+        and while it separates (1). A step in which the normal velocity changes its sign belongs to both.
+        """
+        n = self.rows[:, 6:9]
+        before, after = (np.einsum("ij,ij->i", self.rows[:, k : k + 3], n) for k in (18, 21))
+        turns = before * after < 0
+        share = np.where(turns, before / np.where(turns, before - after, 1.0), 1.0)
+        approaches = before < 0
+        impulse, work = np.zeros(2), np.zeros(2)
+        first = (
+            np.where(approaches, -1, 1)
+            * impulses
+            * np.where(turns, share * before, before + after)
+            / 2
+        )
+        second = np.where(
+            turns, np.where(approaches, 1, -1) * impulses * (1 - share) * after / 2, 0.0
+        )
+        for phase, mine in ((0, approaches), (1, ~approaches)):
+            impulse[phase] += (share * impulses)[mine].sum() + ((1 - share) * impulses)[~mine].sum()
+            work[phase] += first[mine].sum() + second[~mine].sum()
+        return impulse, work
+
+    def row(self) -> dict[str, float | None]:
+        """The columns of contacts.csv."""
+        least, before, after = SLIGHTEST * self.jump, self.before, self.after
+        slip_after = along(before.slip, after.slip, before.n, after.n, 1e-9 * self.jump)
+        slipped = along(
+            before.centres_slip, after.centres_slip, before.n, after.n, 1e-9 * self.jump
+        )
+        slip = float(np.linalg.norm(before.slip))
+        first, last = thresholds(
+            self.middle, self.step, self.force, self.start, self.end, self.over
+        )
+        work, creep = float(self.rows[:, 4].sum()), float(self.rows[:, 5].sum())
+        energetic = ratio(self.phase_work[1], self.phase_work[0], self.impact)
+        other = self.pair["counter_body"]
+        values = [
+            1 + self.pair["body"],
+            other if other < 0 else other + 1,
+            self.start,
+            self.end,
+            int(self.over),
+            self.end - self.start,
+            last - first,
+            self.impulse,
+            *self.total,
+            self.peak,
+            self.middle[self.force.argmax()] if self.peak > 0 else 0.0,
+            *self.normal,
+            -before.normal,
+            after.normal if self.over else None,
+            slip,
+            slip_after if self.over else None,
+            ratio(after.normal, -before.normal, self.impact),
+            ratio(self.phase_impulse[1], self.phase_impulse[0], self.impact),
+            math.sqrt(energetic) if energetic is not None and energetic >= 0 else None,
+            ratio(-slip_after, slip, self.over and self.straight and slip > least),
+            impulse_ratio(self.normal_impulse, self.tangential) if self.straight else None,
+            _steepness(-before.centres_normal, float(np.linalg.norm(before.centres_slip)))
+            if self.straight and before.centres_speed > least
+            else None,
+            _steepness(after.centres_normal, slipped)
+            if self.over and self.straight and after.centres_speed > least
+            else None,
+            work,
+            creep,
+            work - creep,
+            *self.energies,
+            self.viscous_work,
+        ]
+        return dict(zip(CONTACT_COLUMNS, values, strict=True))
+
+
+def intervals_of(folder: Path, diagnostics: Mapping[str, Any]) -> list[Interval]:
+    """The intervals of the run in `folder` in the order in which they ended; those that bore no load are left out."""
+    arrays, _ = read_arrays(folder / RECORDED)
+    rows, heads = arrays["rows"].reshape(-1, 36), arrays["intervals"].reshape(-1, 12)
+    bodies, found = diagnostics["bodies"], []
+    for k in np.argsort(heads[:, 2], kind="stable"):
+        own = rows[rows[:, 0] == k]
+        if not len(own):
+            continue
+        pair = diagnostics["pairs"][int(heads[k, 0])]
+        mass = bodies[pair["body"]]["mass"]
+        if pair["counter_body"] >= 0:
+            mass *= bodies[pair["counter_body"]]["mass"] / (
+                mass + bodies[pair["counter_body"]]["mass"]
+            )
+        found.append(
+            Interval(
+                own,
+                heads[k],
+                pair,
+                mass,
+                bool(diagnostics["means_of_ends"]),
+                bool(diagnostics["friction"]),
+            )
+        )
+    return found
+
+
+def write_contacts(path: Path, intervals: list[Interval], damped: bool) -> None:
+    """Writes contacts.csv; a number without a meaning is an empty cell."""
+    names = [name for name in CONTACT_COLUMNS if damped or name != "viscous_work"]
+    lines = [",".join(names)]
+    for interval in intervals:
+        row = interval.row()
+        lines.append(",".join("" if row[name] is None else f"{row[name]:.12g}" for name in names))
+    path.write_text("\n".join(lines) + "\n")
+
+
+def of_run(intervals: list[Interval]) -> dict[str, float | None]:
+    """The numbers RUN_NUMBERS of summary.json but thresholded_contact_time."""
+    pairs = {id(interval.pair) for interval in intervals}
+    jump, size = sum(one.jump for one in intervals), sum(one.impulse for one in intervals)
+    normal, friction = (
+        sum((getattr(one, name) for one in intervals), np.zeros(3))
+        for name in ("normal_impulse", "tangential")
+    )
+    impacts, last = 0, None
+    for one in intervals:
+        if last is None or (last.after.normal > 0 and -one.before.normal > DRIVEN * one.jump):
+            impacts += 1
+        last = one
+    along_one = (
+        len(pairs) == 1
+        and 0 < np.linalg.norm(normal)
+        and bool(np.linalg.norm(normal) >= STEADY * size)
+    )
+    found: dict[str, float | None] = dict.fromkeys(
+        name for name in RUN_NUMBERS if name != "thresholded_contact_time"
+    )
+    found["bounces"] = sum(one.impact for one in intervals)
+    if last is None or not along_one:
+        return found
+    before, after, least = intervals[0].before, last.after, SLIGHTEST * jump
+    single = impacts == 1 and last.over
+    slip = float(np.linalg.norm(before.slip))
+    slip_after = along(before.slip, after.slip, before.n, after.n, 0.0)
+    found["restitution"] = ratio(
+        after.normal, -before.normal, is_impact(single, before, after, jump)
+    )
+    found["restitution_tangential"] = ratio(-slip_after, slip, single and slip > least)
+    found["impulse_ratio"] = impulse_ratio(normal, friction)
+    if before.centres_speed > least:
+        found["angle_in"] = _steepness(
+            -before.centres_normal, float(np.linalg.norm(before.centres_slip))
+        )
+    if single and after.centres_speed > least:
+        found["angle_out"] = _steepness(
+            after.centres_normal,
+            along(before.centres_slip, after.centres_slip, before.n, after.n, 1e-9 * jump),
+        )
+    return found
+
+
+# ---- formulas
+
+
+def thresholds(
+    middle: np.ndarray,
+    step: np.ndarray,
+    force: np.ndarray,
+    start: float,
+    end: float,
+    over: bool,
+    threshold: float = THRESHOLD,
+) -> tuple[float, float]:
+    """The first and the last instant [s] at which the force passes `threshold` times its maximum, or the end if it is above and the contact
+    is not over. `middle` and `step` (n,) [s] are the steps from the first to the last with load, `force` (n,) their mean forces. The force is
+    linear between the middles, and zero at start and end; in the steps of these it acts in a share of the step only.
+    """
+    t, f = np.array([start, *middle, end]), np.array([0.0, *force, 0.0])
+    level = threshold * force.max()
+    after, before = t[1] + step[0] / 2, t[-2] - step[-1] / 2
+    if t[1] - step[0] / 2 < start < after:
+        f[1] *= step[0] / (after - start)
+        t[1] = (start + after) / 2
+    if over and before < end < t[-2] + step[-1] / 2:
+        f[-2] *= step[-1] / (end - before)
+        t[-2] = (before + end) / 2
+    above = np.flatnonzero(f[1:-1] >= level) + 1
+    a, b = above[0], above[-1]
+    first = max(start, t[a] - (t[a] - t[a - 1]) * (f[a] - level) / (f[a] - f[a - 1]))
+    last = end
+    if b < len(middle) or over:
+        last = min(end, t[b] + (t[b + 1] - t[b]) * (f[b] - level) / (f[b] - f[b + 1]))
+    return float(first), float(last)
+
+
+def is_impact(over: bool, before: Motion, after: Motion, jump: float) -> bool:
+    """Whether an interval that is over is an impact: driven by its approach, and ended by a separation."""
+    return bool(over and -before.normal > DRIVEN * jump and after.normal >= 0)
+
+
+def along(
+    first: np.ndarray, second: np.ndarray, n: np.ndarray, n_after: np.ndarray, least: float
+) -> float:
+    """A velocity `second` along the surface in the direction of `first`, turned as the normal turns from `n` to
+    `n_after` (Rodrigues); its size if `first` is smaller than `least` and so has no direction.
+    """
+    size = float(np.linalg.norm(first))
+    if size < least or size == 0:
+        return float(np.linalg.norm(second))
+    about = np.cross(n, n_after)
+    once = np.cross(about, first)
+    turned = first + once + np.cross(about, once) / (1 + n @ n_after)
+    return float(turned @ second) / size
+
+
+def impulse_ratio(normal: np.ndarray, friction: np.ndarray) -> float | None:
+    """The impulse along the counter-body over that across it; of the friction impulse (3,) its share along `normal` (3,) counts as normal."""
+    size = float(np.linalg.norm(normal))
+    inward = float(friction @ normal) / max(size, 1e-300)
+    tangential = friction - inward / max(size, 1e-300) * normal
+    return ratio(float(np.linalg.norm(tangential)), size + inward, size > 0)
+
+
+def ratio(above: float, below: float, defined: bool) -> float | None:
+    """above / below if it is defined and `below` is positive, else None."""
+    return float(above / below) if defined and below > 0 else None
+
+
+def _steepness(normal: float, along_surface: float) -> float:
+    """The angle of a velocity to the surface [deg]."""
+    return math.degrees(math.atan2(normal, along_surface))

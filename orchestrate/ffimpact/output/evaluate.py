@@ -1,0 +1,56 @@
+"""Evaluates the record of a run that FreeFEM has left in a folder: contacts.csv, the fields, and last
+summary.json, or failure.json of a run that failed.
+"""
+
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+from . import contacts, warnings
+from .fields import write_fields
+from .results import read_history, read_json, reading, write_json
+
+__all__ = ["RECORD", "evaluate"]
+
+RECORD = "record.json"  # written last by edp/core/run/summary.idp
+
+
+def evaluate(folder: Path) -> None:
+    """Evaluates the record in `folder` and removes it; does nothing if there is none. Raises Unreadable if
+    a file of the record is damaged.
+    """
+    failed = read_json(folder / "failure.json") if not (folder / RECORD).exists() else {}
+    if "diagnostics" not in failed and not (folder / RECORD).exists():
+        return
+    path = folder / ("failure.json" if failed else RECORD)
+    with reading(path):
+        record = failed or json.loads(path.read_text("utf-8"))
+        facts = record["diagnostics"]
+    write_fields(folder)
+    intervals = contacts.intervals_of(folder, facts)
+    contacts.write_contacts(folder / "contacts.csv", intervals, bool(facts["damped"]))
+    evidence = warnings.Evidence(record, read_history(folder), intervals)
+    summary = _summary(evidence)
+    if failed:
+        write_json(path, summary)
+    else:
+        write_json(folder / "summary.json.part", summary)
+        os.replace(folder / "summary.json.part", folder / "summary.json")
+        path.unlink()
+    (folder / contacts.RECORDED).unlink()
+
+
+def _summary(evidence: warnings.Evidence) -> dict[str, Any]:
+    """The numbers and sentences of a run; without sentences if it failed, as its message says what to know."""
+    crossings = evidence.thresholds()
+    lasted = crossings[1] - crossings[0] if crossings else None
+    ok = evidence.record["status"] == "ok"
+    sentences = warnings.sentences(evidence) if ok else {"warnings": [], "notes": []}
+    found = {"thresholded_contact_time": lasted} | contacts.of_run(list(evidence.intervals))
+    summary: dict[str, Any] = {}
+    for name, value in evidence.record.items():
+        summary |= sentences if name == "diagnostics" else {name: value}
+        if name == "contact_time":
+            summary |= found
+    return summary
