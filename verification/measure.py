@@ -17,6 +17,7 @@ from ffimpact.freefem import freefem
 from ffimpact.input import dimension, parameters
 from ffimpact.input.parameters import ROOT, Value
 from ffimpact.output import results
+from ffimpact.output.evaluate import evaluate
 from ffimpact.scene import read as read_scene
 from ffimpact.scenes import assembly
 
@@ -58,6 +59,7 @@ def disc(folder: Path, script: str = "disc-plane", **given: Value | Path) -> Out
 
 def outcome(folder: Path) -> Outcome:
     """The finished run in `folder`."""
+    evaluate(folder)
     return Outcome(results.read_summary(folder), results.read_history(folder))
 
 

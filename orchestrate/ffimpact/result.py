@@ -21,6 +21,7 @@ from .failure import BadInput, NotInstalled, Unreadable, unknown
 from .input.dimension import per_metre
 from .output import vtu
 from .output.errors import errors
+from .output.evaluate import evaluate
 from .output.meanings import describe_results
 from .output.results import Record, numbers, read_record, read_summary
 from .places import shown
@@ -253,9 +254,10 @@ class Fields(Sequence["pyvista.UnstructuredGrid"]):
 
 
 def load(folder: str | Path) -> Result:
-    """Returns the finished run in a folder. Raises Unreadable, with a message of one line, if there
-    is none.
+    """Returns the finished run in a folder. The record of a run of an .edp script is evaluated first.
+    Raises Unreadable, with a message of one line, if there is no finished run.
     """
+    evaluate(Path(folder))
     return Result(folder)
 
 

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from ffimpact.freefem import freefem
 from ffimpact.input import parameters
+from ffimpact.output.evaluate import evaluate
 
 COARSE = ("-law", "neohookean", "-nu", "0.4", "-accuracy", "0.4")
 
@@ -18,4 +19,6 @@ def start(*flags: str, cwd: Path, script: str = "disc-plane", **options) -> subp
 def call(*flags: str, cwd: Path, **options) -> tuple[int, str, str]:
     process = start(*flags, cwd=cwd, **options)
     out, error = process.communicate(timeout=60)
+    if "-out" in flags[:-1]:
+        evaluate(cwd / flags[flags.index("-out") + 1])
     return process.returncode, out, error
