@@ -1,5 +1,5 @@
-"""Evaluates the record of a run that FreeFEM has left in a folder: contacts.csv, the fields, and last
-summary.json, or failure.json of a run that failed.
+"""Evaluates the record of a run that FreeFEM has left in a folder: contacts.csv, modes.csv, the fields,
+and last summary.json, or failure.json of a run that failed.
 """
 
 import json
@@ -9,6 +9,7 @@ from typing import Any
 
 from . import contacts, warnings
 from .fields import write_fields
+from .modes import write_modes
 from .results import read_history, read_json, reading, write_json
 
 __all__ = ["RECORD", "evaluate"]
@@ -28,6 +29,7 @@ def evaluate(folder: Path) -> None:
         record = failed or json.loads(path.read_text("utf-8"))
         facts = record["diagnostics"]
     write_fields(folder)
+    write_modes(folder)
     intervals = contacts.intervals_of(folder, facts)
     contacts.write_contacts(folder / "contacts.csv", intervals, bool(facts["damped"]))
     evidence = warnings.Evidence(record, read_history(folder), intervals)

@@ -43,6 +43,7 @@ RECORDS = (
     "modes.csv",
     "states.bin",
     "contacts.bin",
+    "modes.bin",
     "record.json",
     "summary.json",
 )
