@@ -9,10 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ffimpact.output.results import read_history, read_summary
-
 from .case import FRONT, Row
-from .measure import measure
+from .measure import measure, outcome
 
 # Density [kg/m3], width [m] and length [m] of the falling block. impact.edp has the same width.
 DENSITY, WIDTH, LENGTH = 1722, 2e-3, 0.05
@@ -26,7 +24,8 @@ def bar(folder: Path, elements: int) -> Iterator[Row]:
     # The end of the bar chatters on a nearly rigid plane.
     measure("impact", nu=0, radius=LENGTH, density=DENSITY, speed=speed, young=young, penalty=1e12, mesh_size=LENGTH / elements,
             dt=LENGTH / elements / c / 2, chatter="continue", out=folder)
-    summary, history = read_summary(folder), read_history(folder)
+    found = outcome(folder)
+    summary, history = found.summary, found.history
     time = summary["contact_time"]
     plateau = (history["t"] > 0.1 * time) & (history["t"] < 0.9 * time)
     force = np.average(history["normal_force"][plateau], weights=history["dt"][plateau])
@@ -43,7 +42,7 @@ def rigid(folder: Path, exponent: float, speed: float, dt: float) -> Iterator[Ro
     """
     measure("impact", nu=0, radius=LENGTH, density=DENSITY, speed=speed, young=1e12, penalty=1e7, exponent=exponent,
             mesh_size=LENGTH / 4, dt=dt, out=folder)
-    summary, power = read_summary(folder), 1 / (exponent + 1)
+    summary, power = outcome(folder).summary, 1 / (exponent + 1)
     depth = (DENSITY * LENGTH * speed**2 / (2 * power * 1e7)) ** power
     time = 2 * math.sqrt(math.pi) * math.gamma(1 + power) / math.gamma(0.5 + power) * depth / speed
     yield Row(f"m = {exponent:g}: depth", dt, summary["max_penetration"], depth, 2)

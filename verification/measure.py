@@ -5,6 +5,7 @@ The tests and `make verify` use it.
 """
 
 import re
+import shutil
 import tempfile
 from dataclasses import dataclass
 from functools import cache
@@ -53,6 +54,8 @@ def measure(script: str, **given: Value | Path) -> dict[str, float]:
 
 def disc(folder: Path, script: str = "disc-plane", **given: Value | Path) -> Outcome:
     """A run of edp/<script>.edp with these flags in `folder`."""
+    for name in ("summary.json", "record.json"):  # of an earlier run in the folder
+        (folder / name).unlink(missing_ok=True)
     _start(f"edp/{script}.edp", given | {"out": folder})
     return outcome(folder)
 
@@ -67,6 +70,7 @@ def bodies(folder: Path, tables: dict, **given: Value | Path) -> Outcome:
     """A run of the script of bodies for the scene in these tables (ffimpact.scene), with further
     flags, in `folder`/run."""
     out = folder / "run"
+    shutil.rmtree(out, ignore_errors=True)
     _start(f"edp/{dimension.of(tables).script}.edp", prepared(folder, tables) | given | {"out": out})
     return outcome(out)
 
@@ -75,6 +79,7 @@ def solid_bodies(folder: Path, scene: solids.Scene, **given: Value | Path) -> Ou
     """A run of edp/bodies-3d.edp for a scene in three dimensions (solids.py), with further flags,
     in `folder`/run."""
     out = folder / "run"
+    shutil.rmtree(out, ignore_errors=True)
     _start("edp/bodies-3d.edp", solids.write(scene, folder) | given | {"out": out})
     return outcome(out)
 

@@ -257,7 +257,8 @@ def load(folder: str | Path) -> Result:
     """Returns the finished run in a folder. The record of a run of an .edp script is evaluated first.
     Raises Unreadable, with a message of one line, if there is no finished run.
     """
-    evaluate(Path(folder))
+    if isinstance(folder, str | Path):
+        evaluate(Path(folder))
     return Result(folder)
 
 

@@ -19,7 +19,7 @@ def test_histories_are_equal_to_the_byte_with_and_without_it(tmp_path):
         before = os.times()
         freefem.find().call("edp/disc-plane.edp", "-accuracy", "0.05", "-out", str(tmp_path / name), env=environment, check=True)
         after = os.times()
-        summary = json.loads((tmp_path / name / "summary.json").read_text())
+        summary = json.loads((tmp_path / name / "record.json").read_text())
         used = after.children_user + after.children_system - before.children_user - before.children_system
         assert summary["quick_clock"] == (name == "quick") and summary["cpu_seconds"] == pytest.approx(used, abs=0.1)
         histories.append((tmp_path / name / "history.csv").read_bytes())
@@ -37,4 +37,4 @@ def test_it_serves_on_a_path_that_cannot_be_preloaded_by_its_name(monkeypatch, t
     program = replace(program, environment=environment | freefem.quick_clock(environment))
     assert len(program.preloaded) == 1
     program.call("edp/disc-plane.edp", "-accuracy", "0.2", "-out", str(tmp_path / "out"), check=True)
-    assert json.loads((tmp_path / "out/summary.json").read_text())["quick_clock"] == 1
+    assert json.loads((tmp_path / "out/record.json").read_text())["quick_clock"] == 1

@@ -12,6 +12,7 @@ from ffimpact import scene
 from ffimpact.freefem import freefem
 from ffimpact.input.parameters import ROOT
 from ffimpact.mesh import gmsh_file, mesh
+from ffimpact.output.evaluate import evaluate
 from ffimpact.running import run
 from ffimpact.scene import read as read_scene
 
@@ -129,6 +130,7 @@ def test_angles_of_a_body_that_comes_along_the_normal(tmp_path, spin):
     angle afterwards is on the side to which it leaves."""
     flags = f"-law neohookean -speed 4 -spin {spin} -friction_static 0.3 -accuracy 0.1 -fields 0 -out out".split()
     freefem.find().call(ROOT / "edp/disc-plane.edp", *flags, cwd=tmp_path, check=True)
+    evaluate(tmp_path / "out")
     row, s = pd.read_csv(tmp_path / "out/contacts.csv").iloc[0], json.loads((tmp_path / "out/summary.json").read_text())
     assert abs(s["rebound_vx"]) > 1
     assert s["angle_out"] == pytest.approx(math.degrees(math.atan2(s["rebound_vy"], abs(s["rebound_vx"]))), rel=1e-6) == pytest.approx(row.angle_out)

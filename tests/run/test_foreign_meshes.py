@@ -16,6 +16,7 @@ from ffimpact.freefem import freefem
 from ffimpact.freefem.describe import describe
 from ffimpact.mesh import gmsh_file, mesh
 from ffimpact.output import results
+from ffimpact.output.evaluate import evaluate
 from ffimpact.running import run
 from tests.support.foreign_meshes import DENSITY, RADIUS, SETTINGS, SIZE, agree, go, moved, shaped
 from tests.support.triangles import areas
@@ -342,6 +343,7 @@ def test_body_that_is_set_down_is_in_touch_at_once(direct, tmp_path, accuracy):
     between plane and point."""
     process = direct("-speed", "0", "-gravity", "9.81", "-accuracy", str(accuracy), "-end_time", "0.01", "-out", str(tmp_path / "out"))
     assert process.returncode == 0, process.stderr
+    evaluate(tmp_path / "out")
     summary, history = results.read_summary(tmp_path / "out"), results.read_history(tmp_path / "out")
     assert 0 <= summary["contact_start"] < 1e-12 and history["normal_force"][1] > 0
     assert abs(history["max_penetration"][0]) < 1e-15 and summary["energy_drift"] < 1e-8

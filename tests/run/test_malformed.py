@@ -119,7 +119,8 @@ def test_path_of_a_mesh(capsys, kind):
     """The path of a mesh that cannot be a file, or is not a mesh."""
     path = special(kind)
     by_python(capsys, "mesh: ", "run", "disc-normal", "--mesh", path, "--out", "a/out")
-    directly("mesh: the file 'nowhere' cannot be read" if kind == "nowhere" else "mesh: ", "-mesh", path, "-out", "a/out")
+    if kind != "pipe":  # FreeFEM waits for its other end
+        directly("mesh: the file 'nowhere' cannot be read" if kind == "nowhere" else "mesh: ", "-mesh", path, "-out", "a/out")
 
 
 @pytest.mark.few(4)
@@ -132,7 +133,8 @@ def test_path_of_results(capsys, kind):
         Path(path, "thesis.tex").write_text("years of work")
     if kind != "dangling":  # Python makes the target of the link
         by_python(capsys, ".*(--out|folder)", "run", "disc-normal", "--set", "accuracy=0.4", "--out", path, code=14)
-    directly("out: ", "-accuracy", "0.4", "-out", path, code=14)
+    if kind != "folder":  # a direct run leaves files of others where they are
+        directly("out: ", "-accuracy", "0.4", "-out", path, code=14)
 
 
 @pytest.mark.few(6)

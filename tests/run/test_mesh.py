@@ -82,7 +82,7 @@ def test_freefem_reads_it(tmp_path):
     assert length[m.labels == 2].sum() == pytest.approx(0.1, rel=1e-12)
 
 
-# Radius [m]; mesh_size and contact_mesh_size over the radius; touchArc; symmetry.
+# Radius [m]; mesh_size and contact_mesh_size over the radius; contactArc; symmetry.
 OWN = [
     pytest.param((0.05, 0.32, 2e-3, 0.015, "half"), id="half, slow impact"),
     pytest.param((0.05, 0.32, 2e-3, 0.015, "full"), id="full, slow impact"),
@@ -102,7 +102,7 @@ def own(request, tmp_path_factory):
     folder, core = tmp_path_factory.mktemp("own"), parameters.ROOT / "edp/core"
     rooms = "".join(f'include "{core}/{room}.idp"\n' for room in ("law/laws", "input/parameters", "input/mesh-file", "input/outline", "input/sizes"))
     (folder / "own.edp").write_text(
-        f'verbosity = 0;\nload "lapack"\nstring script = "own";\n{rooms}touchArc = {arc!r};\ninclude "{core}/input/meshes.idp"\n'
+        f'verbosity = 0;\nload "lapack"\nstring script = "own";\n{rooms}contactArc = {arc!r};\ninclude "{core}/input/meshes.idp"\n'
         f'ofstream out("{folder}/own.msh");\nout.precision(17);\nout << Th.nv << " " << Th.nt << " " << Th.nbe << endl;\n'
         'for (int i = 0; i < Th.nv; i++) out << Th(i).x / radius << " " << Th(i).y / radius << " 0" << endl;\n'
         'for (int t = 0; t < Th.nt; t++) out << Th[t][0] + 1 << " " << Th[t][1] + 1 << " " << Th[t][2] + 1 << " 0" << endl;\n'

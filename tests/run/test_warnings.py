@@ -9,6 +9,7 @@ import pandas as pd
 import pytest
 
 from ffimpact import scene
+from ffimpact.__main__ import main
 from ffimpact.freefem import freefem
 from ffimpact.output import notes, results
 from ffimpact.report import drawing, report
@@ -193,14 +194,12 @@ def test_no_contact_no_contact_time(disc):
     assert outcome.summary["contact_time"] is outcome.summary["thresholded_contact_time"] is None and [each.split(":")[0] for each in outcome.summary["warnings"]] == ["no contact"]
 
 
-def test_direct_run_prints_its_warnings(tmp_path):
-    """FreeFem++ prints lines `warning` and `note` at its end, with the fact of the sentences in
-    summary.json."""
+def test_evaluation_of_a_direct_run_prints_its_warnings(tmp_path, capsys):
+    """The script prints none. `ffimpact evaluate` prints the warnings of summary.json on stderr."""
     process = freefem.find().call("edp/disc-plane.edp", "-accuracy", "0.1", "-penalty", "1e8", "-out", str(tmp_path / "out"), timeout=120)
-    for kind, least in (("warning", 2), ("note", 1)):
-        said, told = re.findall(rf"^{kind} +(.*)$", process.stdout, re.MULTILINE), results.read_summary(tmp_path / "out")[f"{kind}s"]
-        assert len(said) >= least and said == [notes.line("", sentence) for sentence in told]
-    assert all(len(line) <= 100 for line in process.stdout.splitlines() if re.match("warning|note", line))
+    assert "warning" not in process.stdout and main(["evaluate", str(tmp_path / "out")]) == 0
+    told = results.read_summary(tmp_path / "out")["warnings"]
+    assert len(told) > 1 and capsys.readouterr().err.splitlines() == [f"ffimpact: warning: {sentence}" for sentence in told]
 
 
 def test_the_report_shows_them_and_figures_do_not(tmp_path):

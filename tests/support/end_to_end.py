@@ -3,13 +3,17 @@
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 from ffimpact.freefem import freefem
 from ffimpact.input import parameters
+from ffimpact.output.evaluate import evaluate
 
 
 def direct(*flags: str) -> subprocess.CompletedProcess:
-    return freefem.find().call("edp/disc-plane.edp", *flags, timeout=120)
+    process = freefem.find().call("edp/disc-plane.edp", *flags, timeout=120)
+    evaluate(Path(flags[flags.index("-out") + 1]))
+    return process
 
 
 # ---- failures of real runs, through the command line

@@ -1,17 +1,20 @@
-"""Evaluates the contacts of a run from what FreeFEM has recorded in contacts.bin: a row of contacts.csv
-for every interval of contact of a contact pair, and the restitution and angles of the whole run.
+"""Evaluates the contacts of a run from what FreeFEM has recorded in contacts.bin: a row of
+contacts.csv for every interval of contact of a contact pair, and the restitution and angles of
+the whole run.
 
-The normal n of an interval is the direction of its normal impulse; of circles and spheres it is that of the
-first and the last step, and of two about their centres of mass the line between these. The velocity jump
-is the impulse over the reduced mass of the pair. Numbers without a meaning are None:
+The normal n of an interval is the direction of its normal impulse; of circles and spheres it is
+that of the first and the last step, and of two about their centres of mass the line between
+these. The velocity jump is the impulse over the reduced mass of the pair. Numbers without a
+meaning are None:
 
 - separation, slip_after, angle_out and all restitutions if the contact is not over;
-- angles, all restitutions and impulse_ratio without one normal: the impulse along n is below 0.99 of the
-  impulse, as in a concave obstacle;
-- restitutions if the interval is no impact: the approach is below a quarter of the velocity jump, so most
-  of the impulse is that of weight, vibration or other contact pairs, or the pair does not separate;
-- restitution_tangential and angles if slip_before or the speed of the centres is below a twentieth of
-  the velocity jump, and so has no direction.
+- angles, all restitutions and impulse_ratio without one normal: the impulse along n is below 0.99
+  of the impulse, as in a concave obstacle;
+- restitutions if the interval is no impact: the approach is below a quarter of the velocity jump,
+  so most of the impulse is that of weight, vibration or other contact pairs, or the pair does not
+  separate;
+- restitution_tangential and angles if slip_before or the speed of the centres is below a twentieth
+  of the velocity jump, and so has no direction.
 """
 
 import math
@@ -69,7 +72,8 @@ CONTACT_COLUMNS = {
     "normal_z": ("1", SAME),
     "approach": (
         "m/s",
-        "normal velocity to the counter-body before contact, of the rigid motions at the first contact",
+        "normal velocity to the counter-body before contact, of the rigid motions at the first "
+        "contact",
     ),
     "separation": ("m/s", "the same after contact"),
     "slip_before": ("m/s", "velocity along the counter-body before contact"),
@@ -95,7 +99,8 @@ CONTACT_COLUMNS = {
         "energy that viscosity and relaxation took of all bodies from start to end, whole steps",
     ),
 }
-# unit and meaning of the numbers of summary.json that are evaluated here. They are those of the only contact pair of the run, from before
+# unit and meaning of the numbers of summary.json that are evaluated here. They are those of the
+# only contact pair of the run, from before
 # its first to after its last interval, and None if there are several pairs or impacts.
 RUN_NUMBERS = {
     "thresholded_contact_time": ("s", "between the crossings of 1 % of the largest force"),
@@ -105,12 +110,15 @@ RUN_NUMBERS = {
     ),
     "restitution": (
         "1",
-        "normal velocity after over that before contact, of the rigid motion of the point of first contact; null unless it is of one impact "
-        "that is over, along one normal, with an approach of at least a quarter of impulse over reduced mass",
+        "normal velocity after over that before contact, of the rigid motion of the point of first "
+        "contact; null unless it is of one impact "
+        "that is over, along one normal, with an approach of at least a quarter of impulse over "
+        "reduced mass",
     ),
     "restitution_tangential": (
         "1",
-        "minus the slip after over the slip before contact, at that point; null if the slip before is less than a twentieth of impulse over reduced mass",
+        "minus the slip after over the slip before contact, at that point; null if the slip "
+        "before is less than a twentieth of impulse over reduced mass",
     ),
     "impulse_ratio": (
         "1",
@@ -118,7 +126,8 @@ RUN_NUMBERS = {
     ),
     "angle_in": (
         "degrees",
-        "of the velocity of the centre to the surface before contact, 90: along the normal; null if the normal turns or that velocity is less than "
+        "of the velocity of the centre to the surface before contact, 90: along the normal; null "
+        "if the normal turns or that velocity is less than "
         "a twentieth of impulse over reduced mass",
     ),
     "angle_out": ("degrees", "the same after contact"),
@@ -127,10 +136,10 @@ RUN_NUMBERS = {
 
 @dataclass(frozen=True)
 class Motion:
-    """Velocities [m/s] of a body relative to its counter-body before or after an interval: along the
-    normal, at the point of first contact (`normal`) and of the centres (`centres_normal`), and their
-    size (`centres_speed`); along the surface, at that point (`slip`) and of the centres
-    (`centres_slip`), (3,); the normal `n` (3,).
+    """Velocities [m/s] of a body relative to its counter-body before or after an interval: along
+    the normal, at the point of first contact (`normal`) and of the centres (`centres_normal`),
+    and their size (`centres_speed`); along the surface, at that point (`slip`) and of the
+    centres (`centres_slip`), (3,); the normal `n` (3,).
     """
 
     normal: float
@@ -180,7 +189,8 @@ class Interval:
         self.phase_impulse, self.phase_work = self._phases(impulses)
 
     def _forces(self, means_of_ends: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Means over each step: size of the normal resultant (steps,), all forces and friction (steps, 3)."""
+        """Means over each step: size of the normal resultant (steps,), all forces and friction "
+        "(steps, 3)."""
         force, total = self.rows[:, 3].copy(), self.rows[:, 9:12].copy()
         friction = total - force[:, None] * self.rows[:, 6:9]
         if means_of_ends:
@@ -190,8 +200,9 @@ class Interval:
         return force, total, friction
 
     def _motion(self, row: int, after: int, firm: int) -> Motion:
-        """The motion before the first step (`after` 0) or after the last (1). Of circles and spheres the normal is
-        that of step `firm`, of two about their centres of mass the line between these.
+        """The motion before the first step (`after` 0) or after the last (1). Of circles and
+        spheres the normal is that of step `firm`, of two about their centres of mass the line
+        between these.
         """
         rows = self.rows
         centres, velocity, rim, line = (
@@ -213,8 +224,9 @@ class Interval:
         )
 
     def _phases(self, impulses: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Normal impulse (2,), and work of the normal force on the body, lost and gained (2,), while the pair approaches (0)
-        and while it separates (1). A step in which the normal velocity changes its sign belongs to both.
+        """Normal impulse (2,), and work of the normal force on the body, lost and gained (2,),
+        while the pair approaches (0) and while it separates (1). A step in which the normal
+        velocity changes its sign belongs to both.
         """
         n = self.rows[:, 6:9]
         before, after = (np.einsum("ij,ij->i", self.rows[:, k : k + 3], n) for k in (18, 21))
@@ -288,7 +300,8 @@ class Interval:
 
 
 def intervals_of(folder: Path, diagnostics: Mapping[str, Any]) -> list[Interval]:
-    """The intervals of the run in `folder` in the order in which they ended; those that bore no load are left out."""
+    """The intervals of the run in `folder` in the order in which they ended; those that bore no "
+    "load are left out."""
     arrays, _ = read_arrays(folder / RECORDED)
     rows, heads = arrays["rows"].reshape(-1, 36), arrays["intervals"].reshape(-1, 12)
     bodies, found = diagnostics["bodies"], []
@@ -382,9 +395,11 @@ def thresholds(
     over: bool,
     threshold: float = THRESHOLD,
 ) -> tuple[float, float]:
-    """The first and the last instant [s] at which the force passes `threshold` times its maximum, or the end if it is above and the contact
-    is not over. `middle` and `step` (n,) [s] are the steps from the first to the last with load, `force` (n,) their mean forces. The force is
-    linear between the middles, and zero at start and end; in the steps of these it acts in a share of the step only.
+    """The first and the last instant [s] at which the force passes `threshold` times its maximum,
+    or the end if it is above and the contact is not over. `middle` and `step` (n,) [s] are the
+    steps from the first to the last with load, `force` (n,) their mean forces. The force is
+    linear between the middles, and zero at start and end; in the steps of these it acts in a
+    share of the step only.
     """
     t, f = np.array([start, *middle, end]), np.array([0.0, *force, 0.0])
     level = threshold * force.max()
@@ -405,15 +420,17 @@ def thresholds(
 
 
 def is_impact(over: bool, before: Motion, after: Motion, jump: float) -> bool:
-    """Whether an interval that is over is an impact: driven by its approach, and ended by a separation."""
+    """Whether an interval that is over is an impact: driven by its approach, and ended by a "
+    "separation."""
     return bool(over and -before.normal > DRIVEN * jump and after.normal >= 0)
 
 
 def along(
     first: np.ndarray, second: np.ndarray, n: np.ndarray, n_after: np.ndarray, least: float
 ) -> float:
-    """A velocity `second` along the surface in the direction of `first`, turned as the normal turns from `n` to
-    `n_after` (Rodrigues); its size if `first` is smaller than `least` and so has no direction.
+    """A velocity `second` along the surface in the direction of `first`, turned as the normal turns
+    from `n` to `n_after` (Rodrigues); its size if `first` is smaller than `least` and so has no
+    direction.
     """
     size = float(np.linalg.norm(first))
     if size < least or size == 0:
@@ -425,7 +442,8 @@ def along(
 
 
 def impulse_ratio(normal: np.ndarray, friction: np.ndarray) -> float | None:
-    """The impulse along the counter-body over that across it; of the friction impulse (3,) its share along `normal` (3,) counts as normal."""
+    """The impulse along the counter-body over that across it; of the friction impulse (3,) its "
+    "share along `normal` (3,) counts as normal."""
     size = float(np.linalg.norm(normal))
     inward = float(friction @ normal) / max(size, 1e-300)
     tangential = friction - inward / max(size, 1e-300) * normal

@@ -1,5 +1,5 @@
-"""Evaluates the record of a run that FreeFEM has left in a folder: contacts.csv, modes.csv, the fields,
-and last summary.json, or failure.json of a run that failed.
+"""Evaluates the record of a run that FreeFEM has left in a folder: contacts.csv, modes.csv, the
+fields, and last summary.json, or failure.json of a run that failed.
 """
 
 import json
@@ -18,8 +18,8 @@ RECORD = "record.json"  # written last by edp/core/run/summary.idp
 
 
 def evaluate(folder: Path) -> None:
-    """Evaluates the record in `folder` and removes it; does nothing if there is none. Raises Unreadable if
-    a file of the record is damaged.
+    """Evaluates the record in `folder` and removes it; does nothing if there is none. Raises
+    Unreadable if a file of the record is damaged.
     """
     failed = read_json(folder / "failure.json") if not (folder / RECORD).exists() else {}
     if "diagnostics" not in failed and not (folder / RECORD).exists():
@@ -44,7 +44,9 @@ def evaluate(folder: Path) -> None:
 
 
 def _summary(evidence: warnings.Evidence) -> dict[str, Any]:
-    """The numbers and sentences of a run; without sentences if it failed, as its message says what to know."""
+    """The numbers and sentences of a run; without sentences if it failed, as its message says what
+    to know.
+    """
     crossings = evidence.thresholds()
     lasted = crossings[1] - crossings[0] if crossings else None
     ok = evidence.record["status"] == "ok"

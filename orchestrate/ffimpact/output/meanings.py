@@ -14,9 +14,11 @@ __all__ = ["describe_results"]
 def describe_results(values: dict | None = None, script: str = "disc-plane") -> dict[str, Any]:
     """Returns what the results of a scene of edp/<script>.edp hold, by key:
 
-    - `bodies`: the number of bodies; `columns` of history.csv; `summary`: the numbers of summary.json;
+    - `bodies`: the number of bodies; `columns` of history.csv; `summary`: the numbers of
+      summary.json;
     - `body_columns` and `body_summary`: those of each of several bodies;
-    - `damped` and `projected`: what both have besides for damped bodies and for nu above `plain_nu`;
+    - `damped` and `projected`: what both have besides for damped bodies and for nu above
+      `plain_nu`;
     - `contact_columns` of contacts.csv;
     - `meanings`: by file and name the unit and the meaning.
 

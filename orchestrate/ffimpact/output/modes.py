@@ -17,9 +17,10 @@ TITLES = "mode,frequency,energy,strain_energy,kinetic_energy"
 def write_modes(folder: Path) -> None:
     """Writes modes.csv of the run in `folder` and removes the record; does nothing without one.
 
-    Modes satisfy K phi = omega^2 M phi, phi^T M phi = 1, with the stiffness K of the unstressed bodies; rigid motions are no
-    modes. With a = phi^T M w and b = phi^T M w', w the displacement in axes that turn with each body, the energy of
-    a mode is (b^2 + omega^2 a^2) / 2 [J/m], exact for small strains.
+    Modes satisfy K phi = omega^2 M phi, phi^T M phi = 1, with the stiffness K of the unstressed
+    bodies; rigid motions are no modes. With a = phi^T M w and b = phi^T M w', w the displacement
+    in axes that turn with each body, the energy of a mode is (b^2 + omega^2 a^2) / 2 [J/m],
+    exact for small strains.
     """
     path = folder / RECORDED
     if not path.exists():

@@ -1,9 +1,9 @@
-"""Decides the warnings and notes of a run from its record (`diagnostics` of record.json), its history and
-its intervals of contact.
+"""Decides the warnings and notes of a run from its record (`diagnostics` of record.json), its
+history and its intervals of contact.
 
-A sentence is `name: fact: meaning: take ...`. A warning reports that a result may be wrong. A note is a
-remark about a number that holds in every such scene, as about the peak force of a hard impact. The
-sentences of error estimates are made in estimate.py.
+A sentence is `name: fact: meaning: take ...`. A warning reports that a result may be wrong. A
+note is a remark about a number that holds in every such scene, as about the peak force of a hard
+impact. The sentences of error estimates are made in estimate.py.
 """
 
 import math
@@ -18,9 +18,12 @@ from .contacts import THRESHOLD, Interval, thresholds
 
 __all__ = ["Evidence", "Sentence", "note", "percent", "rounded", "sentences", "warn"]
 
-# With 10 points and more of the whole body the largest pressure of Hertz' contact is within 2 %, its half-width within 3 %, and of
-# impacts the peak force within 0.6 % and the thresholded contact time within 0.5 % of those on far finer meshes; with 8 and fewer these
-# errors are up to 3, 19, 1.5 and 1.1 %. An edge has three points. In space with 90 points and more peak force and contact
+# With 10 points and more of the whole body the largest pressure of Hertz' contact is within 2 %,
+# its half-width within 3 %, and of
+# impacts the peak force within 0.6 % and the thresholded contact time within 0.5 % of those on far
+# finer meshes; with 8 and fewer these
+# errors are up to 3, 19, 1.5 and 1.1 %. An edge has three points. In space with 90 points and more
+# peak force and contact
 # time are within 1 and 0.3 %, with 36 and fewer within 6 %; a face has six.
 FEWEST_POINTS = {2: 9, 3: 60}
 FEWEST_STEPS = 15  # in contact
@@ -34,15 +37,18 @@ SPREAD = 0.1  # det F at a point relative to its mean over the element
 DIFFERENT_MASS = 0.01  # relative to the mesh of a file
 APART = 0.39  # distance of contact points over the length of their edge
 RANGE = 0.7  # penetration over the range of pairs of points, where the repulsion is largest
-# Speed over the bar wave speed. A penalty ten times larger on a mesh twice as fine moves the peak force by 1 % at most up to 0.01, by 7 to
-# 18 % at 0.1, in twelve materials. Impulse and restitution hardly change: the peak is that of single contact points.
+# Speed over the bar wave speed. A penalty ten times larger on a mesh twice as fine moves the peak
+# force by 1 % at most up to 0.01, by 7 to
+# 18 % at 0.1, in twelve materials. Impulse and restitution hardly change: the peak is that of
+# single contact points.
 HARD = 0.03
 PEAK_WIDTH, PEAK_SHARE = (
     0.5,
     0.8,
 )  # a time over the transit time of a wave; a mean force over the peak
 CORNER = 0.05  # share of the impulse that begins at a sharp corner
-# A pair of density and modulus that no material has: waves faster than in diamond (18 km/s); lighter than all but
+# A pair of density and modulus that no material has: waves faster than in diamond (18 km/s);
+# lighter than all but
 # aerogels and metallic microlattices, and stiffer than these.
 FASTEST_WAVE, LIGHTEST, STIFFEST_LIGHT = 2e4, 10.0, 1e5  # m/s, kg/m3, Pa
 
@@ -51,7 +57,8 @@ Sentence = tuple[str, str]  # "warning" or "note", and its text
 
 @dataclass(frozen=True)
 class Evidence:
-    """What warnings are decided from: the record of a run, the columns of history.csv, the intervals of contact."""
+    """What warnings are decided from: the record of a run, the columns of history.csv, the "
+    "intervals of contact."""
 
     record: Mapping[str, Any]
     history: Mapping[str, np.ndarray]
@@ -69,7 +76,8 @@ class Evidence:
 
     @cached_property
     def forces(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Middle and length [s] of the steps with iterations, and their mean normal forces [N/m], (n,) each."""
+        """Middle and length [s] of the steps with iterations, and their mean normal forces [N/m], "
+        "(n,) each."""
         normal = self.history["normal_force"].copy()
         if self.facts["means_of_ends"]:
             normal[1:] = (normal[1:] + normal[:-1]) / 2
@@ -78,7 +86,8 @@ class Evidence:
         return self.history["t"][solved] - step / 2, step, normal[solved]
 
     def thresholds(self, threshold: float = THRESHOLD) -> tuple[float, float] | None:
-        """The instants [s] at which the normal force of the run crosses `threshold` times its maximum; None without contact."""
+        """The instants [s] at which the normal force of the run crosses `threshold` times its "
+        "maximum; None without contact."""
         middle, step, force = self.forces
         loaded = np.flatnonzero(force > 0)
         if not len(loaded):
@@ -144,18 +153,21 @@ class Evidence:
         if other == body:
             return f"{self.bodies[body]['name']} and itself"
         if self.facts["named"]:
-            return f"{self.bodies[body]['name']} and {self.bodies[other]['name'] if other >= 0 else self.obstacle(-1 - other)}"
+            second = self.bodies[other]["name"] if other >= 0 else self.obstacle(-1 - other)
+            return f"{self.bodies[body]['name']} and {second}"
         return "the bodies" if len(self.bodies) > 1 else "the body and the plane"
 
     def radius(self, pair: Mapping[str, Any]) -> float:
-        """Half the smaller thickness of a pair, or the radius of the obstacle if it is smaller [m]."""
+        """Half the smaller thickness of a pair, or the radius of the obstacle if it is smaller "
+        "[m]."""
         sizes = [
             self.bodies[k]["thickness"] / 2 for k in (pair["body"], pair["counter_body"]) if k >= 0
         ]
         return min([*sizes, *([pair["corner_radius"]] if pair["corner_radius"] > 0 else [])])
 
     def finer(self, sizes: str, pair: Mapping[str, Any] | None = None) -> str:
-        """The advice to refine the bodies of a pair, or all: by `sizes` of the scene, or by the mesh of a file."""
+        """The advice to refine the bodies of a pair, or all: by `sizes` of the scene, or by the "
+        "mesh of a file."""
         numbers = (
             range(len(self.bodies))
             if pair is None
@@ -218,8 +230,10 @@ def _units(e: Evidence) -> Iterator[Sentence]:
         light = body["density"] < LIGHTEST and body["young"] > STIFFEST_LIGHT
         if not body["rigid"] and (_wave(body) > FASTEST_WAVE or light):
             yield warn(
-                f"density: {body['density']:g} kg/m3 beside young = {body['young']:g} Pa, is it in g/cm3?: no known material is as light and as "
-                f"stiff, its wave speed sqrt(E/rho) would be {rounded(_wave(body))} m/s: take kg/m3 for the density and Pa for young"
+                f"density: {body['density']:g} kg/m3 beside young = {body['young']:g} Pa, is it in "
+                "g/cm3?: no known material is as light and as "
+                f"stiff, its wave speed sqrt(E/rho) would be {rounded(_wave(body))} m/s: take "
+                "kg/m3 for the density and Pa for young"
             )
 
 
@@ -227,12 +241,15 @@ def _law(e: Evidence) -> Iterator[Sentence]:
     lost, broken = e.facts["ellipticity_lost"], e.facts["breakdown"]
     if lost[1] >= 0:
         yield warn(
-            f"ellipticity: lost from t = {lost[1]:g} s on, the solution then depends on the mesh: first{e.near(lost)}, smallest eigenvalue of the "
-            f"acoustic tensor {rounded(e.record['min_ellipticity'])} mu: take a lower speed, or law=neohookean"
+            f"ellipticity: lost from t = {lost[1]:g} s on, the solution then depends on the mesh: "
+            f"first{e.near(lost)}, smallest eigenvalue of the "
+            f"acoustic tensor {rounded(e.record['min_ellipticity'])} mu: take a lower speed, or "
+            "law=neohookean"
         )
     if broken[1] >= 0:
         yield warn(
-            f"breakdown: det F <= 0 from t = {broken[1]:g} s on, elements are inverted: first{e.near(broken)}. The results after that time have no "
+            f"breakdown: det F <= 0 from t = {broken[1]:g} s on, elements are inverted: "
+            f"first{e.near(broken)}. The results after that time have no "
             "physical meaning: take a lower speed, or law=neohookean"
         )
 
@@ -241,8 +258,10 @@ def _volume(e: Evidence) -> Iterator[Sentence]:
     spread = e.facts["volume_spread"]
     if spread[0] > SPREAD:
         yield warn(
-            f"volume: at t = {spread[1]:g} s det F at a point differs by {percent(spread[0])} from its mean over the element (up to {percent(SPREAD)} "
-            f"is small){e.near(spread)}: only the mean volume of an element is constrained, and strains and stresses there have an error of this "
+            f"volume: at t = {spread[1]:g} s det F at a point differs by {percent(spread[0])} from "
+            f"its mean over the element (up to {percent(SPREAD)} "
+            f"is small){e.near(spread)}: only the mean volume of an element is constrained, and "
+            "strains and stresses there have an error of this "
             "size: take a lower speed or load"
         )
 
@@ -254,8 +273,10 @@ def _shape(e: Evidence) -> Iterator[Sentence]:
         more = body["mass"] / body["straight_mass"] - 1
         if body["of_file"] and abs(more) > DIFFERENT_MASS:
             yield warn(
-                f"mass: {body['name']} has {percent(abs(more))} {'more' if more > 0 else 'less'} than the mesh in its file: up to "
-                f"{percent(DIFFERENT_MASS)} is small. The program rounds {curved} of a file: take a finer mesh. Flat facets that are meant to stay "
+                f"mass: {body['name']} has {percent(abs(more))} {'more' if more > 0 else 'less'} "
+                "than the mesh in its file: up to "
+                f"{percent(DIFFERENT_MASS)} is small. The program rounds {curved} of a file: take "
+                "a finer mesh. Flat facets that are meant to stay "
                 "flat need angles of more than 30 degrees between them"
             )
 
@@ -274,8 +295,10 @@ def _overlap(e: Evidence) -> Iterator[Sentence]:
         else f"{e.body} passes through itself"
     )
     yield warn(
-        f"overlap: {who} from t = {first[1]:g} s on: first{e.near(first)}. No contact force acts there, and the results after that time have no "
-        f"physical meaning: {instead}end the run before that time, or take a lower speed or a stiffer body"
+        f"overlap: {who} from t = {first[1]:g} s on: first{e.near(first)}. No contact force acts "
+        "there, and the results after that time have no "
+        f"physical meaning: {instead}end the run before that time, or take a lower speed or a "
+        "stiffer body"
     )
 
 
@@ -293,17 +316,21 @@ def _balances(e: Evidence) -> Iterator[Sentence]:
     )
     if drift > accuracy:
         yield warn(
-            f"energy: the {integrator} integrator {'lost' if e.facts['worst_balance'] < 0 else 'gained'} {percent(drift)} of the energy at the "
+            f"energy: the {integrator} integrator "
+            f"{'lost' if e.facts['worst_balance'] < 0 else 'gained'} {percent(drift)} of the "
+            "energy at the "
             f"start{e.request}. Speeds and forces have an error of this size{instead}"
         )
     if momentum > accuracy:
         yield warn(
-            f"momentum: the {integrator} integrator is off by {percent(momentum)} of the fastest motion{e.request}. The impulse differs from the time "
+            f"momentum: the {integrator} integrator is off by {percent(momentum)} of the fastest "
+            f"motion{e.request}. The impulse differs from the time "
             f"integral of the forces{instead}"
         )
     if (angular or 0) > accuracy:
         yield warn(
-            f"angular momentum: the {integrator} integrator is off by {percent(angular)} of the fastest motion{e.request}, at the rim. Spins have an "
+            f"angular momentum: the {integrator} integrator is off by {percent(angular)} of the "
+            f"fastest motion{e.request}, at the rim. Spins have an "
             f"error of this size{instead}"
         )
 
@@ -326,10 +353,13 @@ def _contact(e: Evidence) -> Iterator[Sentence]:
     used, wanted = facts["penalty_used"], facts["penalty"]
     if facts["explicit"] and used < wanted * (1 - 1e-9):
         yield warn(
-            f"explicit penalty: {rounded(used)} Pa/m are used in place of the requested {rounded(wanted)} Pa/m: with a stiffer penalty single nodes "
-            f"bounce faster than the waves in the bodies: take {e.finer('a smaller contact_mesh_size')}, or integrator=energy-momentum"
+            f"explicit penalty: {rounded(used)} Pa/m are used in place of the requested "
+            f"{rounded(wanted)} Pa/m: with a stiffer penalty single nodes "
+            "bounce faster than the waves in the bodies: take "
+            f"{e.finer('a smaller contact_mesh_size')}, or integrator=energy-momentum"
         )
-    # penalty_share: energy of the penalty over the elastic energy; the share of the depth is (m + 1)/2 of it. A wave front that
+    # penalty_share: energy of the penalty over the elastic energy; the share of the depth is (m +
+    # 1)/2 of it. A wave front that
     # elements resolve has an estimate of its own.
     front, rise = record["front_transit"] or 0, record["front_rise"] or 0
     depth = facts["penalty_share"] * (facts["exponent_used"] + 1) / 2
@@ -339,14 +369,17 @@ def _contact(e: Evidence) -> Iterator[Sentence]:
         and depth > SOFTEST
     ):
         yield warn(
-            f"penalty: it stores {percent(facts['penalty_share'])} of the elastic energy at its largest: up to {percent(SOFTEST)} is small. The "
-            f"contact is softer than that of a rigid plane: take a penalty of at least {rounded(used * depth / SOFTEST)}"
+            f"penalty: it stores {percent(facts['penalty_share'])} of the elastic energy at its "
+            f"largest: up to {percent(SOFTEST)} is small. The "
+            "contact is softer than that of a rigid plane: take a penalty of at least "
+            f"{rounded(used * depth / SOFTEST)}"
         )
     if facts["largest_force"] > 0:
         yield from _peak(e)
     if facts["loaded_steps"] < FEWEST_STEPS:
         yield warn(
-            f"steps: {facts['loaded_steps']} steps in contact: at least {FEWEST_STEPS} are needed: take a smaller dt, or a smaller accuracy"
+            f"steps: {facts['loaded_steps']} steps in contact: at least {FEWEST_STEPS} are needed: "
+            "take a smaller dt, or a smaller accuracy"
         )
     if facts["pairwise"]:
         yield from _pairing_range(e)
@@ -355,7 +388,8 @@ def _contact(e: Evidence) -> Iterator[Sentence]:
 
 
 def _peak(e: Evidence) -> Iterator[Sentence]:
-    """The mean force over half a transit time of a wave, beside the peak, and the speed of the impact."""
+    """The mean force over half a transit time of a wave, beside the peak, and the speed of the "
+    "impact."""
     _, step, force = e.forces
     width = PEAK_WIDTH * e.facts["transit"]
     peak = int(force.argmax())
@@ -371,19 +405,23 @@ def _peak(e: Evidence) -> Iterator[Sentence]:
         and not e.facts["in_contact"]
     ):
         yield warn(
-            f"peak force: its mean over {rounded(PEAK_WIDTH)} of the transit time of a wave is at most {rounded(lasting)} N{e.facts['per_metre']}: the "
-            "force oscillates on the penalty, as in the impact of a flat face. Penalty and mesh change the peak by more than its error estimate: use "
+            f"peak force: its mean over {rounded(PEAK_WIDTH)} of the transit time of a wave is at "
+            f"most {rounded(lasting)} N{e.facts['per_metre']}: the "
+            "force oscillates on the penalty, as in the impact of a flat face. Penalty and mesh "
+            "change the peak by more than its error estimate: use "
             "the impulse, or this mean"
         )
     elif hard:
         yield note(
-            f"peak force: uncertain by up to 20 %, at {percent(fastest / e.slowest_wave)} of the wave speed: above {percent(HARD)} of sqrt(E/rho) single "
+            f"peak force: uncertain by up to 20 %, at {percent(fastest / e.slowest_wave)} of the "
+            f"wave speed: above {percent(HARD)} of sqrt(E/rho) single "
             "contact points dominate it, and penalty and mesh change it: use the impulse instead"
         )
 
 
 def _mean_over(step: np.ndarray, force: np.ndarray, width: float) -> float:
-    """The mean of a force over the first `width` [s] of its steps; the force is zero beyond them."""
+    """The mean of a force over the first `width` [s] of its steps; the force is zero beyond "
+    "them."""
     share = np.clip(width - (np.cumsum(step) - step), 0, step)
     return float(share @ force) / width
 
@@ -396,13 +434,16 @@ def _pairing_range(e: Evidence) -> Iterator[Sentence]:
     )
     if reach < apart:
         yield warn(
-            f"pairing range: {reach:g} m, contact points are {rounded(apart)} m apart at the contact: points of one body may pass between those of the "
+            f"pairing range: {reach:g} m, contact points are {rounded(apart)} m apart at the "
+            "contact: points of one body may pass between those of the "
             "other: take a larger pairing_range, or a smaller contact_mesh_size"
         )
     if deepest > RANGE * reach:
         yield warn(
-            f"pairing range: the smallest distance of a pair of points is {percent(1 - deepest / reach)} of it: the repulsion is largest at 28 % and "
-            "decreases below, so the bodies may pass through each other: take a larger penalty or pairing_range"
+            "pairing range: the smallest distance of a pair of points is "
+            f"{percent(1 - deepest / reach)} of it: the repulsion is largest at 28 % and "
+            "decreases below, so the bodies may pass through each other: take a larger penalty or "
+            "pairing_range"
         )
 
 
@@ -411,12 +452,14 @@ def _end_of_contact(e: Evidence) -> Iterator[Sentence]:
     crossings = e.thresholds()
     if crossings is None:
         crossings = (-1.0, -1.0)
-    # A half sine spends 0.3 % of its time below 1 % of its peak at either end, Hertz' force on a cylinder 0.7 %.
+    # A half sine spends 0.3 % of its time below 1 % of its peak at either end, Hertz' force on a
+    # cylinder 0.7 %.
     grazes = e.facts["contact_end"] - crossings[1]
     falls = e.facts["body_acceleration"] * grazes
     if grazes > max(0.01, accuracy) * lasting:
         yield note(
-            f"contact time: the force is below {percent(THRESHOLD)} of its peak for the last {percent(grazes / lasting)} of it: the end of contact is "
+            f"contact time: the force is below {percent(THRESHOLD)} of its peak for the last "
+            f"{percent(grazes / lasting)} of it: the end of contact is "
             "uncertain by as much: use thresholded_contact_time"
         )
     early, late = (e.thresholds(threshold) for threshold in (2 * THRESHOLD, THRESHOLD / 2))
@@ -425,14 +468,18 @@ def _end_of_contact(e: Evidence) -> Iterator[Sentence]:
         between = (middle[1:] > early[1]) & (middle[1:] < late[1])
         if (between & (np.diff(force) > 0)).any() and late[1] - early[1] > accuracy * lasting:
             yield note(
-                f"thresholded contact time: uncertain by {percent((late[1] - early[1]) / lasting)}, the force oscillates about {percent(THRESHOLD)} of its "
-                f"peak: the end of contact moves by this much between thresholds of {percent(2 * THRESHOLD)} and {percent(THRESHOLD / 2)} of the "
+                "thresholded contact time: uncertain by "
+                f"{percent((late[1] - early[1]) / lasting)}, the force oscillates about "
+                f"{percent(THRESHOLD)} of its "
+                "peak: the end of contact moves by this much between thresholds of "
+                f"{percent(2 * THRESHOLD)} and {percent(THRESHOLD / 2)} of the "
                 f"peak{e.request}"
             )
     fastest = e.facts["fastest_motion"]
     if falls > accuracy * fastest:
         yield warn(
-            f"rebound: gravity changes the speed by {percent(falls / fastest)} while the force is below {percent(THRESHOLD)} of its "
+            f"rebound: gravity changes the speed by {percent(falls / fastest)} while the force is "
+            f"below {percent(THRESHOLD)} of its "
             f"peak{e.request}: the rebound velocity is uncertain by as much"
         )
 
@@ -441,21 +488,26 @@ def _obstacles(e: Evidence) -> Iterator[Sentence]:
     for number, obstacle in enumerate(e.facts["obstacles"]):
         if obstacle["crossed"] > 0:
             yield warn(
-                f"through: contact points passed through {e.obstacle(number)} ({obstacle['crossed']} times): the obstacle is too thin for the "
-                "penetration, and the results are not those of a rigid obstacle: take a larger penalty, or a thicker obstacle"
+                f"through: contact points passed through {e.obstacle(number)} "
+                f"({obstacle['crossed']} times): the obstacle is too thin for the "
+                "penetration, and the results are not those of a rigid obstacle: take a larger "
+                "penalty, or a thicker obstacle"
             )
     sunk = e.facts["sunk"]
     if sunk[1] >= 0:
         into = e.obstacle(e.facts["sunk_in"]) if e.facts["named"] else "the plane"
         yield warn(
-            f"sinks: {e.bodies[e.facts['sunk_body']]['name']} is up to {rounded(sunk[0])} m inside {into}{e.near(sunk)}, at t = {sunk[1]:g} s, at a part of "
-            "its boundary that is no contact boundary: no contact force acts there, and the results are not those of a body on a rigid obstacle: take "
+            f"sinks: {e.bodies[e.facts['sunk_body']]['name']} is up to {rounded(sunk[0])} m inside "
+            f"{into}{e.near(sunk)}, at t = {sunk[1]:g} s, at a part of "
+            "its boundary that is no contact boundary: no contact force acts there, and the "
+            "results are not those of a body on a rigid obstacle: take "
             "a file with a contact boundary there"
         )
 
 
 def _pairs(e: Evidence) -> Iterator[Sentence]:
-    """The worst contact pair of each kind by name: penetration, contact points, and what passes between these."""
+    """The worst contact pair of each kind by name: penetration, contact points, and what passes "
+    "between these."""
     pairs = e.facts["pairs"]
     deep = [pair for pair in pairs if pair["deepest"] > DEEPEST * e.radius(pair)]
     if deep:
@@ -463,7 +515,8 @@ def _pairs(e: Evidence) -> Iterator[Sentence]:
         share = worst["deepest"] / e.radius(worst)
         penalty = e.facts["penalty_used"] * (share / DEEPEST) ** e.facts["exponent_used"]
         yield warn(
-            f"penetration: {percent(share)} of the radius or half thickness: {e.pair(worst)}{_others(len(deep))} overlap by that much. Up to "
+            f"penetration: {percent(share)} of the radius or half thickness: "
+            f"{e.pair(worst)}{_others(len(deep))} overlap by that much. Up to "
             f"{percent(DEEPEST)} is small: take a penalty of at least {rounded(penalty)}"
         )
     yield from _points(e)
@@ -475,8 +528,10 @@ def _pairs(e: Evidence) -> Iterator[Sentence]:
     if unseen:
         worst = unseen[-1]
         yield warn(
-            f"unseen contact: {e.pair(worst)}{_others(len(unseen))} overlap by {rounded(worst['deepest'])} m at a corner or an edge: the corner lies "
-            f"between the contact points, whose penetration is {rounded(worst['felt'])} m: take {e.finer('a smaller contact_mesh_size', worst)}"
+            f"unseen contact: {e.pair(worst)}{_others(len(unseen))} overlap by "
+            f"{rounded(worst['deepest'])} m at a corner or an edge: the corner lies "
+            f"between the contact points, whose penetration is {rounded(worst['felt'])} m: take "
+            f"{e.finer('a smaller contact_mesh_size', worst)}"
         )
     tight = [pair for pair in pairs if pair["blunt"] > 1]
     if not tight:
@@ -485,19 +540,22 @@ def _pairs(e: Evidence) -> Iterator[Sentence]:
     who, size = e.pair(worst) + _others(len(tight)), rounded(worst["length"])
     if worst["corner_radius"] > 0:
         yield warn(
-            f"small obstacle: {who} are in contact where its radius is {worst['corner_radius']:g} m: elements of {size} m do not resolve this radius; "
-            f"elements up to the radius do. The obstacle passes between the contact points: take {e.finer('a smaller contact_mesh_size', worst)}"
+            f"small obstacle: {who} are in contact where its radius is {worst['corner_radius']:g} "
+            f"m: elements of {size} m do not resolve this radius; "
+            "elements up to the radius do. The obstacle passes between the contact points: take "
+            f"{e.finer('a smaller contact_mesh_size', worst)}"
         )
     else:
         yield warn(
-            f"sharp corner: {who} are in contact at a corner without a rounding: no mesh resolves it, and the corner passes between the contact "
+            f"sharp corner: {who} are in contact at a corner without a rounding: no mesh resolves "
+            "it, and the corner passes between the contact "
             f"points: take a rounding of at least {size} m, the size of an element"
         )
 
 
 def _points(e: Evidence) -> Iterator[Sentence]:
-    """Too few contact points at the largest force, of pairs with a hundredth of the largest force and more; with pairs of points of all
-    bodies together.
+    """Too few contact points at the largest force, of pairs with a hundredth of the largest force
+    and more; with pairs of points of all bodies together.
     """
     pairs, needed = e.facts["pairs"], FEWEST_POINTS[e.facts["dimension"]]
     if e.facts["pairwise"]:
@@ -516,20 +574,24 @@ def _points(e: Evidence) -> Iterator[Sentence]:
     worst = rough[0] if e.facts["pairwise"] else min(rough, key=lambda pair: pair["points_at_peak"])
     whose = e.pair(worst) if not e.facts["pairwise"] and len(pairs) > 1 else "the body"
     yield warn(
-        f"contact points: {fewest} of {whose}{_others(len(rough))} carry the largest force: at least {needed} are needed. Forces and contact time are "
+        f"contact points: {fewest} of {whose}{_others(len(rough))} carry the largest force: at "
+        f"least {needed} are needed. Forces and contact time are "
         f"those of single edges: take {e.finer('a smaller contact_mesh_size', worst)}"
     )
 
 
 def _corners(e: Evidence) -> Iterator[Sentence]:
-    """A right angle that is pressed flat without friction, at constant area, shortens to 0.71 of its length from the corner, in the mean of all
-    directions, however small the load; a free neo-Hookean surface folds at 0.65 (Hohlfeld, Mahadevan 2011).
+    """A right angle that is pressed flat without friction, at constant area, shortens to 0.71 of
+    its length from the corner, in the mean of all directions, however small the load; a free
+    neo-Hookean surface folds at 0.65 (Hohlfeld, Mahadevan 2011).
     """
     share = e.record["corner_share"] or 0
     if share > CORNER:
         yield warn(
-            f"corner: {percent(share)} of the impulse comes from contacts that began at a sharp corner or edge: up to {percent(CORNER)} is small. Elements "
-            "at the corner may fold, and a finer mesh may change the results by more than the error estimates: round the corner by vertices, or compare "
+            f"corner: {percent(share)} of the impulse comes from contacts that began at a sharp "
+            f"corner or edge: up to {percent(CORNER)} is small. Elements "
+            "at the corner may fold, and a finer mesh may change the results by more than the "
+            "error estimates: round the corner by vertices, or compare "
             f"with {e.finer('half the contact_mesh_size')}"
         )
 
@@ -550,46 +612,57 @@ def _ending(e: Evidence) -> Iterator[Sentence]:
     in_contact = facts["in_contact"] and not pushed and (several or strikes)
     if record["ended"] != "rest" and facts["rolling"] == 0 and (facts["until_rest"] or in_contact):
         yield warn(
-            f"not over: at the end_time {e.body} {'does not rest yet' if facts['until_rest'] else 'is still in contact'}: contact time, impulse and "
+            f"not over: at the end_time {e.body} "
+            f"{'does not rest yet' if facts['until_rest'] else 'is still in contact'}: contact "
+            "time, impulse and "
             "rebound are those at this time: take a larger end_time"
         )
     if facts["rolling"] > 0:
         moves = "bodies roll or slide" if several else f"{e.body} rolls or slides"
         yield warn(
-            f"rest: {moves} on without vibration: viscosity and friction take {percent(facts['loss_rate'] / facts['rolling'])} of the kinetic energy, "
-            f"{rounded(facts['rolling'])} J{facts['per_metre']}, each second. The run ended there: give an end_time > 0 to follow the motion"
+            f"rest: {moves} on without vibration: viscosity and friction take "
+            f"{percent(facts['loss_rate'] / facts['rolling'])} of the kinetic energy, "
+            f"{rounded(facts['rolling'])} J{facts['per_metre']}, each second. The run ended there: "
+            "give an end_time > 0 to follow the motion"
         )
     if facts["contact_again_at"] >= 0:
         who = e.pair(facts["pairs"][facts["pair_ahead"]]) if facts["pair_ahead"] >= 0 else "bodies"
         yield note(
-            f"touches again: {who} {'come' if facts['surely_again'] else 'may come'} into contact again, at t = {facts['contact_again_at']:g} s or later: "
+            f"touches again: {who} {'come' if facts['surely_again'] else 'may come'} into contact "
+            f"again, at t = {facts['contact_again_at']:g} s or later: "
             "the run ended after the first impact: take an end_time > 0 to follow the next one"
         )
 
 
 def _discretisation(e: Evidence) -> Iterator[Sentence]:
-    """Elements that lock, spin that a skipped flight leaves out, steps that are long beside a relaxation.
+    """Elements that lock, spin that a skipped flight leaves out, steps that are long beside a
+    relaxation.
 
-    On the mesh of accuracy 1 % the peak force of a disc is up to 8 % too large at nu = 0.49, by 4 to 17 % at 0.495 and up to 29 % at 0.498.
+    On the mesh of accuracy 1 % the peak force of a disc is up to 8 % too large at nu = 0.49, by
+    4 to 17 % at 0.495 and up to 29 % at 0.498.
     """
     facts, nu = e.facts, max(body["nu"] for body in e.bodies)
     if facts["degree"] == 1 and nu > LOCKING_LINEAR:
         yield warn(
-            f"locking: linear elements are too stiff at nu = {nu:g}: above {LOCKING_LINEAR} they lock, and so does the run that estimates the error: take "
+            f"locking: linear elements are too stiff at nu = {nu:g}: above {LOCKING_LINEAR} they "
+            "lock, and so does the run that estimates the error: take "
             "degree=2"
         )
     if facts["degree"] == 2 and not facts["projected"] and nu >= LOCKING_QUADRATIC:
         yield warn(
-            f"locking: quadratic elements are too stiff at nu = {nu:g}: from {LOCKING_QUADRATIC} on, with the mesh of accuracy 1 %, peak forces are up to a "
+            f"locking: quadratic elements are too stiff at nu = {nu:g}: from {LOCKING_QUADRATIC} "
+            "on, with the mesh of accuracy 1 %, peak forces are up to a "
             "third too large and contact times up to 3 % too short: take volume=auto"
         )
     spun = max(body["spin2"] * (body["reach"] / _wave(body)) ** 2 for body in e.bodies)
     if facts["flown"] and spun > facts["accuracy"]:
         yield warn(
-            f"flight: {e.body} is taken as unstressed until contact, but its spin would strain it by {percent(spun)}{e.request}: take without=flight, "
+            f"flight: {e.body} is taken as unstressed until contact, but its spin would strain it "
+            f"by {percent(spun)}{e.request}: take without=flight, "
             "which integrates the flight in time"
         )
-    # At a constant strain rate steps of dt give the viscosity G dt (1/theta - 1/2) of relaxation.idp in place of G tau.
+    # At a constant strain rate steps of dt give the viscosity G dt (1/theta - 1/2) of
+    # relaxation.idp in place of G tau.
     excess = 0.0
     for body in e.bodies:
         if body["relaxation_modulus"] > 0:
@@ -597,13 +670,16 @@ def _discretisation(e: Evidence) -> Iterator[Sentence]:
             excess = max(excess, ratio * (1 / -math.expm1(-ratio) - 0.5) - 1)
     if excess > facts["accuracy"]:
         yield warn(
-            f"relaxation: steps of {facts['dt_largest']:g} s make a body more viscous by {percent(excess)}{e.request}. The steps are long compared with "
-            "the relaxation_time, and the error estimates do not include this: take a smaller dt, or viscosity in place of a relaxation this short"
+            f"relaxation: steps of {facts['dt_largest']:g} s make a body more viscous by "
+            f"{percent(excess)}{e.request}. The steps are long compared with "
+            "the relaxation_time, and the error estimates do not include this: take a smaller dt, "
+            "or viscosity in place of a relaxation this short"
         )
 
 
 def _friction(e: Evidence) -> Iterator[Sentence]:
-    """A body whose motion is mirrored about the normal creeps to both sides alike, and so does one with hardly any tangential speed."""
+    """A body whose motion is mirrored about the normal creeps to both sides alike, and so does "
+    "one with hardly any tangential speed."""
     facts = e.facts
     if not facts["friction"]:
         return
@@ -611,13 +687,18 @@ def _friction(e: Evidence) -> Iterator[Sentence]:
     moves = centre > 0.01 * max(facts["slid_increment"], facts["whole_load"] * fastest)
     if not facts["mirrored"] and facts["creep_increment"] > CREEP * centre and moves:
         yield warn(
-            f"creep: sticking contact points move at {percent(facts['creep_increment'] / max(centre, 1e-300))} of the centre's speed along "
-            f"{e.counter_body}: up to {percent(CREEP)} is small. The regularised friction does not hold them: take a smaller slip_velocity"
+            "creep: sticking contact points move at "
+            f"{percent(facts['creep_increment'] / max(centre, 1e-300))} of the centre's speed "
+            "along "
+            f"{e.counter_body}: up to {percent(CREEP)} is small. The regularised friction does not "
+            "hold them: take a smaller slip_velocity"
         )
     if facts["slip_velocity"] > LOOSEST * fastest:
         yield warn(
-            f"slip velocity: {facts['slip_velocity']:g} m/s is {percent(facts['slip_velocity'] / fastest)} of the speeds of the scene: up to "
-            f"{percent(LOOSEST)} is small. Friction then acts like viscosity: take a smaller slip_velocity"
+            f"slip velocity: {facts['slip_velocity']:g} m/s is "
+            f"{percent(facts['slip_velocity'] / fastest)} of the speeds of the scene: up to "
+            f"{percent(LOOSEST)} is small. Friction then acts like viscosity: take a smaller "
+            "slip_velocity"
         )
     unsolved = e.record["unsolved_jumps"]
     if unsolved > JUMPS * facts["loaded_jumps"]:
@@ -627,13 +708,16 @@ def _friction(e: Evidence) -> Iterator[Sentence]:
             else "a smaller dt, or friction_transition=smooth"
         )
         yield warn(
-            f"friction: the law has no solution in {percent(unsolved / facts['loaded_jumps'])} of the points and steps in contact: {unsolved} of them lie in "
+            f"friction: the law has no solution in {percent(unsolved / facts['loaded_jumps'])} of "
+            f"the points and steps in contact: {unsolved} of them lie in "
             f"the jump from the static to the dynamic coefficient: take {instead}"
         )
     if facts["integrator"] == "newmark":
         yield warn(
-            "newmark: sticking contact points reverse their velocity in every step: this happens with any dt. "
-            f"{percent(e.record['friction_work'] / facts['energy_scale'])} of the initial energy went into friction. Rebound along {e.counter_body}, spin "
+            "newmark: sticking contact points reverse their velocity in every step: this happens "
+            "with any dt. "
+            f"{percent(e.record['friction_work'] / facts['energy_scale'])} of the initial energy "
+            f"went into friction. Rebound along {e.counter_body}, spin "
             "and friction work do not converge: take integrator=energy-momentum"
         )
 
