@@ -4,15 +4,17 @@ of terms) that are left.
     python docs/words.py            # totals
     python docs/words.py --where    # also each position
 
-The pages are those of docs/tutorial, how-to, explanation and README.md, and the messages of
-orchestrate/. Code blocks and `code` are not searched for terms. Words are counted as `wc -w` does.
+The pages are those of docs/tutorial, how-to, explanation and README.md. Terms are also counted in the
+messages of orchestrate/, in the docstrings and comments of all Python files, and in the comments of edp/. Code blocks and `code` are not searched for terms. Words are counted as `wc -w` does.
 Terms that are also ordinary words (row, way, part, side ...) are counted separately and have to be
 checked by eye.
 """
 
 import ast
+import io
 import re
 import sys
+import tokenize
 from collections import Counter
 from pathlib import Path
 
@@ -49,6 +51,20 @@ def messages(path: Path) -> list[tuple[int, str]]:
                   and isinstance(one.body[0], ast.Expr)}
     return [(one.lineno, one.value) for one in ast.walk(tree) if isinstance(one, ast.Constant) and isinstance(one.value, str)
             and id(one) not in documented and len(one.value.split()) > 2]
+
+
+def comments(path: Path) -> list[tuple[int, str]]:
+    """The docstrings and comments of a Python file, or the comments of a FreeFEM or C++ file, with
+    their lines. `Code` in them is left out."""
+    text = path.read_text()
+    if path.suffix == ".py":
+        found = [(token.start[0], token.string) for token in tokenize.generate_tokens(io.StringIO(text).readline) if token.type == tokenize.COMMENT]
+        for node in ast.walk(ast.parse(text)):
+            if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and (words := ast.get_docstring(node)):
+                found.append((node.body[0].lineno, words))
+    else:
+        found = [(k, line.partition("//")[2]) for k, line in enumerate(text.splitlines(), 1)]
+    return [(k, re.sub(r"`[^`]*`|\b\w*[a-z][A-Z]\w*", "", words)) for k, words in found]
 
 
 def pages() -> list[Path]:
@@ -89,6 +105,11 @@ def main(where: bool) -> int:
     printed = [(f"{path.relative_to(ROOT)}:{k}", text) for path in sorted((ROOT / "orchestrate").rglob("*.py")) for k, text in messages(path)]
     theirs = count(printed, TERMS, where)
     print(f"private terms in texts of orchestrate/: {theirs.total()}  {dict(theirs)}")
+    for folder, suffixes in (("orchestrate", (".py",)), ("benchmarks", (".py",)), ("verification", (".py",)), ("tests", (".py",)), ("edp", (".edp", ".idp", ".hpp", ".cpp"))):
+        said = [(f"{path.relative_to(ROOT)}:{k}", text) for path in sorted((ROOT / folder).rglob("*")) if path.suffix in suffixes
+                for k, text in comments(path)]
+        inside = count(said, TERMS, where)
+        print(f"private terms in comments of {folder}/: {inside.total()}  {dict(inside)}")
     return int(own.total() > 0)
 
 
