@@ -733,7 +733,7 @@ class Sphere(Obstacle):
 
 
 class Polyline(Obstacle):
-    """A chain of straight walls, solid to its left."""
+    """A chain of straight walls, solid to the right of its direction."""
 
     kind = "polyline"
     dimensions = (PLANE_STRAIN, AXISYMMETRIC)

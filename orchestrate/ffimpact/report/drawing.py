@@ -16,12 +16,13 @@ from .figures import BODY, STYLE, as_written, is_half, material, per_metre, plt,
 
 __all__ = ["LETTERS", "MOST_LINES", "draw", "title", "wrapped"]
 
-LETTERS, MOST_LINES = 14, 4       # of a title: letters an inch, lines of each of its parts
+LETTERS, MOST_LINES = 14, 4       # letters per inch of a title; lines of each of its parts
 
 
 def draw(folder: Path) -> list[Path]:
-    """Draws all figures of the run in `folder` into folder/figures; the files. Unreadable where the
-    folder is broken. energies.png is the last: where it is, all are."""
+    """Draws all figures of the run in `folder` into folder/figures and returns their paths. The last
+    one is energies.png: if it exists, all do. Raises Unreadable for a damaged folder.
+    """
     check_files(folder)
     history, scene = impacts.with_flights(read_history(folder)), read_scene(folder)
     scene["touched"] = touched(read_json(folder / "summary.json"))
@@ -33,7 +34,7 @@ def draw(folder: Path) -> list[Path]:
     target.mkdir(exist_ok=True)
     touches, several = history["normal_force"] > 0, bodies.are_several(scene)
     names = body_names(scene) if several else ["body"]
-    # without the flight
+    # without free flight
     contact = Contents({name: column[max(0, int(np.argmax(touches)) - 1):] for name, column in history.items()}, history.path)
     with plt.rc_context(STYLE):
         drawn = bodies.draw(history, contact, scene, snapshots)
@@ -57,8 +58,9 @@ def draw(folder: Path) -> list[Path]:
 
 
 def title(scene: dict[str, Value]) -> str:
-    """Which body, law, nu, speed, the angle where the impact is oblique, linear elements, and the friction law where there is one; of
-    several bodies each one's."""
+    """Returns the title of a run: body, law, nu and speed, the angle of an oblique impact, linear
+    elements, and the friction law if there is friction; with several bodies those of each.
+    """
     if bodies.are_several(scene):
         return bodies.title(scene)
     angle = "" if scene.get("angle", 90) == 90 else f" at {scene['angle']:g}°"
@@ -74,6 +76,8 @@ def title(scene: dict[str, Value]) -> str:
 
 
 def wrapped(text: str, width: float) -> str:
-    """Each line of a title in as many as fit the width [inches] of a figure, but no more than MOST_LINES; a number stays with its unit."""
+    """Returns the lines of a title, wrapped to the width [inches] of a figure and to at most
+    MOST_LINES; a number stays beside its unit.
+    """
     text = re.sub(r"(?<=\d) (?=(?:m|MPa|Pa|kg)\b)", "\N{NO-BREAK SPACE}", text)
     return "\n".join("\n".join(wrap(line, int(LETTERS * width))[:MOST_LINES]) for line in text.split("\n"))

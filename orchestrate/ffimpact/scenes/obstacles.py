@@ -1,5 +1,8 @@
-"""Rigid obstacles: [[obstacle]] tables (docs: scenes says what they hold) as numbers that the scripts read (edp/core/contact/shapes.idp),
-and signed distances, SI units. Of revolution about x = 0 they lie across the axis or on it, or begin or end there."""
+"""Rigid obstacles: [[obstacle]] tables as the numbers that the scripts read
+(edp/core/contact/shapes.idp), and signed distances, SI units.
+
+Obstacles of a scene of revolution lie across the axis x = 0 or on it, or begin or end there.
+"""
 
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
@@ -18,14 +21,16 @@ from ..mesh.revolution import mirrored
 
 __all__ = ["Drive", "Obstacle", "read", "settled"]
 
-DRIVE = ("motion", "rotation", "pivot", "axis")      # entries of an obstacle that follows functions of time
+DRIVE = ("motion", "rotation", "pivot", "axis")      # entries of an obstacle with a prescribed motion
 
 
 @dataclass(frozen=True)
 class Obstacle:
-    """`numbers` as the scripts read them: plane x y nx ny, the normal of length 1; circle, sphere and bowl x y radius; polyline closed (1
-    or 0) rounding x1 y1 x2 y2 ..., of a surface of revolution with its mirror image; implicit steepest limit program (implicit.py), 1 and 1
-    before it is settled()."""
+    """One obstacle. `numbers` are those of the scripts: for a plane x y nx ny with a unit normal; for a
+    circle, sphere and concave sphere x y radius; for a polyline closed (1 or 0) rounding x1 y1 x2 y2
+    ..., for a surface of revolution with its mirror image; for an implicit obstacle the largest
+    gradient, the validity limit and the program (implicit.py), 1 and 1 before settled().
+    """
 
     name: str
     kind: str
@@ -35,19 +40,21 @@ class Obstacle:
 
     @property
     def driven(self) -> bool:
-        """Whether it follows functions of time."""
+        """Whether the obstacle follows functions of time."""
         return self.drive is not None
 
     @property
     def carried_along(self) -> "Obstacle":
-        """The same, as fast as it is on the way to where its functions bring it farthest."""
+        """The obstacle as if its motion took it to its farthest position at constant velocity."""
         if not self.drive:
             return self
         way, when = farthest(self.drive.way)
         return replace(self, velocity=way / when if when > 0 else 0 * self.velocity)
 
     def gap(self, points: np.ndarray) -> np.ndarray:
-        """Signed distances (n,) of points (n, axes) from the obstacle, negative inside, where it is at the start."""
+        """Returns the signed distances (n,) [m] of points (n, axes) from the obstacle at the start,
+        negative inside.
+        """
         if self.kind == "polyline":
             return polyline.gap(points, self.numbers)
         if self.kind == "implicit":
@@ -63,32 +70,36 @@ class Obstacle:
 
     @cached_property
     def _surface(self) -> solids.Shape:
-        """That of a file."""
+        """The surface of an obstacle from a file."""
         points, triangles = _triangles(self.numbers)
         return solids.surface(points[triangles])
 
     def gap_for_sizes(self, points: np.ndarray) -> np.ndarray:
-        """The same, of an implicit one far away to first order: where elements are to be small."""
+        """Returns gaps for element sizes: like gap(), but to first order far from an implicit obstacle.
+        """
         return implicit.gap(points, self.numbers, bounds=False) if self.kind == "implicit" else self.gap(points)
 
     @property
     def is_exact(self) -> bool:
-        """Whether `gap` is the distance however far a point is."""
+        """Whether gap() is the distance at any distance."""
         return self.kind != "implicit"
 
     def gap_from(self, shape) -> float:
-        """The least gap of a body's outline or surface."""
+        """Returns the smallest gap [m] of the outline or surface of a body."""
         return shape.least(self.gap) if self.is_exact else self.nearest(shape)[0]
 
     def nearest(self, shape) -> tuple[float, np.ndarray]:
-        """Of an implicit one: the least gap of a body, and the outward normal there; of its points, or of a disc or ball all around."""
+        """Returns the smallest gap [m] of a body from an implicit obstacle and the outward normal there.
+        The gap is that of the points of the body, or of its whole circle or sphere.
+        """
         gaps, (_, limit, *code) = self.gap(shape.points), self.numbers
         with np.errstate(all="ignore"):
             return implicit.nearest(shape.points[gaps.argmin()], gaps.min(), code, limit, shape.disc)
 
     def radius_at(self, point: np.ndarray, within: float) -> float:
-        """The radius [m] of its surface where that is nearest to a point (axes,), 0 if a sharp corner is `within` [m] as near, infinite
-        where it is flat or hollow."""
+        """Returns the radius of curvature [m] of the surface where it is nearest to a point (axes,): 0
+        if a sharp corner is within `within` [m], infinity if the surface is flat or concave.
+        """
         if self.kind == "polyline":
             return polyline.radius_at(point, within, self.numbers)
         if self.kind == "implicit":
@@ -96,14 +107,16 @@ class Obstacle:
         return self.numbers[len(point)] if self.kind in ("circle", "sphere") else np.inf
 
     def gap_in_plane(self, points: np.ndarray, t: float) -> np.ndarray:
-        """The same of points (n, 2) of the plane z = 0 at the time t [s]."""
+        """Returns the gaps (n,) [m] of points (n, 2) of the plane z = 0 at the time t [s]."""
         whole = np.pad(points, [(0, 0), (0, len(self.velocity) - 2)])
         return self.gap(self.drive.at_start(whole, t) if self.drive else whole - self.velocity * t)
 
 
 @dataclass(frozen=True)
 class Drive:
-    """What moves an obstacle from where it is given: its `way` [m], and its `turn` [rad] about an axis (3,) through `pivot`."""
+    """The prescribed motion of an obstacle: a translation `way` [m], and a rotation `turn` [rad] about
+    an axis (3,) through `pivot`.
+    """
 
     way: tuple[TimeFunction, ...]
     turn: TimeFunction
@@ -112,11 +125,13 @@ class Drive:
 
     @property
     def fastest_turn(self) -> float:
-        """The largest rate of its turn [rad/s]."""
+        """The largest angular velocity [rad/s]."""
         return float(abs(self.turn.knots[:, 2]).max())
 
     def at_start(self, points: np.ndarray, t: float) -> np.ndarray:
-        """Where points (n, axes) of the time t [s] would be on the obstacle at the start."""
+        """Returns where points (n, axes) that are on the moved obstacle at the time t [s] were on it
+        at the start.
+        """
         axes = points.shape[1]
         way = np.array([one(t) - one(0.0) for one in self.way])
         back = tumbling.rotation(-self.axis * float(self.turn(t) - self.turn(0.0)))[:axes, :axes]
@@ -124,13 +139,16 @@ class Drive:
 
 
 def read(tables: list[models.Obstacle], dimension: Dimension, end_time: float, folder: Path) -> list[Obstacle]:
-    """The obstacles of the [[obstacle]] tables; functions of time are used up to end_time [s], files sought from
-    `folder` on."""
+    """Returns the obstacles of [[obstacle]] tables. Functions of time are used up to `end_time` [s];
+    files are relative to `folder`.
+    """
     return gathered([partial(_obstacle, table, dimension, end_time, folder) for table in tables])
 
 
 def settled(found: list[Obstacle], centre: np.ndarray, half: float) -> list[Obstacle]:
-    """The same, where bodies lie in a box of this half size [m]: how steep and curved an implicit one is there."""
+    """Returns the obstacles with the largest gradient and curvature of implicit ones in a box about
+    `centre` of half size `half` [m], in which the bodies lie.
+    """
     return [replace(one, numbers=implicit.settled(f"obstacle.{k}", one.numbers[2:], centre, half)) if one.kind == "implicit" else one
             for k, one in enumerate(found, 1)]
 
@@ -143,7 +161,7 @@ def _obstacle(table: models.Obstacle, dimension: Dimension, end_time: float, fol
 
 
 def _drive(table: models.Obstacle, of: Dimension, end_time: float) -> Drive | None:
-    """Of the entries motion, rotation, pivot and axis; None where there are none."""
+    """Returns the motion of the entries motion, rotation, pivot and axis, or None without them."""
     if not any(key in table for key in DRIVE):
         return None
     for key, needs in (("pivot", "rotation"), ("axis", "rotation")):
@@ -179,12 +197,14 @@ def _plane(table: models.Plane, dimension: Dimension) -> tuple[float, ...]:
     if dimension is AXISYMMETRIC and normal[0] != 0:
         raise BadInput(f"{table.at('normal')}: '{table.given('normal')}' is not along the axis of revolution (accepted: [0, 1] or "
                        f"[0, -1])")
-    normal = normal / abs(normal).max()                    # so that no square of it underflows
+    normal = normal / abs(normal).max()                    # its squares do not underflow
     return *map(float, point), *map(float, normal / np.linalg.norm(normal))
 
 
 def _surface(table: models.Surface, dimension: Dimension, folder: Path) -> tuple[float, ...]:
-    """Turned about the origin of the file's coordinates, then moved."""
+    """Returns the numbers of the surface of a file, rotated about the origin of the file and then
+    moved.
+    """
     try:
         points, triangles = surface_file.read(folder / table.file)
     except BadInput as error:
@@ -195,7 +215,7 @@ def _surface(table: models.Surface, dimension: Dimension, folder: Path) -> tuple
 
 
 def _triangles(numbers: tuple[float, ...]) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices (n, 3) and triangles (t, 3) of a surface's numbers."""
+    """Returns the vertices (n, 3) and triangles (t, 3) of the numbers of a surface."""
     points, faces = int(numbers[1]), int(numbers[2])
     data = np.array(numbers[3:])
     return data[:3 * points].reshape(-1, 3), data[3 * points:3 * (points + faces)].astype(int).reshape(-1, 3)
