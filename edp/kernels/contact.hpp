@@ -1,6 +1,7 @@
-// contact.hpp: the kernels of core/contact/{normal,tractions,window,solve}.idp: tractions of contact
-// candidates, the active set and its gap Jacobian, and the contact problem on the active set. Arrays over ns candidates are stacked by component, component c of
-// candidate s at c ns + s; `kinds` = 1 + slips counts the components of gap and tangential slip.
+// contact.hpp: the kernels of core/contact/{normal,tractions,window,solve}.idp: tractions of
+// contact candidates, the active set and its gap Jacobian, and the contact problem on the active
+// set. Arrays over ns candidates are stacked by component, component c of candidate s at c ns + s;
+// `kinds` = 1 + slips is the number of components of gap and tangential slip.
 #pragma once
 #include "call.hpp"
 #include "contact-solve.hpp"
