@@ -297,6 +297,7 @@ private:
     return fine;
   }
   void sum(const std::vector<double> &ofElements, std::vector<double> &all) const {
+    // Adds the contributions of the elements at each node.
     all.assign(nodes * D, 0.);
     for (size_t a = 0; a < node.size(); a++)
       for (int i = 0; i < D; i++) all[node[a] * D + i] += ofElements[a * D + i];

@@ -234,7 +234,7 @@ class Newton {
   std::shared_ptr<const Rows::Pattern> pattern;  // of P
   std::shared_ptr<void> numeric;                 // UMFPACK's LU of P
 
-  void factorDense(const Rows &B, const Vector &S) {
+  void factorDense(const Rows &B, const Vector &S) {   // LU of S + K
     int info;                                    // > 0 if singular; the solution is then nan
     LU = S;
     pivots.resize(n);
@@ -242,7 +242,7 @@ class Newton {
     if (n > 0) dgetrf_(&n, &n, LU.data(), &n, pivots.data(), &info);
   }
 
-  void factorSparse(const Rows &B, const Vector &S) {
+  void factorSparse(const Rows &B, const Vector &S) {   // P and its LU
     void *made = nullptr;
     pattern = B.pattern;
     const Indices &start = pattern->start, &row = pattern->row;
