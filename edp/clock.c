@@ -1,6 +1,9 @@
-/* clock.c: FreeFEM reads the processor clock twice a statement, by a system call. Preloaded, this clock() reads it where the coarse clock, which
-   needs none, has ticked (every 1 to 10 ms): runs take half the time and give the same bytes. Built and preloaded by orchestrate/ffimpact/freefem/freefem.py; by hand:
-     cc -O2 -shared -fPIC -o libclock.so edp/clock.c;  LD_PRELOAD=$PWD/libclock.so FreeFem++ -nw edp/disc-plane.edp                           */
+/* clock.c: a clock() for FreeFEM, which reads the processor clock twice a statement by a system
+   call. This one reads it only after a tick of the coarse clock (every 1 to 10 ms), which needs no
+   system call. Results are the same to the byte. freefem.py of orchestrate/ffimpact/freefem builds
+   and preloads it; by hand:
+     cc -O2 -shared -fPIC -o libclock.so edp/clock.c
+     LD_PRELOAD=$PWD/libclock.so FreeFem++ -nw edp/disc-plane.edp */
 #include <time.h>
 
 clock_t clock(void)

@@ -1,7 +1,8 @@
-// bodies.hpp: the bodies as their operators see them, made once of the sparse matrices of edp/core/discrete: forces and tangent, in any
-// dimension. Displacements are taken by nodes: (node, component), D components. F_iJ - delta_iJ = sum over the nodes a of a point of N_a,J
-// u_ai; of bodies of revolution (H = 1) there is F_33 = 1 + u_r/r as well, with N_a/r in the place of a derivative. Points that have the
-// same nodes, those of an element, follow each other. Arrays over points are stacked as in the scripts: component k of point q at k nq + q.
+// bodies.hpp: residual, tangent, energy and stresses of the bodies, from the sparse matrices of
+// edp/core/discrete, in any dimension D. Nodal arrays are (node, component). With the nodes a of an
+// element, F_iJ = delta_iJ + sum N_a,J u_ai. For bodies of revolution (H = 1) F_33 = 1 + u_r/r, and
+// N_a/r takes the place of a derivative. The quadrature points of an element are consecutive.
+// Arrays over the nq points are stacked: component k of point q is at k nq + q.
 #pragma once
 #include <algorithm>
 #include <map>
@@ -10,9 +11,9 @@
 
 namespace bodies {
 
-// A sparse matrix as FreeFEM holds it: entries in any order.
+// A sparse matrix of FreeFEM: entries in any order.
 struct Triplets {
-  int n, m;                                // rows, columns
+  int n, m;                                // numbers of rows and columns
   size_t size;
   const int *row, *column;
   const double *value;
@@ -21,51 +22,60 @@ struct Triplets {
 using laws::Matrix;
 using laws::Symmetric;
 
-// The components of F and C that are stored: (i, J), with which component u_i and which N_a,J make it; (J, L) as in laws.hpp.
+// The stored components of F and C. Component k of F is F_iJ, i = row(k), J = column(k), made of
+// u_component(k) and shape derivative number candidate(k), of which a node has `candidates`.
+// symmetric(k) is the position of component k of C in a Symmetric.
 template<int dimensions, int revolves> struct Stored {
-  static const int D = dimensions, H = revolves, F = D * D + H, C = D == 3 ? 6 : 4, candidates = D + H;
+  static const int D = dimensions, H = revolves, F = D * D + H, C = D == 3 ? 6 : 4,
+    candidates = D + H;
   static int row(int k) { return k < D * D ? k / D : 2; }
   static int column(int k) { return k < D * D ? k % D : 2; }
   static int component(int k) { return k < D * D ? k / D : 0; }
   static int candidate(int k) { return k < D * D ? k % D : D; }
-  static int symmetric(int k) { static const int plane[4] = {0, 1, 3, 2}; return D == 3 ? k : plane[k]; }
+  static int symmetric(int k) {
+    static const int plane[4] = {0, 1, 3, 2};
+    return D == 3 ? k : plane[k];
+  }
 };
 
-// What evaluate() of residual.idp says of a step, too.
+// How an evaluation ended, as stepEnded of residual.idp.
 enum { fine = 0, inverted = 2, notANumber = 3 };
-enum { stepMean = 0, stepMiddle = 1, stepEnd = 2 };   // of normal.idp
+enum { stepMean = 0, stepMiddle = 1, stepEnd = 2 };   // where in the step, as in normal.idp
 
-const int most = 10, mostPoints = 8;       // nodes of an element: those of a quadratic tetrahedron; its points
+const int most = 10, mostPoints = 8;       // nodes of an element (quadratic tetrahedron); points
 
-// The arrays of integrators.idp that forces() reads (F0, C0) and fills.
+// Arrays of integrators.idp: forces() reads F0, C0 and fills the others.
 struct Deformation { double *F0, *C0, *F1, *C1, *jacobian1, *Fs, *Ss; };
 
-// rate: 1/dt, 0 where no body is damped; breaks: det F <= 0 ends a step; carries: pressures of elements are carried (volume.idp), and the
-// residual is the condensed one.
+// rate: 1/dt, 0 if no body is damped. breaks: det F <= 0 ends the step. carries: element pressures
+// are carried from iterate to iterate, and the residual is the condensed one (volume.idp).
 struct Step { double massScale, rate;  int where;  bool breaks, carries; };
 
-// Those of volume.idp, by elements, as `cell` has them.
+// Arrays of volume.idp, over elements as numbered there; dBase and lag over unknowns.
 struct Volume { double *carried, *star, *now, *dBase, *lag; };
 
 class Bodies {
 public:
   int ndof = 0, nq = 0, nodes = 0, D = 0, H = 0;
-  std::vector<int> unknown;                // (node, component) -> unknown
-  std::vector<double> free;                // (ndof) 0 at what is held
-  std::vector<laws::Material> materials;   // those there are: points that follow each other share one
-  std::vector<int> materialOf;             // (nq)
-  double *damping = nullptr;               // dampingState of damping.idp: A, stacked, and what has been taken
-  std::vector<double> weight;              // (nq) [m2, m3] of the WHOLE bodies
-  // elements: their nodes, their points, N_a,J of each of these (point, node, slot)
+  std::vector<int> unknown;                // unknown of (node, component)
+  std::vector<double> free;                // (ndof) 0 at unknowns held by supports
+  std::vector<laws::Material> materials;   // consecutive points of the same material share one
+  std::vector<int> materialOf;             // (nq) index of the material
+  double *damping = nullptr;               // dampingState of damping.idp: A, stacked, then the
+                                           // energy dissipated so far
+  std::vector<double> weight;              // (nq) quadrature weights [m2, m3] of the WHOLE bodies
+  // elements g: nodes node[firstNode[g] ... firstNode[g + 1] - 1], points from firstPoint[g], and
+  // N_a,J as shape(point, node, J) from firstShape[g]
   std::vector<int> firstNode, node, firstPoint;
   std::vector<size_t> firstShape;
   std::vector<double> shape;
-  // pairs of nodes (a >= b) that an element or the mass couples, their mass, alike for all components [kg/m, kg], and their D x D blocks of
-  // the tangent; of every element its pairs
+  // pairs of nodes (a >= b) coupled by an element or by the mass; the pairs of element g from
+  // firstPair[g]; their mass, equal for all components [kg/m, kg]; their D x D block of the tangent
   std::vector<int> pairA, pairB, firstPair, pairOf;
   std::vector<double> massOf;
   std::vector<double> block;
-  // where volume is that of elements: their numbers in the scripts, sums of weights, slopes, g0 (node, component); whether those are known
+  // elements with a volume term of their own: number in the scripts, sum of weights, tangent slope
+  // and g0 (node, component) of volume.idp; slopeKnown: slope and g0 are set
   std::vector<int> cell;
   std::vector<double> cellWeight, slope, g0;
   bool slopeKnown = false;
@@ -77,18 +87,20 @@ public:
   }
   const laws::Material &material(int q) const { return materials[materialOf[q]]; }
 
-  // From componentOf[i]: which unknown is component i of node a.
   void component(int i, int dimensions, const Triplets &pick) {
+    // Sets the unknowns of component i; pick is componentOf[i] (nodes x ndof) of the scripts.
     D = dimensions;
     nodes = pick.n;
     ndof = pick.m;
     unknown.resize(D * nodes);
-    for (size_t e = 0; e < pick.size; e++) if (pick.value[e] != 0) unknown[pick.row[e] * D + i] = pick.column[e];
+    for (size_t e = 0; e < pick.size; e++)
+      if (pick.value[e] != 0) unknown[pick.row[e] * D + i] = pick.column[e];
   }
 
-  // Elements, shapes and pairs from `gradient` (nF nq x ndof) and the mass (ndof x ndof): from the rows of F_11, F_12 ... (the first
-  // component's), and of F_33 of revolution; of the consistent mass, whose components are alike and do not mix, from those of the first.
   void make(const Triplets &gradient, const Triplets &mass) {
+    // Elements, shapes and pairs from `gradient` (nF nq x ndof) and the consistent mass (ndof x
+    // ndof). Shapes are read from the rows of F_11, F_12 ... and, for revolution, F_33; the mass
+    // from the first component, as all components have the same mass and are not coupled.
     std::vector<int> nodeOf(ndof, -1);
     for (int a = 0; a < nodes; a++) nodeOf[unknown[a * D]] = a;
     nq = int(weight.size());
@@ -106,10 +118,12 @@ public:
     for (int q = 0; q < nq; q++) {
       for (auto &N : at[q]) shape.insert(shape.end(), N.second.begin(), N.second.end());
       const bool same = q + 1 < nq && at[q].size() == at[q + 1].size()
-        && std::equal(at[q].begin(), at[q].end(), at[q + 1].begin(), [](auto &M, auto &N) { return M.first == N.first; });
+        && std::equal(at[q].begin(), at[q].end(), at[q + 1].begin(),
+                      [](auto &M, auto &N) { return M.first == N.first; });
       if (same) continue;
       for (auto &N : at[q]) node.push_back(N.first);
-      for (auto &M : at[q]) for (auto &N : at[q]) if (N.first <= M.first) pairOf.push_back(pair(M.first, N.first));
+      for (auto &M : at[q]) for (auto &N : at[q])
+        if (N.first <= M.first) pairOf.push_back(pair(M.first, N.first));
       firstNode.push_back(int(node.size()));
       firstPoint.push_back(q + 1);
       firstShape.push_back(shape.size());
@@ -122,82 +136,97 @@ public:
     block.assign(pairA.size() * D * D, 0.);
   }
 
-  // Of elements with a volume of their own: elementOfPoint (nq).
   void facets(const std::vector<int> &elementOfPoint) {
+    // Sets up the volume term of the elements; elementOfPoint (nq): their numbers in the scripts.
     cell.clear();
     cellWeight.assign(firstPoint.size() - 1, 0.);
     for (size_t g = 0; g + 1 < firstPoint.size(); g++) {
       cell.push_back(elementOfPoint[firstPoint[g]]);
       for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++) cellWeight[g] += weight[q];
-      if (cellWeight[g] == 0) cellWeight[g] = 1;   // of a rigid body, which has no strain
+      if (cellWeight[g] == 0) cellWeight[g] = 1;   // in a rigid body, which has no strain
     }
     slope.assign(cell.size(), 0.);
     g0.assign(node.size() * D, 0.);
   }
 
-  // G' (w P) + M (massScale d - inertiaKnown) - bodyForce [N/m, N], also at what is held: inner forces, inertia
-  // and body force of (2) at the increment d, and the deformation that they are taken at.
-  int forces(const double *d, const double *inertiaKnown, const double *bodyForce, const Step &step, const Deformation &at,
-             double *residual) {
+  int forces(const double *d, const double *inertiaKnown, const double *bodyForce,
+             const Step &step, const Deformation &at, double *residual) {
+    // residual = G^T (w P) + M (massScale d - inertiaKnown) - bodyForce [N/m, N] of (2) at the
+    // increment d, also at held unknowns, and the deformation `at`. Returns fine, inverted or
+    // notANumber.
     int ended = fine;
     nodal.resize(nodes * D);
     for (int i = 0; i < nodes * D; i++) nodal[i] = d[unknown[i]];
     dispatch([&](auto stored) { ended = this->template innerForces<decltype(stored)>(step, at); });
     if (ended != fine) return ended;
     if (step.carries) for (int i = 0; i < nodes * D; i++) volume.lag[unknown[i]] = lagging[i];
-    for (int i = 0; i < nodes * D; i++) nodal[i] = step.massScale * nodal[i] - inertiaKnown[unknown[i]];
+    for (int i = 0; i < nodes * D; i++)
+      nodal[i] = step.massScale * nodal[i] - inertiaKnown[unknown[i]];
     dispatch([&](auto stored) { this->template inertia<stored.D>(); });
     for (int i = 0; i < nodes * D; i++) residual[unknown[i]] = pull[i] - bodyForce[unknown[i]];
     return fine;
   }
 
-  // The blocks of massScale M + stiffnessScale K, K the derivative of G' (w F S) at F, S, and of the moduli of damping at rate = 1/dt.
-  void tangent(const double *F, const double *S, const double *p, double massScale, double stiffnessScale, double rate) {
+  void tangent(const double *F, const double *S, const double *p, double massScale,
+               double stiffnessScale, double rate) {
+    // Blocks of massScale M + stiffnessScale K, K the derivative of G^T (w F S) at F, S with the
+    // element pressures p, with the moduli of damping at rate = 1/dt.
     std::fill(block.begin(), block.end(), 0.);
-    dispatch([&](auto stored) { this->template stiffness<decltype(stored)>(F, S, p, stiffnessScale, rate); });
-    for (size_t p = 0; p < massOf.size(); p++) for (int i = 0; i < D; i++) block[p * D * D + i * D + i] += massScale * massOf[p];
+    dispatch([&](auto stored) {
+      this->template stiffness<decltype(stored)>(F, S, p, stiffnessScale, rate);
+    });
+    for (size_t p = 0; p < massOf.size(); p++)
+      for (int i = 0; i < D; i++) block[p * D * D + i * D + i] += massScale * massOf[p];
   }
 
-  // At every point, of C: the energy [J/m3], the smallest stretch of the motions there are, ellipticity; of F: Cauchy's stress (6 nq) and
-  // von Mises' [Pa].
   void energies(const double *C, double *W) const {
+    // W (nq) [J/m3]: energy of the law, of relaxation and of the volume term at C.
     each([&](auto stored, int q) {
       typedef decltype(stored) T;
       const laws::Material &m = material(q);
       const Symmetric c = symmetric<T>(C, q);
       W[q] = laws::energy(m, c);
-      if (m.relaxing > 0) W[q] += laws::stored(m, laws::invariantsBeyond(c, symmetric<T>(damping, q)), 1);
+      if (m.relaxing > 0)
+        W[q] += laws::stored(m, laws::invariantsBeyond(c, symmetric<T>(damping, q)), 1);
     });
     for (size_t g = 0; g < cell.size(); g++) {
       double theta = 0;
       dispatch([&](auto stored) {
         for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++)
-          theta += weight[q] / cellWeight[g] * laws::volume(material(q), symmetric<decltype(stored)>(C, q));
+          theta += weight[q] / cellWeight[g]
+            * laws::volume(material(q), symmetric<decltype(stored)>(C, q));
       });
-      for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++) W[q] += laws::volumeEnergy(material(q), theta);
+      for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++)
+        W[q] += laws::volumeEnergy(material(q), theta);
     }
   }
-  // `damping` after a step from C0 to C1.
   void damp(const double *C0, const double *C1, double dt) {
+    // Advances `damping` over a step from C0 to C1.
     each([&](auto stored, int q) {
       typedef decltype(stored) T;
       Symmetric A = symmetric<T>(damping, q);
-      damping[T::C * nq + q] += laws::damp(material(q), symmetric<T>(C0, q), symmetric<T>(C1, q), dt, A);
+      damping[T::C * nq + q] +=
+        laws::damp(material(q), symmetric<T>(C0, q), symmetric<T>(C1, q), dt, A);
       put<T>(A, q, damping);
     });
   }
   void ellipticities(const double *C, double *e) const {
-    each([&](auto stored, int q) { e[q] = material(q).law->ellipticity(material(q), symmetric<decltype(stored)>(C, q), D == 3); });
+    each([&](auto stored, int q) {
+      e[q] = material(q).law->ellipticity(material(q), symmetric<decltype(stored)>(C, q), D == 3);
+    });
   }
   void smallestStretches(const double *C, double *stretch) const {
+    // Smallest principal stretch; in plane strain the smaller one in the plane.
     each([&](auto stored, int q) {
       const laws::Vector<3> L = laws::principal(symmetric<decltype(stored)>(C, q), D == 3);
       stretch[q] = std::sqrt(std::max(0., D == 3 ? L[2] : H == 1 ? std::min(L[1], L[2]) : L[1]));
     });
   }
   void stresses(const double *F, const double *pressure, double *sigma, double *mises) const {
+    // Cauchy stress sigma (6 nq) and von Mises stress (nq) [Pa] at F with the element pressures.
     std::vector<double> p(nq, 0.);
-    for (size_t g = 0; g < cell.size(); g++) for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++) p[q] = pressure[cell[g]];
+    for (size_t g = 0; g < cell.size(); g++)
+      for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++) p[q] = pressure[cell[g]];
     each([&](auto stored, int q) {
       Symmetric s;
       mises[q] = laws::cauchy(material(q), whole<decltype(stored)>(F, q), p[q], s);
@@ -206,25 +235,30 @@ public:
   }
 
 private:
-  std::map<std::pair<int, int>, int> knownHistory;
+  std::map<std::pair<int, int>, int> knownHistory;   // number of each pair of nodes
   int pair(int a, int b) {
-    auto found = knownHistory.insert({{a, b}, int(pairA.size())});
-    if (found.second) { pairA.push_back(a);  pairB.push_back(b);  massOf.push_back(0); }
-    return found.first->second;
+    // The number of the pair of nodes a >= b, which is added if it is new.
+    auto entry = knownHistory.insert({{a, b}, int(pairA.size())});
+    if (entry.second) { pairA.push_back(a);  pairB.push_back(b);  massOf.push_back(0); }
+    return entry.first->second;
   }
 
-  std::vector<double> nodal, pull, increment, lagging;   // by node and component; way: d - dBase
-  std::vector<double> own, ownLagging;     // pull and lagging, of every element its own
+  // (node, component): displacements or accelerations, forces, d - dBase, lag of volume.idp
+  std::vector<double> nodal, pull, increment, lagging;
+  std::vector<double> own, ownLagging;     // contributions of each element to pull and lagging
 
-  // f(Stored<...>()) of these bodies; f(that, q) of every point.
+  // Calls f(stored) with the Stored<...> of these bodies.
   template<class Function> void dispatch(Function f) const {
     if (D == 3) f(Stored<3, 0>()); else if (H == 1) f(Stored<2, 1>()); else f(Stored<2, 0>());
   }
-  template<class Function> void each(Function f) const { dispatch([&](auto stored) { for (int q = 0; q < nq; q++) f(stored, q); }); }
+  // Calls f(stored, q) for every point q.
+  template<class Function> void each(Function f) const {
+    dispatch([&](auto stored) { for (int q = 0; q < nq; q++) f(stored, q); });
+  }
 
   int nodesOf(size_t g) const { return firstNode[g + 1] - firstNode[g]; }
 
-  // F, and C, S or A, of point q.
+  // F, or the symmetric C, S or A, of point q.
   template<class T> Matrix whole(const double *stacked, int q) const {
     Matrix F = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     for (int k = 0; k < T::F; k++) F[3 * T::row(k) + T::column(k)] = stacked[k * nq + q];
@@ -239,9 +273,9 @@ private:
     for (int k = 0; k < T::C; k++) stacked[k * nq + q] = A[T::symmetric(k)];
   }
 
-  // `pull` of inner forces, and `lagging`, of every element its own, then their sums in the order of the elements, however many threads
-  // there are.
   template<class T> int innerForces(const Step &step, const Deformation &at) {
+    // pull = internal forces, and `lagging`. Element contributions are summed in the order of the
+    // elements, so the result does not depend on the number of threads.
     const int elements = int(firstNode.size()) - 1;
     if (step.carries) {
       increment.resize(nodes * D);
@@ -251,7 +285,7 @@ private:
     if (step.carries) ownLagging.assign(node.size() * D, 0.);
     #pragma omp parallel for
     for (int g = 0; g < elements; g++) {
-      if (nodesOf(g) == 0) continue;       // points of rigid bodies that count for nothing (rigid-bodies.idp)
+      if (nodesOf(g) == 0) continue;       // points of rigid bodies that have no weight
       stretched<T>(g, step, at);
       stressed<T>(g, step, at);
     }
@@ -263,11 +297,14 @@ private:
     return fine;
   }
   void sum(const std::vector<double> &ofElements, std::vector<double> &all) const {
+    // Adds the contributions of the elements at each node.
     all.assign(nodes * D, 0.);
-    for (size_t a = 0; a < node.size(); a++) for (int i = 0; i < D; i++) all[node[a] * D + i] += ofElements[a * D + i];
+    for (size_t a = 0; a < node.size(); a++)
+      for (int i = 0; i < D; i++) all[node[a] * D + i] += ofElements[a * D + i];
   }
 
   template<int D> void inertia() {
+    // pull += M nodal
     for (size_t p = 0; p < massOf.size(); p++) {
       const double m = massOf[p], *x = nodal.data();
       double *to = pull.data();
@@ -277,23 +314,27 @@ private:
     }
   }
 
-  // The least of the values at all points, or nan.
   double least(const double *values) const {
+    // The smallest of nq values, nan if there is one.
     double smallest = 1e300;
-    for (int q = 0; q < nq; q++) if (!(values[q] >= smallest)) smallest = values[q] == values[q] && smallest == smallest ? values[q] : NAN;
+    for (int q = 0; q < nq; q++)
+      if (!(values[q] >= smallest))
+        smallest = values[q] == values[q] && smallest == smallest ? values[q] : NAN;
     return smallest;
   }
 
-  // F1 = F0 + G d, Fs, det F1.
   template<class T> void stretched(size_t g, const Step &step, const Deformation &at) const {
+    // At the points of element g: F1 = F0 + G d, Fs at the middle or end of the step, det F1.
     const int n = nodesOf(g), D = T::D;
     const double *N = &shape[firstShape[g]];
     double its[most * D];
-    for (int a = 0; a < n; a++) for (int i = 0; i < D; i++) its[a * D + i] = nodal[node[firstNode[g] + a] * D + i];
+    for (int a = 0; a < n; a++)
+      for (int i = 0; i < D; i++) its[a * D + i] = nodal[node[firstNode[g] + a] * D + i];
     for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++) {
       double dF[T::F] = {};
       for (int a = 0; a < n; a++, N += T::candidates) {
-        for (int i = 0; i < D; i++) for (int J = 0; J < D; J++) dF[i * D + J] += N[J] * its[a * D + i];
+        for (int i = 0; i < D; i++)
+          for (int J = 0; J < D; J++) dF[i * D + J] += N[J] * its[a * D + i];
         if (T::H) dF[D * D] += N[D] * its[a * D];
       }
       for (int k = 0; k < T::F; k++) {
@@ -305,17 +346,19 @@ private:
     }
   }
 
-  // nodal forces += G' (w F S) at point q with shapes N of n nodes.
-  template<class T> void pulled(int q, int n, const double *N, const Matrix &F, const Symmetric &S, double *its) const {
+  template<class T> void pulled(int q, int n, const double *N, const Matrix &F,
+                                const Symmetric &S, double *its) const {
+    // its += G^T (w F S): forces on the n nodes, with shapes N, of the stress S at point q.
     const Matrix P = weight[q] * laws::product(F, S);
     for (int a = 0; a < n; a++, N += T::candidates) {
-      for (int i = 0; i < T::D; i++) for (int J = 0; J < T::D; J++) its[a * T::D + i] += N[J] * P[3 * i + J];
+      for (int i = 0; i < T::D; i++)
+        for (int J = 0; J < T::D; J++) its[a * T::D + i] += N[J] * P[3 * i + J];
       if (T::H) its[a * T::D] += N[T::D] * P[8];
     }
   }
 
-  // C1, Ss and the element's own pull, G' (w Fs Ss).
   template<class T> void stressed(size_t g, const Step &step, const Deformation &at) {
+    // At the points of element g: C1, Ss; and the forces G^T (w Fs Ss) of the element.
     const int n = nodesOf(g);
     const double *N = &shape[firstShape[g]];
     double *its = &own[size_t(firstNode[g]) * D];
@@ -323,8 +366,10 @@ private:
     if (!cell.empty()) press<T>(g, step, at, pressed);
     for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++, N += n * T::candidates) {
       const laws::Material &m = material(q);
-      const Symmetric C0 = symmetric<T>(at.C0, q), C1 = laws::rightCauchyGreen(whole<T>(step.where == stepMiddle ? at.Fs : at.F1, q));
-      Symmetric S = step.where == stepMean ? m.law->algorithmicStress(m, C0, C1) : m.law->stress(m, C1);
+      const Symmetric C0 = symmetric<T>(at.C0, q),
+        C1 = laws::rightCauchyGreen(whole<T>(step.where == stepMiddle ? at.Fs : at.F1, q));
+      Symmetric S = step.where == stepMean ? m.law->algorithmicStress(m, C0, C1)
+        : m.law->stress(m, C1);
       if (step.rate > 0) {
         const Symmetric A = m.relaxing > 0 ? symmetric<T>(damping, q) : laws::identity;
         S += laws::dampingStress(m, C0, laws::rightCauchyGreen(whole<T>(at.F1, q)), A, step.rate);
@@ -337,13 +382,17 @@ private:
     if (step.carries) miss<T>(g, at, pressed, its);
   }
 
-  // Of an element with a volume of its own: its pressure p, p* - p, and T at its points (volume.idp).
+  // Volume term of an element (volume.idp): pressure p, p* - p, and T = 2 dj/dC at its points.
   struct Pressed { double p, left;  Symmetric T[mostPoints]; };
-  template<class T> void press(size_t g, const Step &step, const Deformation &at, Pressed &its) const {
+  template<class T> void press(size_t g, const Step &step, const Deformation &at,
+                               Pressed &its) const {
+    // p* from the mean volume measures theta0, theta1 at both ends of the step; p is p*, or, if it
+    // is carried, carried + slope g0.(d - dBase). Incompressible: p* = p + kappa/2 (theta1 - 1).
     const laws::Material &m = material(firstPoint[g]);
     double theta0 = 0, theta1 = 0;
     for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++) {
-      const Symmetric C1 = laws::rightCauchyGreen(whole<T>(step.where == stepMiddle ? at.Fs : at.F1, q));
+      const Symmetric C1 =
+        laws::rightCauchyGreen(whole<T>(step.where == stepMiddle ? at.Fs : at.F1, q));
       const double w = weight[q] / cellWeight[g], j = laws::volume(m, C1);
       Symmetric &to = its.T[q - firstPoint[g]];
       theta1 += w * j;
@@ -355,7 +404,8 @@ private:
       }
       else to = laws::volumeDirection(m, C1, j);
     }
-    double star = step.where == stepMean ? laws::pressure(m, theta0, theta1) : laws::pressure(m, theta1);
+    double star = step.where == stepMean ? laws::pressure(m, theta0, theta1)
+      : laws::pressure(m, theta1);
     its.p = star;
     if (step.carries) {
       its.p = volume.carried[cell[g]];
@@ -366,14 +416,17 @@ private:
     volume.star[cell[g]] = star;
     volume.now[cell[g]] = its.p;
   }
-  double alongG0(size_t g) const {
+  double alongG0(size_t g) const {   // g0.(d - dBase) of element g
     double sum = 0;
-    for (int a = firstNode[g]; a < firstNode[g + 1]; a++) for (int i = 0; i < D; i++) sum += g0[size_t(a) * D + i] * increment[node[a] * D + i];
+    for (int a = firstNode[g]; a < firstNode[g + 1]; a++)
+      for (int i = 0; i < D; i++) sum += g0[size_t(a) * D + i] * increment[node[a] * D + i];
     return sum;
   }
 
-  // What p* - p pulls: along g0, where that is known, and lagging the rest.
-  template<class T> void miss(size_t g, const Deformation &at, const Pressed &pressed, double *its) {
+  template<class T> void miss(size_t g, const Deformation &at, const Pressed &pressed,
+                              double *its) {
+    // Forces of p* - p: its += g0 (p* - p), if g0 is known, else g (p* - p). The lag of the element
+    // is the remainder, (g - g0)(p* - p).
     const int n = nodesOf(g);
     const double *N = &shape[firstShape[g]];
     double all[most * T::D] = {};
@@ -386,24 +439,28 @@ private:
     }
   }
 
-  // block += scale times sum over points of w N_a,J dP_iJ/dF_kL N_b,L.
-  template<class T> void stiffness(const double *F, const double *S, const double *pressure, double scale, double rate) {
+  template<class T> void stiffness(const double *F, const double *S, const double *pressure,
+                                   double scale, double rate) {
+    // block += scale times the sum over points of w N_a,J dP_iJ/dF_kL N_b,L, and rankOne().
     for (size_t g = 0; g + 1 < firstNode.size(); g++) {
       const int n = nodesOf(g), D = T::D;
       if (n == 0) continue;
       const double *N = &shape[firstShape[g]];
       for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++) {
         double A[T::F][T::F];
-        slopes<T>(q, whole<T>(F, q), symmetric<T>(S, q), cell.empty() ? 0 : pressure[cell[g]], scale, rate, A);
+        slopes<T>(q, whole<T>(F, q), symmetric<T>(S, q), cell.empty() ? 0 : pressure[cell[g]],
+                  scale, rate, A);
         const int *to = &pairOf[firstPair[g]];
         for (int a = 0; a < n; a++) {
           double Y[D][T::F] = {};          // sum over J of N_a,J dP_iJ/dF
           for (int k = 0; k < T::F; k++)
-            for (int l = 0; l < T::F; l++) Y[T::component(k)][l] += N[a * T::candidates + T::candidate(k)] * A[k][l];
+            for (int l = 0; l < T::F; l++)
+              Y[T::component(k)][l] += N[a * T::candidates + T::candidate(k)] * A[k][l];
           for (int b = 0; b <= a; b++, to++) {
             double *into = &block[size_t(*to) * D * D];
             for (int i = 0; i < D; i++)
-              for (int l = 0; l < T::F; l++) into[i * D + T::component(l)] += Y[i][l] * N[b * T::candidates + T::candidate(l)];
+              for (int l = 0; l < T::F; l++)
+                into[i * D + T::component(l)] += Y[i][l] * N[b * T::candidates + T::candidate(l)];
           }
         }
         N += n * T::candidates;
@@ -413,9 +470,12 @@ private:
     slopeKnown = !cell.empty();
   }
 
-  // A = scale w dP_iJ/dF_kL, dP_iJ/dF_kL = delta_ik S_JL + F_iI F_kK D_IJKL, as addModuli() of assembly.idp has it.
-  template<class T> void slopes(int q, const Matrix &F, const Symmetric &S, double p, double scale, double rate, double A[][T::F]) const {
-    const laws::Moduli moduli = laws::moduli(material(q), laws::rightCauchyGreen(F), p, scale, rate);
+  template<class T> void slopes(int q, const Matrix &F, const Symmetric &S, double p,
+                                double scale, double rate, double A[][T::F]) const {
+    // A = scale w dP_iJ/dF_kL, dP_iJ/dF_kL = delta_ik S_JL + F_iI F_kK D_IJKL, as addModuli() of
+    // assembly.idp.
+    const laws::Moduli moduli = laws::moduli(material(q), laws::rightCauchyGreen(F), p, scale,
+                                             rate);
     double G[6][T::F];                     // F_kK D_IJKL
     for (int a = 0; a < 6; a++) for (int l = 0; l < T::F; l++) {
       const double *f = &F[3 * T::row(l)], *D = moduli.D[a];
@@ -431,8 +491,8 @@ private:
     }
   }
 
-  // g0, slope of an element, and block += slope g0 g0^T.
   template<class T> void rankOne(size_t g, const double *F, double scale) {
+    // g0 = sum of w dj/du and slope = scale U''/(sum of w) of element g; block += slope g0 g0^T.
     const int n = nodesOf(g);
     if (n == 0) return;
     const laws::Material &m = material(firstPoint[g]);
@@ -452,7 +512,8 @@ private:
     for (int a = 0; a < n; a++)
       for (int b = 0; b <= a; b++, to++)
         for (int i = 0; i < D; i++)
-          for (int k = 0; k < D; k++) block[size_t(*to) * D * D + i * D + k] += slope[g] * its[a * D + i] * its[b * D + k];
+          for (int k = 0; k < D; k++)
+            block[size_t(*to) * D * D + i * D + k] += slope[g] * its[a * D + i] * its[b * D + k];
   }
 };
 

@@ -1,24 +1,31 @@
-// contact-law.hpp: forces of a contact point in a step, normal (10) and, with friction, along the obstacle (11)-(13), and their
-// derivatives. The same as core/contact/normal.idp, friction.idp and tractions.idp, which say what the symbols mean, a point at a time.
+// contact-law.hpp: forces on one contact point in a step and their derivatives: the normal force
+// (10) and, with friction, the tangential force (11)-(13). Scripted in core/contact/normal.idp,
+// friction.idp and tractions.idp, which define the symbols. Exports Law, Point and Forces.
 #pragma once
 #include <algorithm>
 #include <cmath>
 
 namespace contact {
 
-enum Place { stepMean, stepMiddle, stepEnd };                      // where in the step the law is evaluated
+enum Place { stepMean, stepMiddle, stepEnd };   // where in the step the normal law is evaluated
 enum Regularization { linear, linearPrinted, sqrtOf, tanhOf };
 
-struct Point { double vN0, k, muStatic, muDynamic; bool sticks; };  // start of the step, stiffness, coefficients, side of the jump
-struct Forces { double t[3], slope[3][3]; };                       // (t_N, -t_T), d/d(q, slip)
+// A contact candidate: penetration at the start of the step [m], stiffness, coefficients of
+// friction, stick or slip status.
+struct Point { double vN0, k, muStatic, muDynamic; bool sticks; };
+struct Forces { double t[3], slope[3][3]; };    // (t_N, -t_T) and d/d(penetration, slip)
 
+// m, epsilon [m/s], the share of epsilon that is a ramp, the step [s]; jumps: mu_f changes by a
+// jump at epsilon; slips: number of tangential components, 0 without friction.
 struct Law {
   double exponent = 1, slipVelocity = 1, bridge = 0.01, dt = 1;
   bool jumps = false;
   int slips = 0, where = stepMean, regularization = linear;
 
   void normal(double vN0, double vN1, double k, double &t, double &stiff) const {
-    // (10): t_N = k v_N^m where v_N > 0, and dt_N/dvN1
+    // (10): t = k v_N^m where v_N > 0, and stiff = dt/dvN1, for penetrations vN0, vN1 at the start
+    // and end of the step. stepMean: the mean of the law from vN0 to vN1 (discreteGradient() of
+    // normal.idp), by a series where the penetration hardly changes.
     const double m = exponent, middle = (vN0 + vN1) / 2;
     t = stiff = 0;
     if (where == stepMean) {
@@ -27,31 +34,44 @@ struct Law {
       const double turn = (vN1 - vN0) / (vN0 + vN1), turn2 = turn * turn;
       if (!stays) t = k * (std::pow(std::max(vN0, vN1), m + 1) / (m + 1) / std::abs(vN1 - vN0));
       else if (m == 1) t = k * middle;
-      else if (moves) t = k * ((std::pow(vN1, m + 1) - std::pow(vN0, m + 1)) / (m + 1) / (vN1 - vN0));
+      else if (moves)
+        t = k * ((std::pow(vN1, m + 1) - std::pow(vN0, m + 1)) / (m + 1) / (vN1 - vN0));
       else t = k * (std::pow(middle, m)
-                    * (1 + m * (m - 1) / 6 * turn2 * (1 + (m - 2) * (m - 3) / 20 * turn2 * (1 + (m - 4) * (m - 5) / 42 * turn2))));
+        * (1 + m * (m - 1) / 6 * turn2 * (1 + (m - 2) * (m - 3) / 20 * turn2
+          * (1 + (m - 4) * (m - 5) / 42 * turn2))));
       if (stays && m == 1) stiff = k / 2;
       else if (!stays || moves) stiff = ((vN1 > 0 ? k * std::pow(vN1, m) : 0) - t) / (vN1 - vN0);
       else stiff = k * m / 2 * std::pow(middle, m - 1) * (1 + (m - 1) / 3 * turn);
     }
-    if (where == stepMiddle && middle > 0) { t = k * std::pow(middle, m);  stiff = k * m / 2 * std::pow(middle, m - 1); }
-    if (where == stepEnd && vN1 > 0) { t = k * std::pow(vN1, m);  stiff = k * m * std::pow(vN1, m - 1); }
+    if (where == stepMiddle && middle > 0) {
+      t = k * std::pow(middle, m);
+      stiff = k * m / 2 * std::pow(middle, m - 1);
+    }
+    if (where == stepEnd && vN1 > 0) {
+      t = k * std::pow(vN1, m);
+      stiff = k * m * std::pow(vN1, m - 1);
+    }
   }
 
   void muPhiAt(double v, const Point &a, double &muPhi, double &slope) const {
-    // mu_f phi [-] and its derivative [s/m] at the velocity v [m/s]
-    const double pi = 3.14159265358979323846, vOverEps = std::abs(v) / slipVelocity, low = a.muStatic * (1 - bridge) / 2,
-        rise = (a.muDynamic - low) / bridge;
+    // mu_f phi [-] (11), (13) and its derivative [s/m] at the velocity v [m/s]. With a jump, either
+    // status is continued beyond epsilon (friction.idp).
+    const double pi = 3.14159265358979323846, vOverEps = std::abs(v) / slipVelocity,
+      low = a.muStatic * (1 - bridge) / 2, rise = (a.muDynamic - low) / bridge;
     double phi = 0, dPhi = 0, mu = a.sticks ? a.muStatic : a.muDynamic, dMu = 0;
     switch (regularization) {
-      case sqrtOf: phi = vOverEps / std::sqrt(vOverEps * vOverEps + 1);  dPhi = std::pow(vOverEps * vOverEps + 1, -1.5);  break;
+      case sqrtOf:
+        phi = vOverEps / std::sqrt(vOverEps * vOverEps + 1);
+        dPhi = std::pow(vOverEps * vOverEps + 1, -1.5);
+        break;
       case tanhOf: phi = std::tanh(vOverEps);  dPhi = 1 - phi * phi;  break;
       case linear: phi = std::min(vOverEps, 1.);  dPhi = vOverEps < 1;  break;
       case linearPrinted:
-        phi = vOverEps < 1 - bridge ? vOverEps / 2 : std::min(1., (1 - bridge) / 2 + (vOverEps - 1 + bridge) * (1 + bridge) / (2 * bridge));
+        phi = vOverEps < 1 - bridge ? vOverEps / 2
+          : std::min(1., (1 - bridge) / 2 + (vOverEps - 1 + bridge) * (1 + bridge) / (2 * bridge));
         dPhi = vOverEps < 1 - bridge ? 0.5 : (vOverEps < 1 ? (1 + bridge) / (2 * bridge) : 0);
     }
-    if (!jumps) {                                                  // smooth: a half cosine from mu_e at eps to mu_d at 2 eps
+    if (!jumps) {   // mu_f falls smoothly from mu_e at eps to mu_d at 2 eps, as a half cosine
       const double half = (a.muStatic - a.muDynamic) / 2;
       mu = a.muDynamic + half * (1 + std::cos(pi * std::max(0., std::min(1., vOverEps - 1))));
       if (vOverEps > 1 && vOverEps < 2) dMu = -half * pi * std::sin(pi * (vOverEps - 1));
@@ -59,10 +79,14 @@ struct Law {
     muPhi = mu * phi;
     slope = mu * dPhi + dMu * phi;
     if (jumps && regularization == linearPrinted) {
-      if (a.sticks) { muPhi = a.muStatic * std::min(vOverEps, 1.) / 2;  slope = vOverEps < 1 ? a.muStatic / 2 : 0; }
+      // sticking: mu_e v/(2 eps), constant beyond eps; sliding: the same up to mu_d or to the ramp
+      if (a.sticks) {
+        muPhi = a.muStatic * std::min(vOverEps, 1.) / 2;
+        slope = vOverEps < 1 ? a.muStatic / 2 : 0;
+      }
       else {
         muPhi = vOverEps < 1 - bridge ? std::min(a.muDynamic, a.muStatic * vOverEps / 2)
-            : std::min(a.muDynamic, low + std::max(rise, 0.) * (vOverEps - 1 + bridge));
+          : std::min(a.muDynamic, low + std::max(rise, 0.) * (vOverEps - 1 + bridge));
         slope = muPhi >= a.muDynamic ? 0 : (vOverEps < 1 - bridge ? a.muStatic / 2 : rise);
       }
     }
@@ -71,27 +95,33 @@ struct Law {
   }
 
   void muPhiVector(const double *v, const Point &a, double *muPhi, double slope[2][2]) const {
-    // The same of the velocity as a vector, mu_f phi(|v|) e; in the plane it has one component.
+    // The vector mu_f phi(|v|) e, e = v/|v|, of `slips` components, and its derivative
+    // (mu_f phi)' e e^T + mu_f phi/|v| (I - e e^T). A negative (mu_f phi)' counts as 0 in space.
     if (slips == 1) return muPhiAt(v[0], a, muPhi[0], slope[0][0]);
-    const double speed = std::hypot(v[0], v[1]), scale = std::max(speed, 1e-300), e[2] = {v[0] / scale, v[1] / scale};
-    double size, along;                                            // mu_f phi and its derivative at |v|
+    const double speed = std::hypot(v[0], v[1]), scale = std::max(speed, 1e-300),
+      e[2] = {v[0] / scale, v[1] / scale};
+    double size, along;                          // mu_f phi and its derivative at |v|
     muPhiAt(speed, a, size, along);
-    const double across = speed > 1e-9 * slipVelocity ? size / speed : along, more = std::max(along, 0.) - across;
+    const double across = speed > 1e-9 * slipVelocity ? size / speed : along,
+      more = std::max(along, 0.) - across;
     for (int i = 0; i < 2; i++) muPhi[i] = size * e[i];
-    for (int i = 0; i < 2; i++) for (int j = 0; j < 2; j++) slope[i][j] = (i == j ? across : 0) + more * e[i] * e[j];
+    for (int i = 0; i < 2; i++) for (int j = 0; j < 2; j++)
+      slope[i][j] = (i == j ? across : 0) + more * e[i] * e[j];
   }
 
   void at(const Point &a, const double *x, const double *linearisedAt, Forces &f) const {
-    // Forces of a point that comes to x = (q, slip), friction linearised at another velocity, if one is given.
+    // Forces on a point with the penetration x[0] at the end of the step and the slip x[1], x[2] in
+    // it. If the velocity linearisedAt is not null, mu_f phi is linearised there.
     normal(a.vN0, x[0], a.k, f.t[0], f.slope[0][0]);
     if (slips == 0) return;
     double v[2], muPhi[2], slope[2][2];
     for (int i = 0; i < slips; i++) v[i] = x[1 + i] / dt;
     const double *where = linearisedAt ? linearisedAt : v;
     muPhiVector(where, a, muPhi, slope);
-    for (int i = 0; i < slips; i++) for (int j = 0; j < slips && linearisedAt; j++) muPhi[i] += slope[i][j] * (v[j] - where[j]);
+    for (int i = 0; i < slips; i++) for (int j = 0; j < slips && linearisedAt; j++)
+      muPhi[i] += slope[i][j] * (v[j] - where[j]);
     for (int i = 0; i < slips; i++) {
-      f.t[1 + i] = muPhi[i] * f.t[0];                              // (12): -t_T = mu_f phi(v_T) abs(t_N)
+      f.t[1 + i] = muPhi[i] * f.t[0];            // (12): -t_T = mu_f phi(v_T) abs(t_N)
       f.slope[1 + i][0] = muPhi[i] * f.slope[0][0];
       f.slope[0][1 + i] = 0;
       for (int j = 0; j < slips; j++) f.slope[1 + i][1 + j] = slope[i][j] * f.t[0] / dt;

@@ -1,12 +1,10 @@
-// contact-solve.hpp: contact and friction of a Newton step, solved on a frozen factorisation: what core/contact/solve.idp says, in the
-// unknowns of the window.
-//   tau = t(x),  x = x_w - B C B^T tau                                          C: compliance of the unknowns [m/N], S = C^-1;
-// (of explicit steps both are diagonal, n values)
-// Newton's matrix is that of the moves y of the unknowns, with K = B^T D B sparse, D = dt/dx:
-//   (S + K) y = f = B^T (t - tau)
-// by LU where there are few unknowns, else by conjugate residuals, preconditioned by a sparse LU of K and S where K has entries: what else
-// S couples is soft beside K; nothing where S is diagonal. They ask for a thousandth, and read S in single precision. Springs c T^T T are
-// points more: rows T, force c x.
+// contact-solve.hpp: contact and friction of a Newton step on a frozen factorisation of the bodies,
+// as core/contact/solve.idp, for the active set: the forces tau of the active candidates with
+//   tau = t(x),  x = x_w - B C B^T tau,
+// t the laws (10)-(13), x gap and tangential slip, x_w those of the trial state without contact, B
+// the gap Jacobian, C the compliance of the active unknowns [m/N]. In explicit steps C is diagonal,
+// n values. Geometric contact stiffness c T^T T is treated as further points with the row T of B
+// and the force c x. Exports Problem.
 #pragma once
 #include <umfpack.h>
 #include <memory>
@@ -15,12 +13,13 @@
 #include "contact-law.hpp"
 
 extern "C" {
-void ssymv_(const char *, const int *, const float *, const float *, const int *, const float *, const int *, const float *, float *,
-    const int *);
-void dsymv_(const char *, const int *, const double *, const double *, const int *, const double *, const int *, const double *,
-    double *, const int *);
+void ssymv_(const char *, const int *, const float *, const float *, const int *, const float *,
+            const int *, const float *, float *, const int *);
+void dsymv_(const char *, const int *, const double *, const double *, const int *,
+            const double *, const int *, const double *, double *, const int *);
 void dgetrf_(const int *, const int *, double *, const int *, int *, int *);
-void dgetrs_(const char *, const int *, const int *, const double *, const int *, const int *, double *, const int *, int *);
+void dgetrs_(const char *, const int *, const int *, const double *, const int *, const int *,
+             double *, const int *, int *);
 void dpotrf_(const char *, const int *, double *, const int *, int *);
 void dpotri_(const char *, const int *, double *, const int *, int *);
 void spotrf_(const char *, const int *, float *, const int *, int *);
@@ -32,26 +31,37 @@ namespace contact {
 using Vector = std::vector<double>;
 using Indices = std::vector<int>;
 
-inline double dot(const Vector &a, const Vector &b) { double s = 0;  for (size_t i = 0; i < a.size(); i++) s += a[i] * b[i];  return s; }
+inline double dot(const Vector &a, const Vector &b) {
+  double s = 0;
+  for (size_t i = 0; i < a.size(); i++) s += a[i] * b[i];
+  return s;
+}
 inline double norm(const Vector &a) { return std::sqrt(dot(a, a)); }
-inline void add(double s, const Vector &a, Vector &b) { for (size_t i = 0; i < a.size(); i++) b[i] += s * a[i]; }
-inline double largest(const Vector &a) {
+inline void add(double s, const Vector &a, Vector &b) {   // b += s a
+  for (size_t i = 0; i < a.size(); i++) b[i] += s * a[i];
+}
+inline double largest(const Vector &a) {   // largest |a_i|, nan if there is one
   double m = 0;
   for (double v : a) if (!(std::abs(v) <= m)) { m = std::abs(v);  if (m != m) return m; }
   return m;
 }
-template <class Real> bool invert(int n, std::vector<Real> &A, void (*factor)(const char *, const int *, Real *, const int *, int *),
-                                  void (*inverse)(const char *, const int *, Real *, const int *, int *)) {
-  // symmetric A; false where it is not positive definite
+template <class Real>
+bool invert(int n, std::vector<Real> &A,
+            void (*factor)(const char *, const int *, Real *, const int *, int *),
+            void (*inverse)(const char *, const int *, Real *, const int *, int *)) {
+  // Replaces the symmetric n x n matrix A by its inverse, with LAPACK's potrf and potri. Returns
+  // false if A is not positive definite.
   int info;
   factor("L", &n, A.data(), &n, &info);
   if (info != 0) return false;
   inverse("L", &n, A.data(), &n, &info);
-  for (int j = 0; j < n; j++) for (int i = j + 1; i < n; i++) A[(size_t)n * i + j] = A[(size_t)n * j + i];
+  for (int j = 0; j < n; j++)
+    for (int i = j + 1; i < n; i++) A[(size_t)n * i + j] = A[(size_t)n * j + i];
   return true;
 }
 inline bool isDiagonal(const Vector &A, int n) { return n > 1 && A.size() == (size_t)n; }
-inline void symmetric(const Vector &A, const Vector &x, Vector &y) {     // y = A x
+inline void symmetric(const Vector &A, const Vector &x, Vector &y) {
+  // y = A x with a symmetric A, full or diagonal.
   const double one = 1, zero = 0;
   const int n = x.size(), step = 1;
   y.resize(n);
@@ -59,62 +69,84 @@ inline void symmetric(const Vector &A, const Vector &x, Vector &y) {     // y = 
   if (n > 0) dsymv_("L", &n, &one, A.data(), &n, x.data(), &step, &zero, y.data(), &step);
 }
 inline void symmetric(const std::vector<float> &A, const Vector &x, Vector &y) {
+  // The same in single precision.
   const float one = 1, zero = 0;
   const int n = x.size(), step = 1;
   std::vector<float> from(x.begin(), x.end()), to(n);
   if (n > 0) ssymv_("L", &n, &one, A.data(), &n, from.data(), &step, &zero, to.data(), &step);
   y.assign(to.begin(), to.end());
 }
-// The points of the window, its springs behind them, and their rows B on its n unknowns: a block of `kinds` values for each unknown of a
-// point.
+
+// The gap Jacobian B on n unknowns: a block of `kinds` rows for each active candidate, then a block
+// for each term of geometric contact stiffness, of which only the first row is used. A block is
+// called a point.
 struct Rows {
-  int n = 0, points = 0, kinds = 1;
-  Indices first{0}, column, owner;                                 // of a point its entries; of an entry its column and point
-  Vector value, geometric;                                            // kinds an entry; stiffness c of the springs
-  // Of rows with entries at `first`, `column`: those of K and the diagonal by columns, where those of stiffness() are, what UMFPACK makes
-  // of that.
+  int n = 0, points = 0, kinds = 1;              // points: without the geometric terms
+  Indices first{0}, column, owner;               // point b has the entries first[b] to
+                                                 // first[b + 1] - 1; unknown and point of an entry
+  Vector value, geometric;                       // kinds values an entry; stiffness c of the terms
+  // Sparsity pattern of K and the diagonal for B with the entries `first`, `column`: by columns in
+  // start and row; `place` of each contribution of stiffness(); UMFPACK's symbolic factorisation.
   struct Pattern { Indices first, column, start, row, place;  std::shared_ptr<void> symbolic; };
   std::shared_ptr<const Pattern> pattern;
 
   int blocks() const { return first.size() - 1; }
   int entries(int b) const { return first[b + 1] - first[b]; }
   void begin(int unknowns, int kindsOfPoint) {
-    const std::shared_ptr<const Pattern> known = pattern;
+    // Removes all points; the pattern is kept.
+    const std::shared_ptr<const Pattern> patternBefore = pattern;
     *this = Rows();
     n = unknowns;
     kinds = kindsOfPoint;
-    pattern = known;
+    pattern = patternBefore;
   }
-  void entry(int j, int kind, double v) {                          // of the point that is being built
+  void entry(int j, int kind, double v) {
+    // Adds v to row `kind`, unknown j of the point that is being built.
     const int e = std::find(column.begin() + first.back(), column.end(), j) - column.begin();
-    if (e == (int)column.size()) { column.push_back(j);  owner.push_back(blocks());  value.resize(value.size() + kinds, 0.); }
+    if (e == (int)column.size()) {
+      column.push_back(j);
+      owner.push_back(blocks());
+      value.resize(value.size() + kinds, 0.);
+    }
     value[kinds * e + kind] += v;
   }
   void endPoint() { first.push_back(column.size()); }
-  void end(const Vector &geometricTerms) { geometric = geometricTerms;  points = blocks() - geometric.size(); }
-  void push(const Vector &t, Vector &force) const {                // B^T t
+  void end(const Vector &geometricTerms) {
+    geometric = geometricTerms;
+    points = blocks() - geometric.size();
+  }
+  void push(const Vector &t, Vector &force) const {   // force = B^T t
     force.assign(n, 0.);
     for (size_t e = 0; e < column.size(); e++)
-      for (int c = 0; c < kinds; c++) force[column[e]] += value[kinds * e + c] * t[kinds * owner[e] + c];
+      for (int c = 0; c < kinds; c++)
+        force[column[e]] += value[kinds * e + c] * t[kinds * owner[e] + c];
   }
-  void pull(const Vector &increment, Vector &move) const {               // B way
+  void pull(const Vector &increment, Vector &move) const {   // move = B increment
     move.assign(kinds * blocks(), 0.);
     for (size_t e = 0; e < column.size(); e++)
-      for (int c = 0; c < kinds; c++) move[kinds * owner[e] + c] += value[kinds * e + c] * increment[column[e]];
+      for (int c = 0; c < kinds; c++)
+        move[kinds * owner[e] + c] += value[kinds * e + c] * increment[column[e]];
   }
-  void slope(const Vector &D, const Vector &move, Vector &change) const {   // D move
+  void slope(const Vector &D, const Vector &move, Vector &change) const {
+    // change = D move; D has a kinds x kinds block for each point
     change.assign(move.size(), 0.);
     for (int b = 0; b < blocks(); b++)
       for (int i = 0; i < kinds; i++)
-        for (int j = 0; j < kinds; j++) change[kinds * b + i] += D[kinds * (kinds * b + i) + j] * move[kinds * b + j];
+        for (int j = 0; j < kinds; j++)
+          change[kinds * b + i] += D[kinds * (kinds * b + i) + j] * move[kinds * b + j];
   }
-  template <class Function> void stiffness(const Vector &D, Function add) const {   // add(t, i, j, what), which sum to K_ij; t counts them
+  template <class Function> void stiffness(const Vector &D, Function add) const {
+    // K = B^T D B: calls add(t, i, j, v) for each contribution v to K_ij, t their running number.
     for (int b = 0, t = 0; b < blocks(); b++) {
       const double *slopes = &D[kinds * kinds * b];
-      if (std::all_of(slopes, slopes + kinds * kinds, [](double d) { return d == 0; })) { t += entries(b) * entries(b);  continue; }
+      if (std::all_of(slopes, slopes + kinds * kinds, [](double d) { return d == 0; })) {
+        t += entries(b) * entries(b);
+        continue;
+      }
       for (int e = first[b]; e < first[b + 1]; e++) {
-        double increment[3] = {}, *to = increment;                             // D B, of this column
-        for (int i = 0; i < kinds; i++, to++) for (int c = 0; c < kinds; c++) *to += slopes[kinds * i + c] * value[kinds * e + c];
+        double increment[3] = {}, *to = increment;   // column of D B
+        for (int i = 0; i < kinds; i++, to++)
+          for (int c = 0; c < kinds; c++) *to += slopes[kinds * i + c] * value[kinds * e + c];
         for (int o = first[b]; o < first[b + 1]; o++, t++) {
           double sum = 0;
           for (int i = 0; i < kinds; i++) sum += value[kinds * o + i] * increment[i];
@@ -124,31 +156,43 @@ struct Rows {
     }
   }
   void makePattern() {
-    if (pattern && pattern->start.size() == (size_t)n + 1 && pattern->first == first && pattern->column == column) return;
+    // Makes the pattern unless that of an earlier B with the same entries serves.
+    if (pattern && pattern->start.size() == (size_t)n + 1 && pattern->first == first
+        && pattern->column == column)
+      return;
     Indices I, J;
     void *symbolic = nullptr;
     for (int b = 0; b < blocks(); b++)
       for (int e = first[b]; e < first[b + 1]; e++)
-        for (int o = first[b]; o < first[b + 1]; o++) { I.push_back(column[o]);  J.push_back(column[e]); }
+        for (int o = first[b]; o < first[b + 1]; o++) {
+          I.push_back(column[o]);
+          J.push_back(column[e]);
+        }
     for (int j = 0; j < n; j++) { I.push_back(j);  J.push_back(j); }
     Pattern made{first, column, Indices(n + 1), Indices(I.size()), Indices(I.size()), nullptr};
-    check(umfpack_di_triplet_to_col(n, n, I.size(), I.data(), J.data(), nullptr, made.start.data(), made.row.data(), nullptr,
-                                    made.place.data()) == UMFPACK_OK
-          && umfpack_di_symbolic(n, n, made.start.data(), made.row.data(), nullptr, &symbolic, nullptr, nullptr) == UMFPACK_OK,
+    check(umfpack_di_triplet_to_col(n, n, I.size(), I.data(), J.data(), nullptr, made.start.data(),
+                                    made.row.data(), nullptr, made.place.data()) == UMFPACK_OK
+          && umfpack_di_symbolic(n, n, made.start.data(), made.row.data(), nullptr, &symbolic,
+                                 nullptr, nullptr) == UMFPACK_OK,
           "there is not enough of it for the pattern of the contact");
     made.symbolic.reset(symbolic, [](void *s) { umfpack_di_free_symbolic(&s); });
     pattern = std::make_shared<const Pattern>(std::move(made));
   }
 };
 
-// Newton's matrix at some D, and what solves with it.
+// The Newton matrix S + K on the unknowns, S = C^-1, K = B^T D B sparse, D = dt/dx, and its solver:
+// dense LU for up to mostDense unknowns, else conjugate residuals with the preconditioner P, a
+// sparse LU of S + K restricted to the pattern of K. Other entries of S are small beside K. For a
+// diagonal S, P is the matrix itself. The iterations read S in single precision.
 class Newton {
  public:
-  int mostDense = 200, mostIterations = 5;                        // unknowns that are solved with densely; iterations with an older P
+  int mostDense = 200, mostIterations = 5;       // P is renewed if the last solve took more
   bool made = false;
-  Vector D;                                                        // that it is of
+  Vector D;                                      // of the matrix, kinds x kinds for each point
   void forget() { made = false;  numeric.reset(); }
-  void stiffen(const Vector &C, Vector &S) {                       // S = C^-1; in single precision where iterations are to read it
+  void stiffen(const Vector &C, Vector &S) {
+    // S = C^-1, full. For iterations it is only made in single precision, and S stays empty, if
+    // that finds C positive definite.
     const int size = std::lround(std::sqrt((double)C.size()));
     S.clear();
     rounded.assign(C.begin(), C.end());
@@ -157,9 +201,12 @@ class Newton {
     invert(size, S, dpotrf_, dpotri_);
     rounded.assign(S.begin(), S.end());
   }
-  bool fits(const Rows &B) const { return made && n == B.n && D.size() == (size_t)B.blocks() * B.kinds * B.kinds; }
+  bool fits(const Rows &B) const {
+    return made && n == B.n && D.size() == (size_t)B.blocks() * B.kinds * B.kinds;
+  }
 
   void make(Rows &B, const Vector &slopes, const Vector &S) {
+    // The matrix for D = slopes. An older P is kept while it converges quickly.
     D = slopes;
     n = B.n;
     dense = n <= mostDense && !isDiagonal(S, n);
@@ -168,32 +215,34 @@ class Newton {
     B.makePattern();
     if (!numeric || pattern != B.pattern || iterations > mostIterations) factorSparse(B, S);
   }
-  void solve(const Rows &B, const Vector &f, const Vector &S, double goal, Vector &y) {   // to a rest of norm goal [N]
-    const int one = 1;
+  void solve(const Rows &B, const Vector &f, const Vector &S, double goal, Vector &y) {
+    // Solves (S + K) y = f, iteratively to a residual of norm `goal` [N].
+    const int rightSides = 1;
     int info;
     if (!dense) return conjugate(B, f, S, goal, y);
     y = f;
-    if (n > 0) dgetrs_("N", &n, &one, LU.data(), &n, pivots.data(), y.data(), &n, &info);
+    if (n > 0)
+      dgetrs_("N", &n, &rightSides, LU.data(), &n, pivots.data(), y.data(), &n, &info);
   }
 
  private:
-  int n = 0, iterations = 0;                                       // unknowns; of the last solution
+  int n = 0, iterations = 0;                     // unknowns; iterations of the last solve
   bool dense = false;
-  std::vector<float> rounded;                                      // S
-  Vector LU, P;                                                    // P: K and, where it has entries, S
+  std::vector<float> rounded;                    // S
+  Vector LU, P;
   Indices pivots;
-  std::shared_ptr<const Rows::Pattern> pattern;                    // of P
-  std::shared_ptr<void> numeric;                                   // its LU
+  std::shared_ptr<const Rows::Pattern> pattern;  // of P
+  std::shared_ptr<void> numeric;                 // UMFPACK's LU of P
 
-  void factorDense(const Rows &B, const Vector &S) {
-    int info;                                                      // above 0: singular, and its solution is not a number
+  void factorDense(const Rows &B, const Vector &S) {   // LU of S + K
+    int info;                                    // > 0 if singular; the solution is then nan
     LU = S;
     pivots.resize(n);
     B.stiffness(D, [this](int, int i, int j, double K) { LU[(size_t)n * j + i] += K; });
     if (n > 0) dgetrf_(&n, &n, LU.data(), &n, pivots.data(), &info);
   }
 
-  void factorSparse(const Rows &B, const Vector &S) {
+  void factorSparse(const Rows &B, const Vector &S) {   // P and its LU
     void *made = nullptr;
     pattern = B.pattern;
     const Indices &start = pattern->start, &row = pattern->row;
@@ -201,25 +250,31 @@ class Newton {
     for (int j = 0; j < n; j++) for (int e = start[j]; e < start[j + 1]; e++)
       P[e] = isDiagonal(S, n) ? (row[e] == j) * S[j] : rounded[(size_t)n * j + row[e]];
     B.stiffness(D, [&](int t, int, int, double K) { P[pattern->place[t]] += K; });
-    const int status = umfpack_di_numeric(start.data(), row.data(), P.data(), pattern->symbolic.get(), &made, nullptr, nullptr);
-    check(status == UMFPACK_OK || status == UMFPACK_WARNING_singular_matrix, "there is not enough of it for the matrix of the contact");
+    const int status = umfpack_di_numeric(start.data(), row.data(), P.data(),
+                                          pattern->symbolic.get(), &made, nullptr, nullptr);
+    check(status == UMFPACK_OK || status == UMFPACK_WARNING_singular_matrix,
+          "there is not enough of it for the matrix of the contact");
     numeric.reset(made, [](void *s) { umfpack_di_free_numeric(&s); });
   }
 
   void conjugate(const Rows &B, const Vector &f, const Vector &S, double goal, Vector &y) {
-    // generalised conjugate residuals (Eisenstat, Elman, Schultz 1983), the iterates of GMRES
+    // Generalised conjugate residuals (Eisenstat, Elman, Schultz 1983); the iterates are those of
+    // GMRES. Ends at a residual of norm `goal`, after 200 iterations at the latest.
     double control[UMFPACK_CONTROL];
     umfpack_di_defaults(control);
     control[UMFPACK_IRSTEP] = 0;
-    Vector left = f, move, change, more;
+    Vector residual = f, move, change, more;
     std::vector<Vector> increments, images;
     y.assign(n, 0.);
-    for (iterations = 0; iterations < 200 && norm(left) > goal; iterations++) {
+    for (iterations = 0; iterations < 200 && norm(residual) > goal; iterations++) {
       Vector increment(n), image;
-      const int status = umfpack_di_solve(UMFPACK_A, pattern->start.data(), pattern->row.data(), P.data(), increment.data(), left.data(),
+      const int status = umfpack_di_solve(UMFPACK_A, pattern->start.data(), pattern->row.data(),
+                                          P.data(), increment.data(), residual.data(),
                                           numeric.get(), control, nullptr);
-      check(status == UMFPACK_OK || status == UMFPACK_WARNING_singular_matrix, "there is not enough of it to solve the contact");
-      if (isDiagonal(S, n)) symmetric(S, increment, image); else symmetric(rounded, increment, image);
+      check(status == UMFPACK_OK || status == UMFPACK_WARNING_singular_matrix,
+            "there is not enough of it to solve the contact");
+      if (isDiagonal(S, n)) symmetric(S, increment, image);
+      else symmetric(rounded, increment, image);
       B.pull(increment, move);
       B.slope(D, move, change);
       B.push(change, more);
@@ -229,9 +284,10 @@ class Newton {
         add(-h, images[k], image);
         add(-h, increments[k], increment);
       }
-      const double scale = 1 / std::max(norm(image), 1e-300), along = scale * scale * dot(left, image);
+      const double scale = 1 / std::max(norm(image), 1e-300),
+        along = scale * scale * dot(residual, image);
       add(along, increment, y);
-      add(-along, image, left);
+      add(-along, image, residual);
       for (double &v : increment) v *= scale;
       for (double &v : image) v *= scale;
       increments.push_back(increment);
@@ -240,24 +296,36 @@ class Newton {
   }
 };
 
-// One contact problem after another on a window.
+// The contact problem on the active set, solved in every Newton step. With D = dt/dx its Newton
+// step for the forces is, in the unknowns,
+//   (S + K) y = f = B^T (t - tau),   tau += t - tau - D B y,   x = x_w - B C B^T tau.
 class Problem {
  public:
   Rows B;
   Newton newton;
   Law law;
   std::vector<Point> point;
-  Indices turned;
-  Vector start, tau, force;                                        // x_w; tau; B^T tau: what pushes the unknowns
-  double enough = 0, sticksBelow = 0;
-  int inverses = 0, mostStatusChanges = 4, agreeingFrom = 20;              // inverses, before plain Newton with a line search takes over
+  Indices turned;                                // number of status changes of a point in the step
+  Vector start, tau, force;                      // x_w; tau; B^T tau
+  double enough = 0, sticksBelow = 0;            // tolerance for the norm of t - tau [N]; speed
+                                                 // below which a slipping point sticks again [m/s]
+  int inverses = 0, mostStatusChanges = 4,       // matrices of this solve; limit of changes
+    agreeingFrom = 20;                           // matrices before the line search is used
 
-  void compliance(int n, const double *given) { C.assign(given, given + (size_t)n * n);  stiff = false; }
-  void looseness(int n, const double *given) { C.assign(given, given + n);  stiff = false; }   // diagonal
+  void compliance(int n, const double *values) {   // C, full
+    C.assign(values, values + (size_t)n * n);
+    stiff = false;
+  }
+  void looseness(int n, const double *values) {   // C, diagonal
+    C.assign(values, values + n);
+    stiff = false;
+  }
 
   int solve(long mostInverses, long &inversesOfStep) {
-    // Newton; with friction on the linearised law, and with a matrix that serves on near the end and at the start of the next solve.
-    // Returns the iterations, or -1.
+    // Newton's method for tau. With friction it uses the linearised law (linearise()) and keeps the
+    // matrix near convergence and for the start of the next solve; after `agreeingFrom` matrices,
+    // and without friction, it is plain Newton with a line search. inversesOfStep counts the
+    // matrices of the step with friction. Returns the number of iterations, -1 on failure.
     const int rubs = law.slips > 0;
     newton.made = newton.fits(B);
     place();
@@ -272,7 +340,7 @@ class Problem {
       if (it == 0) biggest = scale;
       bool done = error <= close * scale || scale == 0 || norm(unbalance) <= enough;
       if (!done) {
-        if (!(error <= 1e6 * biggest)) return -1;                  // diverges, or is not a number
+        if (!(error <= 1e6 * biggest)) return -1;   // divergence or nan
         const bool searches = !rubs || inverses >= agreeingFrom;
         if (!rubs || error > (it == 0 ? 0.1 : 1e-3) * scale || error > 0.3 * errorBefore) {
           inverses++;
@@ -282,47 +350,54 @@ class Problem {
           newton.make(B, slopes, S);
         }
         errorBefore = error;
-        correct(searches ? 1e-6 : 1e-3);                           // a line search asks for the true direction
+        correct(searches ? 1e-6 : 1e-3);         // a line search needs an accurate direction
         if (!advance(searches)) { if (error <= 1e-9 * scale) done = true;  else return -1; }
       }
-      if (done) { if (takeSides() == 0) { B.push(tau, force);  return it; }  errorBefore = 0; }
+      if (done) {
+        if (takeSides() == 0) { B.push(tau, force);  return it; }
+        errorBefore = 0;
+      }
     }
     return -1;
   }
 
  private:
-  bool stiff = false;                                              // S is C^-1
+  bool stiff = false;                            // S is that of the present C
+  // slopes: D; unbalance: t - tau; step, move: Newton increments of tau and x; sigma: linearise()
   Vector C, S, x, t, slopes, unbalance, step, move, sigma;
 
-  void stiffen() {                                                 // S = C^-1
+  void stiffen() {   // S = C^-1
     if (stiff || C.empty()) return;
     stiff = true;
     if (isDiagonal(C, B.n)) { S = C;  for (double &s : S) s = 1 / s; }
     else newton.stiffen(C, S);
   }
-  void comply(const Vector &f, Vector &increment) const {                // B C B^T f
+  void comply(const Vector &f, Vector &increment) const {   // increment = B C B^T f
     Vector g, y;
     B.push(f, g);
     symmetric(C, g, y);
     B.pull(y, increment);
   }
-  void place() {
+  void place() {   // x = x_w - B C B^T tau
     comply(tau, x);
     for (size_t i = 0; i < x.size(); i++) x[i] = start[i] - x[i];
   }
 
   void evaluate(const std::vector<double> *at) {
-    // t, D, t - tau, where `at` is given friction linearised there (slips values a point; nan: at the velocity itself)
+    // t, D and t - tau at x; negative diagonal terms of D count as 0. `at`, if not null, has the
+    // velocity at which friction is linearised, slips values for each point; nan: not linearised.
     const int k = B.kinds;
     t.assign(x.size(), 0.);
     slopes.assign(k * x.size(), 0.);
     for (int b = 0; b < B.points; b++) {
       Forces f;
-      const double *linearised = at && (*at)[law.slips * b] == (*at)[law.slips * b] ? &(*at)[law.slips * b] : nullptr;
+      const double *linearised = at && (*at)[law.slips * b] == (*at)[law.slips * b]
+        ? &(*at)[law.slips * b] : nullptr;
       law.at(point[b], &x[k * b], linearised, f);
       for (int i = 0; i < k; i++) t[k * b + i] = f.t[i];
       for (int i = 0; i < k; i++)
-        for (int j = 0; j < k; j++) slopes[k * k * b + k * i + j] = i == j ? std::max(f.slope[i][j], 0.) : f.slope[i][j];
+        for (int j = 0; j < k; j++)
+          slopes[k * k * b + k * i + j] = i == j ? std::max(f.slope[i][j], 0.) : f.slope[i][j];
     }
     for (size_t s = 0; s < B.geometric.size(); s++) {
       const int b = B.points + s;
@@ -334,34 +409,39 @@ class Problem {
   }
 
   void linearise() {
-    // Friction where force and velocity agree best: at the velocity x with phi(x) + x/sigma = t_T/(mu_f t_N) + v/sigma, phi taken as
-    // linear, sigma the change of velocity that full friction makes in the step.
+    // Linearises friction at the velocity w that fits force and velocity best: phi(w) + w/sigma =
+    // t_T/(mu_f t_N) + v/sigma with the linear phi; sigma [m/s] is the velocity change that full
+    // friction causes in the step (lineariseFriction() of solve.idp).
     const int k = B.kinds, slips = law.slips, blocks = B.points;
     if (sigma.empty()) {
       Vector full(x.size(), 0.), increment;
       for (int b = 0; b < blocks; b++) full[k * b + 1] = t[k * b] * point[b].muStatic;
       comply(full, increment);
       sigma.resize(blocks);
-      for (int b = 0; b < blocks; b++) sigma[b] = std::max(increment[k * b + 1] / law.dt, law.slipVelocity);
+      for (int b = 0; b < blocks; b++)
+        sigma[b] = std::max(increment[k * b + 1] / law.dt, law.slipVelocity);
     }
     Vector at(slips * blocks, NAN);
     for (int b = 0; b < blocks; b++) {
       const Point &a = point[b];
-      const double cap = std::max(1e-200, t[k * b] * (a.sticks || !law.jumps ? a.muStatic : a.muDynamic));
+      const double cap = std::max(1e-200,
+        t[k * b] * (a.sticks || !law.jumps ? a.muStatic : a.muDynamic));
       double off = 0, blend[2] = {0, 0};
       for (int i = 0; i < slips; i++) off = std::max(off, std::abs(unbalance[k * b + 1 + i]));
       if (!(t[k * b] > 0 && off > 0.1 * cap)) continue;
-      for (int i = 0; i < slips; i++) blend[i] = tau[k * b + 1 + i] / cap + x[k * b + 1 + i] / law.dt / sigma[b];
+      for (int i = 0; i < slips; i++)
+        blend[i] = tau[k * b + 1 + i] / cap + x[k * b + 1 + i] / law.dt / sigma[b];
       const double length = std::hypot(blend[0], blend[1]);
-      const double factor = length <= 1 + law.slipVelocity / sigma[b] ? 1 / (1 / law.slipVelocity + 1 / sigma[b])
-          : sigma[b] * (length - 1) / length;
+      const double factor = length <= 1 + law.slipVelocity / sigma[b]
+        ? 1 / (1 / law.slipVelocity + 1 / sigma[b]) : sigma[b] * (length - 1) / length;
       for (int i = 0; i < slips; i++) at[slips * b + i] = factor * blend[i];
     }
     evaluate(&at);
   }
 
   void correct(double share) {
-    // (S + K) y = B^T (t - tau), to a share of it; step = t - tau - D B y of the forces, move = -B C B^T step
+    // Solves (S + K) y = B^T (t - tau) to a relative residual `share`. Increments: of the forces
+    // step = t - tau - D B y, of gap and slip move = -B C B^T step.
     Vector f, y, change;
     B.push(unbalance, f);
     newton.solve(B, f, S, std::max(share * norm(f), 1e-2 * enough), y);
@@ -374,20 +454,21 @@ class Problem {
   }
 
   bool advance(bool searches) {
-    // tau and x go along step and move: fully, or to where the slope of the convex potential has become small (bisection); false where it
-    // is no descent.
-    double low = 0, high = 1, s = 1, gone = 0;
+    // Adds `step` to tau and `move` to x, fully or, with a line search, up to the point where the
+    // slope of the convex potential has become small (bisection). Returns false if `move` is not a
+    // descent direction.
+    double low = 0, high = 1, s = 1, applied = 0;
     const double slopeStart = dot(unbalance, move);
     if (searches && !(slopeStart < 0)) return false;
     for (int cut = 0; cut < 40; cut++) {
-      add(s - gone, step, tau);
-      add(s - gone, move, x);
-      gone = s;
+      add(s - applied, step, tau);
+      add(s - applied, move, x);
+      applied = s;
       evaluate(nullptr);
       if (!searches) return true;
       const double slope = dot(unbalance, move);
-      if (slope > -0.1 * slopeStart) high = s;                     // too far
-      else if (slope < 0.9 * slopeStart && s < 1) low = s;         // hardly moved
+      if (slope > -0.1 * slopeStart) high = s;   // too far
+      else if (slope < 0.9 * slopeStart && s < 1) low = s;   // too short
       else return true;
       s = (low + high) / 2;
     }
@@ -395,14 +476,18 @@ class Problem {
   }
 
   int takeSides() {
-    // Points whose velocity disagrees with the side of the jump that they were solved on change it; returns how many.
+    // Changes the stick or slip status of points whose velocity contradicts it. Returns the number
+    // of changes. A point that exceeds mostStatusChanges keeps slipping.
     const int k = B.kinds;
     int changed = 0;
     if (!law.jumps || law.slips == 0) return 0;
     for (int b = 0; b < B.points; b++) {
       Point &a = point[b];
-      const double v = (law.slips == 1 ? std::abs(x[k * b + 1]) : std::hypot(x[k * b + 1], x[k * b + 2])) / law.dt;
-      if (!(t[k * b] > 0) || turned[b] > mostStatusChanges || !(a.sticks ? v >= law.slipVelocity : v < sticksBelow)) continue;
+      const double v = (law.slips == 1 ? std::abs(x[k * b + 1])
+        : std::hypot(x[k * b + 1], x[k * b + 2])) / law.dt;
+      if (!(t[k * b] > 0) || turned[b] > mostStatusChanges
+          || !(a.sticks ? v >= law.slipVelocity : v < sticksBelow))
+        continue;
       turned[b]++;
       if (a.sticks || turned[b] <= mostStatusChanges) { a.sticks = !a.sticks;  changed++; }
     }

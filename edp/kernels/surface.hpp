@@ -1,7 +1,8 @@
-// surface.hpp: rigid obstacles whose surface is a closed mesh of triangles: signed distances and outward normals.
-// The closest point is sought in a tree of boxes. It lies in a face, on an edge or at a vertex; the sign is that of the
-// side of the normal there: the face's, the sum of both faces', the sum weighted with the angles at the vertex
-// (Baerentzen & Aanaes 2005, IEEE Trans. Vis. Comput. Graph. 11, 243).
+// surface.hpp: rigid obstacles given as closed triangle meshes: signed distance and outward normal.
+// The closest point is searched for in a tree of bounding boxes. It lies in a face, on an edge or
+// at a vertex. The sign is the side of the normal at that place: that of the face, the sum of the
+// normals of both faces, or the sum weighted with the angles at the vertex (Baerentzen & Aanaes
+// 2005, IEEE Trans. Vis. Comput. Graph. 11, 243). Exports addSurface().
 #pragma once
 #include <algorithm>
 #include <array>
@@ -13,10 +14,16 @@
 namespace surface {
 
 typedef std::array<double, 3> Point;
-inline Point operator-(const Point &a, const Point &b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-inline Point operator+(const Point &a, const Point &b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+inline Point operator-(const Point &a, const Point &b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+inline Point operator+(const Point &a, const Point &b) {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
 inline Point operator*(double s, const Point &a) { return {s * a[0], s * a[1], s * a[2]}; }
-inline double dot(const Point &a, const Point &b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+inline double dot(const Point &a, const Point &b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 inline double size(const Point &a) { return std::sqrt(dot(a, a)); }
 inline Point cross(const Point &a, const Point &b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
@@ -25,22 +32,30 @@ inline Point cross(const Point &a, const Point &b) {
 struct Box {
   Point low = {1e300, 1e300, 1e300}, high = {-1e300, -1e300, -1e300};
   void take(const Point &p) {
-    for (int i = 0; i < 3; i++) { low[i] = std::min(low[i], p[i]);  high[i] = std::max(high[i], p[i]); }
+    for (int i = 0; i < 3; i++) {
+      low[i] = std::min(low[i], p[i]);
+      high[i] = std::max(high[i], p[i]);
+    }
   }
   double distance2(const Point &p) const {
+    // squared distance of p from the box
     double sum = 0;
-    for (int i = 0; i < 3; i++) { const double away = std::max({0., low[i] - p[i], p[i] - high[i]});  sum += away * away; }
+    for (int i = 0; i < 3; i++) {
+      const double away = std::max({0., low[i] - p[i], p[i] - high[i]});
+      sum += away * away;
+    }
     return sum;
   }
 };
 
 class Surface {
  public:
-  double rounding = 0;                     // [m] the surface is moved outward by
+  double rounding = 0;                     // outward offset of the surface [m]
   std::vector<Point> vertex;
   std::vector<std::array<int, 3>> triangle;   // counter-clockwise from outside
 
-  void finish() {                          // after vertices and triangles are there
+  void finish() {
+    // Computes the normals and the tree; call after vertices and triangles are set.
     faceNormal.resize(triangle.size());
     vertexNormal.assign(vertex.size(), Point{0, 0, 0});
     for (size_t t = 0; t < triangle.size(); t++) {
@@ -48,10 +63,13 @@ class Surface {
       const Point n = cross(vertex[v[1]] - vertex[v[0]], vertex[v[2]] - vertex[v[0]]);
       faceNormal[t] = (1 / size(n)) * n;
       for (int j = 0; j < 3; j++) {
-        const Point a = vertex[v[(j + 1) % 3]] - vertex[v[j]], b = vertex[v[(j + 2) % 3]] - vertex[v[j]];
-        const double angle = std::acos(std::max(-1., std::min(1., dot(a, b) / (size(a) * size(b)))));
+        const Point a = vertex[v[(j + 1) % 3]] - vertex[v[j]],
+          b = vertex[v[(j + 2) % 3]] - vertex[v[j]];
+        const double angle =
+          std::acos(std::max(-1., std::min(1., dot(a, b) / (size(a) * size(b)))));
         vertexNormal[v[j]] = vertexNormal[v[j]] + angle * faceNormal[t];
-        edgeNormal[edge(v[j], v[(j + 1) % 3])] = edgeNormal[edge(v[j], v[(j + 1) % 3])] + faceNormal[t];
+        edgeNormal[edge(v[j], v[(j + 1) % 3])] =
+          edgeNormal[edge(v[j], v[(j + 1) % 3])] + faceNormal[t];
       }
     }
     order.resize(triangle.size());
@@ -60,8 +78,8 @@ class Surface {
     build(0, int(order.size()));
   }
 
-  // The gap of p, its outward normal n.
   double gap(const Point &p, Point &n) const {
+    // Signed distance of p from the surface, negative inside [m]; n: its unit outward normal.
     double best = 1e300;
     Point closestPoint = {0, 0, 0}, normal = {0, 0, 1};
     bool inside = false;
@@ -74,6 +92,7 @@ class Surface {
   }
 
  private:
+  // A box of the tree with the triangles order[from] ... order[to - 1]; children, -1 in a leaf.
   struct Node { Box box;  int from, to, left, right; };
   std::vector<Point> faceNormal, vertexNormal;
   std::map<std::pair<int, int>, Point> edgeNormal;
@@ -83,10 +102,14 @@ class Surface {
   static std::pair<int, int> edge(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
   int build(int from, int to) {
+    // Makes the node of these triangles and its children: they are halved at the median of the
+    // triangle centres along the axis of their largest extent. Returns its number.
     const int at = int(nodes.size()), few = 4;
     nodes.push_back({Box(), from, to, -1, -1});
     Box box, middles;
-    auto middle = [&](int t) { return (1. / 3) * (vertex[triangle[t][0]] + vertex[triangle[t][1]] + vertex[triangle[t][2]]); };
+    auto middle = [&](int t) {
+      return (1. / 3) * (vertex[triangle[t][0]] + vertex[triangle[t][1]] + vertex[triangle[t][2]]);
+    };
     for (int k = from; k < to; k++) {
       for (int j : triangle[order[k]]) box.take(vertex[j]);
       middles.take(middle(order[k]));
@@ -94,7 +117,8 @@ class Surface {
     nodes[at].box = box;
     if (to - from <= few) return at;
     const Point extent = middles.high - middles.low;
-    const int axis = int(std::max_element(extent.begin(), extent.end()) - extent.begin()), half = (from + to) / 2;
+    const int axis = int(std::max_element(extent.begin(), extent.end()) - extent.begin()),
+      half = (from + to) / 2;
     std::nth_element(order.begin() + from, order.begin() + half, order.begin() + to,
                      [&](int a, int b) { return middle(a)[axis] < middle(b)[axis]; });
     const int left = build(from, half), right = build(half, to);
@@ -103,10 +127,13 @@ class Surface {
     return at;
   }
 
-  void look(int at, const Point &p, double &best, Point &closestPoint, Point &normal, bool &inside) const {
+  void look(int at, const Point &p, double &best, Point &closestPoint, Point &normal,
+            bool &inside) const {
+    // Searches the tree from node `at` on, the nearer box first; arguments as in closest().
     const Node &node = nodes[at];
     if (node.left < 0) {
-      for (int k = node.from; k < node.to; k++) closest(order[k], p, best, closestPoint, normal, inside);
+      for (int k = node.from; k < node.to; k++)
+        closest(order[k], p, best, closestPoint, normal, inside);
       return;
     }
     int near = node.left, far = node.right;
@@ -115,11 +142,16 @@ class Surface {
     if (nodes[far].box.distance2(p) < best) look(far, p, best, closestPoint, normal, inside);
   }
 
-  // The closest point of triangle t (Ericson 2005, Real-Time Collision Detection, 5.1.5), where it is nearer than `best` (squared).
-  void closest(int t, const Point &p, double &best, Point &closestPoint, Point &normal, bool &inside) const {
+  void closest(int t, const Point &p, double &best, Point &closestPoint, Point &normal,
+               bool &inside) const {
+    // Closest-point projection onto triangle t (Ericson 2005, Real-Time Collision Detection,
+    // 5.1.5). If its squared distance is below `best`, sets best, closestPoint, the normal
+    // there (of any length) and whether the point is inside the face.
     const auto &v = triangle[t];
-    const Point a = vertex[v[0]], b = vertex[v[1]], c = vertex[v[2]], ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-    const double d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp), d6 = dot(ac, cp);
+    const Point a = vertex[v[0]], b = vertex[v[1]], c = vertex[v[2]], ab = b - a, ac = c - a,
+      ap = p - a, bp = p - b, cp = p - c;
+    const double d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp),
+      d5 = dot(ab, cp), d6 = dot(ac, cp);
     const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
     auto take = [&](const Point &q, const Point &n, bool face) {
       const Point r = p - q;
@@ -129,37 +161,43 @@ class Surface {
     if (d1 <= 0 && d2 <= 0) return take(a, vertexNormal[v[0]], false);
     if (d3 >= 0 && d4 <= d3) return take(b, vertexNormal[v[1]], false);
     if (d6 >= 0 && d5 <= d6) return take(c, vertexNormal[v[2]], false);
-    if (vc <= 0 && d1 >= 0 && d3 <= 0) return take(a + (d1 / (d1 - d3)) * ab, edgeNormal.at(edge(v[0], v[1])), false);
-    if (vb <= 0 && d2 >= 0 && d6 <= 0) return take(a + (d2 / (d2 - d6)) * ac, edgeNormal.at(edge(v[0], v[2])), false);
+    if (vc <= 0 && d1 >= 0 && d3 <= 0)
+      return take(a + (d1 / (d1 - d3)) * ab, edgeNormal.at(edge(v[0], v[1])), false);
+    if (vb <= 0 && d2 >= 0 && d6 <= 0)
+      return take(a + (d2 / (d2 - d6)) * ac, edgeNormal.at(edge(v[0], v[2])), false);
     if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
-      return take(b + ((d4 - d3) / ((d4 - d3) + (d5 - d6))) * (c - b), edgeNormal.at(edge(v[1], v[2])), false);
+      return take(b + ((d4 - d3) / ((d4 - d3) + (d5 - d6))) * (c - b),
+                  edgeNormal.at(edge(v[1], v[2])), false);
     const double sum = va + vb + vc;
     take(a + (vb / sum) * ab + (vc / sum) * ac, faceNormal[t], true);
   }
 };
 
-static std::map<long, Surface> known;
+static std::map<long, Surface> known;      // the obstacles by their numbers
 
-// numbers: rounding, how many vertices and triangles, x y z of each vertex, then the vertices of each triangle.
 inline void addSurface() {
   ::add("kernelObstacle", +[](long k, Reals numbers) {
-    Surface &one = known[k] = Surface();
+    // Sets obstacle k. numbers: rounding, number of vertices, number of triangles, x y z of each
+    // vertex, the three vertices of each triangle.
+    Surface &obstacle = known[k] = Surface();
     const long points = long(numbers[1]), faces = long(numbers[2]);
-    one.rounding = numbers[0];
-    for (long i = 0; i < points; i++) one.vertex.push_back({numbers[3 + 3 * i], numbers[4 + 3 * i], numbers[5 + 3 * i]});
+    obstacle.rounding = numbers[0];
+    for (long i = 0; i < points; i++)
+      obstacle.vertex.push_back({numbers[3 + 3 * i], numbers[4 + 3 * i], numbers[5 + 3 * i]});
     for (long i = 0, at = 3 + 3 * points; i < faces; i++, at += 3)
-      one.triangle.push_back({int(numbers[at]), int(numbers[at + 1]), int(numbers[at + 2])});
-    one.finish();
+      obstacle.triangle.push_back({int(numbers[at]), int(numbers[at + 1]), int(numbers[at + 2])});
+    obstacle.finish();
   });
   ::add("kernelObstacleGaps", +[](long k, Reals X, Reals g, Reals n) {
-    const Surface &one = known[k];
+    // Gaps g (m) [m] and normals n (3 m) of the m points X (3 m) to obstacle k.
+    const Surface &obstacle = known[k];
     const long m = g.N();
     for (long i = 0; i < m; i++) {
       Point normal;
-      g[i] = one.gap({X[i], X[m + i], X[2 * m + i]}, normal);
+      g[i] = obstacle.gap({X[i], X[m + i], X[2 * m + i]}, normal);
       for (int c = 0; c < 3; c++) n[c * m + i] = normal[c];
     }
   });
 }
 
-}  // namespace surface
+}
