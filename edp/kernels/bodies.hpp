@@ -23,15 +23,15 @@ using laws::Matrix;
 using laws::Symmetric;
 
 // The stored components of F and C. Component k of F is F_iJ, i = row(k), J = column(k), made of
-// u_component(k) and shape derivative number candidate(k), of which a node has `candidates`.
+// u_component(k) and shape derivative number derivative(k), of which a node has `derivatives`.
 // symmetric(k) is the position of component k of C in a Symmetric.
 template<int dimensions, int revolves> struct Stored {
   static const int D = dimensions, H = revolves, F = D * D + H, C = D == 3 ? 6 : 4,
-    candidates = D + H;
+    derivatives = D + H;
   static int row(int k) { return k < D * D ? k / D : 2; }
   static int column(int k) { return k < D * D ? k % D : 2; }
   static int component(int k) { return k < D * D ? k / D : 0; }
-  static int candidate(int k) { return k < D * D ? k % D : D; }
+  static int derivative(int k) { return k < D * D ? k % D : D; }
   static int symmetric(int k) {
     static const int plane[4] = {0, 1, 3, 2};
     return D == 3 ? k : plane[k];
@@ -136,7 +136,7 @@ public:
     block.assign(pairA.size() * D * D, 0.);
   }
 
-  void facets(const std::vector<int> &elementOfPoint) {
+  void elements(const std::vector<int> &elementOfPoint) {
     // Sets up the volume term of the elements; elementOfPoint (nq): their numbers in the scripts.
     cell.clear();
     cellWeight.assign(firstPoint.size() - 1, 0.);
@@ -235,10 +235,10 @@ public:
   }
 
 private:
-  std::map<std::pair<int, int>, int> knownHistory;   // number of each pair of nodes
+  std::map<std::pair<int, int>, int> knownPairs;   // number of each pair of nodes
   int pair(int a, int b) {
     // The number of the pair of nodes a >= b, which is added if it is new.
-    auto entry = knownHistory.insert({{a, b}, int(pairA.size())});
+    auto entry = knownPairs.insert({{a, b}, int(pairA.size())});
     if (entry.second) { pairA.push_back(a);  pairB.push_back(b);  massOf.push_back(0); }
     return entry.first->second;
   }
@@ -332,7 +332,7 @@ private:
       for (int i = 0; i < D; i++) its[a * D + i] = nodal[node[firstNode[g] + a] * D + i];
     for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++) {
       double dF[T::F] = {};
-      for (int a = 0; a < n; a++, N += T::candidates) {
+      for (int a = 0; a < n; a++, N += T::derivatives) {
         for (int i = 0; i < D; i++)
           for (int J = 0; J < D; J++) dF[i * D + J] += N[J] * its[a * D + i];
         if (T::H) dF[D * D] += N[D] * its[a * D];
@@ -350,7 +350,7 @@ private:
                                 const Symmetric &S, double *its) const {
     // its += G^T (w F S): forces on the n nodes, with shapes N, of the stress S at point q.
     const Matrix P = weight[q] * laws::product(F, S);
-    for (int a = 0; a < n; a++, N += T::candidates) {
+    for (int a = 0; a < n; a++, N += T::derivatives) {
       for (int i = 0; i < T::D; i++)
         for (int J = 0; J < T::D; J++) its[a * T::D + i] += N[J] * P[3 * i + J];
       if (T::H) its[a * T::D] += N[T::D] * P[8];
@@ -364,7 +364,7 @@ private:
     double *its = &own[size_t(firstNode[g]) * D];
     Pressed pressed;
     if (!cell.empty()) press<T>(g, step, at, pressed);
-    for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++, N += n * T::candidates) {
+    for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++, N += n * T::derivatives) {
       const laws::Material &m = material(q);
       const Symmetric C0 = symmetric<T>(at.C0, q),
         C1 = laws::rightCauchyGreen(whole<T>(step.where == stepMiddle ? at.Fs : at.F1, q));
@@ -430,7 +430,7 @@ private:
     const int n = nodesOf(g);
     const double *N = &shape[firstShape[g]];
     double all[most * T::D] = {};
-    for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++, N += n * T::candidates)
+    for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++, N += n * T::derivatives)
       pulled<T>(q, n, N, whole<T>(at.Fs, q), pressed.left * pressed.T[q - firstPoint[g]], all);
     for (int i = 0; i < n * D; i++) {
       const double along = slopeKnown ? pressed.left * g0[size_t(firstNode[g]) * D + i] : all[i];
@@ -455,15 +455,15 @@ private:
           double Y[D][T::F] = {};          // sum over J of N_a,J dP_iJ/dF
           for (int k = 0; k < T::F; k++)
             for (int l = 0; l < T::F; l++)
-              Y[T::component(k)][l] += N[a * T::candidates + T::candidate(k)] * A[k][l];
+              Y[T::component(k)][l] += N[a * T::derivatives + T::derivative(k)] * A[k][l];
           for (int b = 0; b <= a; b++, to++) {
             double *into = &block[size_t(*to) * D * D];
             for (int i = 0; i < D; i++)
               for (int l = 0; l < T::F; l++)
-                into[i * D + T::component(l)] += Y[i][l] * N[b * T::candidates + T::candidate(l)];
+                into[i * D + T::component(l)] += Y[i][l] * N[b * T::derivatives + T::derivative(l)];
           }
         }
-        N += n * T::candidates;
+        N += n * T::derivatives;
       }
       if (!cell.empty()) rankOne<T>(g, F, scale);
     }
@@ -505,7 +505,7 @@ private:
       const double j = laws::volume(m, C);
       theta += weight[q] * j / cellWeight[g];
       pulled<T>(q, n, N, f, laws::volumeDirection(m, C, j), its);
-      N += n * T::candidates;
+      N += n * T::derivatives;
     }
     slope[g] = scale * laws::pressureSlope(m, theta) / cellWeight[g];
     const int *to = &pairOf[firstPair[g]];

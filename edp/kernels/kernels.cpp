@@ -85,7 +85,7 @@ static void addBodies() {
                          Reals lag) {
     arrays.carried = {&carried};  arrays.star = {&star};  arrays.now = {&now};
     arrays.dBase = {&dBase};  arrays.lag = {&lag};
-    body.facets(copied<int>(elementOfPoint));
+    body.elements(copied<int>(elementOfPoint));
   });
   add("kernelForces", +[](Reals d, Reals inertiaKnown, Reals bodyForce, double massScale,
                          double rate, long where, bool breaks, bool carries, Reals residual) {

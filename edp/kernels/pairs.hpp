@@ -179,7 +179,7 @@ struct Surface {
   std::vector<double> side, pointShape;    // sign of the normal; N_a at point p at a np + p
   std::vector<int> selfContact;            // (bodies) 1 if it may come into contact with itself
   // nodal positions in the reference; centre, outward normal and radius of each facet there
-  std::vector<double> reference, middle, outward, capacity;
+  std::vector<double> reference, middle, outward, facetRadius;
   std::vector<double> shape;               // N_a = shape(a, :) . monomials, by rows
 };
 
@@ -216,22 +216,22 @@ public:
     std::vector<std::pair<long, int>> hits;   // candidate, facet
     for (int c = 0; c < s.facets; c++) box(x, c);
     for (int c = 0; c < s.facets; c++) for (int e = c + 1; e < s.facets; e++)
-      if (contactInSubstep(c, e)
+      if (overlap(c, e)
           && (s.body[c] != s.body[e] || (s.selfContact[s.body[c]] && sightOf(c, e) > 0))) {
         join(x, c, e, hits);
         join(x, e, c, hits);
       }
     std::sort(hits.begin(), hits.end());
     hits.erase(std::unique(hits.begin(), hits.end()), hits.end());
-    candidate.clear();  first.clear();  cell.clear();
+    candidate.clear();  first.clear();  facet.clear();
     for (const auto &hit : hits) {
       if (candidate.empty() || candidate.back() != hit.first) {
         candidate.push_back(hit.first);
-        first.push_back(int(cell.size()));
+        first.push_back(int(facet.size()));
       }
-      cell.push_back(hit.second);
+      facet.push_back(hit.second);
     }
-    first.push_back(int(cell.size()));
+    first.push_back(int(facet.size()));
     return long(candidate.size());
   }
 
@@ -252,7 +252,7 @@ public:
       for (int e = first[k]; e < first[k + 1]; e++)
         if (A == 2 || length(closestPoints[e - first[k]].arm)
             <= std::abs(place.gap) + 2 * searchDistance) {
-          facets.push_back(cell[e]);
+          facets.push_back(facet[e]);
           kept.push_back(patchAtStart[e]);
         }
       candidates.push_back(candidate[k]);
@@ -260,7 +260,7 @@ public:
       startGap.push_back(gapOf(int(k), place));
       startUnseen.push_back(place.unseen);
     }
-    candidate.swap(candidates);  first.swap(firsts);  cell.swap(facets);  patchAtStart.swap(kept);
+    candidate.swap(candidates);  first.swap(firsts);  facet.swap(facets);  patchAtStart.swap(kept);
     before.assign(candidate.size(), {-1, 0, 0, {}});
     return long(candidate.size());
   }
@@ -273,7 +273,7 @@ public:
     rows.slip.resize((A - 1) * entries);
     patches(d, step);
     middle = end = patchAtStart;
-    for (size_t e = 0; e < cell.size(); e++) { middle[e] += 0.5 * step[e];  end[e] += step[e]; }
+    for (size_t e = 0; e < facet.size(); e++) { middle[e] += 0.5 * step[e];  end[e] += step[e]; }
     now.resize(n);
     for (int k = 0; k < n; k++) {
       now[k] = project(middle, k);
@@ -298,7 +298,7 @@ public:
     for (int k = 0; k < n; k++) {
       const double geometric = std::min(turned(k, t[candidate[k]]), limit[candidate[k]]);
       if (geometric > 0) { at.push_back(k);  c.push_back(geometric); }
-      before[k] = {cell[now[k].pick], now[k].closestPoint.r[0],
+      before[k] = {facet[now[k].pick], now[k].closestPoint.r[0],
                    length(now[k].closestPoint.tangent[0]), now[k].n};
     }
     const int terms = int(at.size());
@@ -321,22 +321,22 @@ public:
 
 private:
   // Closest-point projection of a candidate in one configuration: position of the closest facet in
-  // `cell`, closest point, facet normal m, gap and its normal n. unseen: no contact is possible
+  // `facet`, closest point, facet normal m, gap and its normal n. unseen: no contact is possible
   // (onEdge()).
   struct Place {
     int pick;  ClosestPoint<A> closestPoint;  Vector<A> m, n;  double gap;  bool unseen;
   };
   // State at the previous evaluation of the step: facet (-1: there was none), r, |y_,r|, normal.
-  struct Before { int cell;  double r, length;  Vector<A> n; };
+  struct Before { int facet;  double r, length;  Vector<A> n; };
 
   Surface surface;
   std::vector<int> beside;                 // (2 facets) neighbours of an edge at its ends; -1: none
   double searchDistance = 0, roundOff = 0; // [m]; roundOff of the positions
   std::vector<Vector<A>> low, high;        // (facets) boxes, enlarged by searchDistance / 2
   std::vector<long> candidate;             // (n) numbers of the candidates
-  std::vector<int> first, cell;            // candidate k has the facets cell[first[k]] to
-                                           // cell[first[k + 1] - 1]
-  // for each entry of `cell`: y - x at the start, its increment, y - x in the middle and at the end
+  std::vector<int> first, facet;            // candidate k has the facets facet[first[k]] to
+                                           // facet[first[k + 1] - 1]
+  // for each entry of `facet`: y - x at the start, its increment, y - x in the middle and at the end
   std::vector<Patch<A>> patchAtStart, step, middle, end;
   std::vector<double> startGap;
   std::vector<bool> startUnseen;
@@ -344,7 +344,7 @@ private:
   std::vector<Before> before;
   std::vector<ClosestPoint<A>> closestPoints;   // on the facets of the present candidate
   std::vector<bool> tied;                  // facets that share the vertex or edge with the closest
-                                           // point, see pairAt()
+                                           // point, see markShared()
 
   int node(int c, int i, int a) const {   // unknown of component i of node a of facet c
     return surface.unknown[(i * surface.nodes + a) * surface.facets + c];
@@ -397,7 +397,7 @@ private:
     }
   }
 
-  bool contactInSubstep(int c, int e) const {
+  bool overlap(int c, int e) const {
     // Whether the boxes of facets c and e overlap.
     for (int i = 0; i < A; i++)
       if (low[c][i] > high[e][i] || high[c][i] < low[e][i]) return false;
@@ -423,7 +423,7 @@ private:
     }
     const bool turns = turned < std::cos(80 * M_PI / 180);
     if (turns && std::min(ahead, -behind) > 1e-9 * std::sqrt(square)) return 2;
-    return !shared && (turns || std::sqrt(square) > s.capacity[c] + s.capacity[e]) ? 1 : 0;
+    return !shared && (turns || std::sqrt(square) > s.facetRadius[c] + s.facetRadius[e]) ? 1 : 0;
   }
 
   double gapOf(int k, const Place &place) const {
@@ -431,7 +431,7 @@ private:
     // there is no contact, unless the facets face each other or the penetration is at most a tenth
     // of the distance in the reference (nor beyond searchDistance).
     const Surface &s = surface;
-    const int p = int(candidate[k] % s.np), c = cell[place.pick];
+    const int p = int(candidate[k] % s.np), c = facet[place.pick];
     if (place.gap >= 0 || candidate[k] / s.np < s.obstacles + s.bodies - 1) return place.gap;
     if (-place.gap <= searchDistance && sightOf(p / s.points, c) == 2) return place.gap;
     Vector<A> apart = pointPlace(s.reference.data(), p);
@@ -464,14 +464,14 @@ private:
   }
 
   void patches(const double *w, std::vector<Patch<A>> &all) const {
-    // Coefficients of y - x for every entry of `cell`, at nodal positions w; or of its increment,
+    // Coefficients of y - x for every entry of `facet`, at nodal positions w; or of its increment,
     // for nodal displacements w.
-    all.assign(cell.size(), Patch<A>{});
+    all.assign(facet.size(), Patch<A>{});
     for (size_t k = 0; k < candidate.size(); k++) {
       const Vector<A> point = pointPlace(w, int(candidate[k] % surface.np));
       for (int e = first[k]; e < first[k + 1]; e++) {
         for (int a = 0; a < surface.nodes; a++) {
-          const Vector<A> y = nodePlace(w, cell[e], a);
+          const Vector<A> y = nodePlace(w, facet[e], a);
           for (int j = 0; j < termsOf(A); j++) all[e][j] += surface.shape[a * termsOf(A) + j] * y;
         }
         all[e][0] -= point;
@@ -495,7 +495,7 @@ private:
     // Of several facets that meet at the closest point, take the edge that ends there, or the first
     // face: round-off must not decide which facet the rows belong to.
     if (onBoundary(r)) {
-      pairAt(patch, k, cell[first[k] + pick], r);
+      markShared(patch, k, facet[first[k] + pick], r);
       for (int e = m - 1; e >= 0; e--)
         if (tied[e] && (A == 3 ? e < pick : closestPoints[e].r[0] == 1)) pick = e;
       r = closestPoints[pick].r;
@@ -505,7 +505,7 @@ private:
     place.pick = first[k] + pick;
     place.closestPoint.r = r;
     evaluate<A>(patch[place.pick], place.closestPoint);
-    place.m = place.n = normalOf(place.closestPoint, surface.side[cell[place.pick]]);
+    place.m = place.n = normalOf(place.closestPoint, surface.side[facet[place.pick]]);
     place.gap = -dot(place.closestPoint.arm, place.n);
     place.unseen = false;
     if (edge) onEdge(place, k, closestPoints[pick].arm);
@@ -514,7 +514,7 @@ private:
     return place;
   }
 
-  void pairAt(const std::vector<Patch<A>> &patch, int k, int c, const Vector<A - 1> &r) {
+  void markShared(const std::vector<Patch<A>> &patch, int k, int c, const Vector<A - 1> &r) {
     // Sets `tied` for the facets of candidate k that share the vertex or edge of facet c on which r
     // lies, and moves their closest points exactly there.
     Vector<A> weight = {1};                // barycentric coordinates of r
@@ -526,7 +526,7 @@ private:
       for (int a = 0; a < A; a++) if (weight[a] > 1e-12) {
         missing++;
         for (int b = 0; b < A; b++)
-          if (node(c, 0, a) == node(cell[e], 0, b)) { missing--;  there[b] = weight[a]; }
+          if (node(c, 0, a) == node(facet[e], 0, b)) { missing--;  there[b] = weight[a]; }
       }
       if (missing > 0) continue;
       ClosestPoint<A> &closestPoint = closestPoints[e - first[k]];
@@ -544,7 +544,7 @@ private:
     int count = 0;
     for (int e = first[k]; e < first[k + 1]; e++) {
       if (tied[e - first[k]]) {
-        mean += normalOf(closestPoints[e - first[k]], surface.side[cell[e]]);
+        mean += normalOf(closestPoints[e - first[k]], surface.side[facet[e]]);
         count++;
       }
     }
@@ -559,7 +559,7 @@ private:
     // Calls entry(block, unknown, component, N, N_a,l) for every entry of a row of candidate k. N
     // is the factor in rho: N_a at the contact point, -N_a on the facet. N_a,l is 0 at the point.
     const Surface &s = surface;
-    const int p = int(candidate[k] % s.np), c = cell[place.pick], blocks = A * s.nodes;
+    const int p = int(candidate[k] % s.np), c = facet[place.pick], blocks = A * s.nodes;
     const double none[A - 1] = {};
     shapes(place.closestPoint.r, [&](int a, double N, const double *turn) {
       for (int i = 0; i < A; i++) {
@@ -618,14 +618,14 @@ private:
     // evaluation, theta the rotation of n, w its path along the edges; else 0 (pair.idp).
     const Place &p = now[k];
     const Before &was = before[k];
-    const int own = cell[p.pick];
+    const int own = facet[p.pick];
     const double r = p.closestPoint.r[0];
     if (p.gap >= 0 || t <= 0) return 0;
     if (r == 0 || r == 1) return t / (-2 * p.gap);
-    if (was.cell < 0) return 0;
-    const bool same = was.cell == own,
-      onwards = node(was.cell, 0, 1) == node(own, 0, 0) || (same && was.r == 0);
-    const bool back = node(was.cell, 0, 0) == node(own, 0, 1) || (same && was.r == 1);
+    if (was.facet < 0) return 0;
+    const bool same = was.facet == own,
+      onwards = node(was.facet, 0, 1) == node(own, 0, 0) || (same && was.r == 0);
+    const bool back = node(was.facet, 0, 0) == node(own, 0, 1) || (same && was.r == 1);
     const int increments = int(onwards) - int(back);   // over a vertex: 1 along the edges, -1 back
     const double increment = same ? 0 : (increments > 0 ? 1 - was.r : was.r) * was.length,
       theta = increments * (was.n[1] * p.n[0] - was.n[0] * p.n[1]);
@@ -640,12 +640,12 @@ static void addPairs() {
   // kernelSurface makes `known` from a Surface; the others call its functions.
   ::add("kernelSurface", +[](Table shape, long points, long obstacles, long bodies, Ints unknown,
                             Ints body, Reals side, Reals pointShape, Ints selfContact,
-                            Reals reference, Reals middle, Reals outward, Reals capacity) {
+                            Reals reference, Reals middle, Reals outward, Reals facetRadius) {
     const int facets = int(body.N()), nodes = int(shape.N());
     Surface s = {facets, nodes, int(points), facets * int(points), int(obstacles), int(bodies),
                  copied<int>(unknown), copied<int>(body), copied<double>(side),
                  copied<double>(pointShape), copied<int>(selfContact), copied<double>(reference),
-                 copied<double>(middle), copied<double>(outward), copied<double>(capacity), {}};
+                 copied<double>(middle), copied<double>(outward), copied<double>(facetRadius), {}};
     for (int a = 0; a < nodes; a++)
       for (int j = 0; j < shape.M(); j++) s.shape.push_back(shape(a, j));
     if (shape.M() == termsOf(2)) known.reset(new Pairs<2>(s)); else known.reset(new Pairs<3>(s));
