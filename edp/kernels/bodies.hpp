@@ -77,7 +77,7 @@ public:
   // elements with a volume term of their own: number in the scripts, sum of weights, tangent slope
   // and g0 (node, component) of volume.idp; slopeKnown: slope and g0 are set
   std::vector<int> cell;
-  std::vector<double> cellWeight, slope, g0;
+  std::vector<double> elementWeight, slope, g0;
   bool slopeKnown = false;
   Volume volume = Volume();
 
@@ -139,11 +139,11 @@ public:
   void elements(const std::vector<int> &elementOfPoint) {
     // Sets up the volume term of the elements; elementOfPoint (nq): their numbers in the scripts.
     cell.clear();
-    cellWeight.assign(firstPoint.size() - 1, 0.);
+    elementWeight.assign(firstPoint.size() - 1, 0.);
     for (size_t g = 0; g + 1 < firstPoint.size(); g++) {
       cell.push_back(elementOfPoint[firstPoint[g]]);
-      for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++) cellWeight[g] += weight[q];
-      if (cellWeight[g] == 0) cellWeight[g] = 1;   // in a rigid body, which has no strain
+      for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++) elementWeight[g] += weight[q];
+      if (elementWeight[g] == 0) elementWeight[g] = 1;   // in a rigid body, which has no strain
     }
     slope.assign(cell.size(), 0.);
     g0.assign(node.size() * D, 0.);
@@ -193,7 +193,7 @@ public:
       double theta = 0;
       dispatch([&](auto stored) {
         for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++)
-          theta += weight[q] / cellWeight[g]
+          theta += weight[q] / elementWeight[g]
             * laws::volume(material(q), symmetric<decltype(stored)>(C, q));
       });
       for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++)
@@ -393,7 +393,7 @@ private:
     for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++) {
       const Symmetric C1 =
         laws::rightCauchyGreen(whole<T>(step.where == stepMiddle ? at.Fs : at.F1, q));
-      const double w = weight[q] / cellWeight[g], j = laws::volume(m, C1);
+      const double w = weight[q] / elementWeight[g], j = laws::volume(m, C1);
       Symmetric &to = its.T[q - firstPoint[g]];
       theta1 += w * j;
       if (step.where == stepMean) {
@@ -503,11 +503,11 @@ private:
       const Matrix f = whole<T>(F, q);
       const Symmetric C = laws::rightCauchyGreen(f);
       const double j = laws::volume(m, C);
-      theta += weight[q] * j / cellWeight[g];
+      theta += weight[q] * j / elementWeight[g];
       pulled<T>(q, n, N, f, laws::volumeDirection(m, C, j), its);
       N += n * T::derivatives;
     }
-    slope[g] = scale * laws::pressureSlope(m, theta) / cellWeight[g];
+    slope[g] = scale * laws::pressureSlope(m, theta) / elementWeight[g];
     const int *to = &pairOf[firstPair[g]];
     for (int a = 0; a < n; a++)
       for (int b = 0; b <= a; b++, to++)

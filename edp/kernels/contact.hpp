@@ -117,7 +117,7 @@ static void setActiveSet(Ints candidates, Ints index, long unknowns, long ns, In
 }
 
 static long solve(Ints candidates, Reals q, Reals place, Reals ahead, double dt, long where,
-                  double enough, long reuse, Ints sticks, Ints turns, Reals k, Reals muStatic,
+                  double enough, long reuse, Ints sticks, Ints statusChanges, Reals k, Reals muStatic,
                   Reals muDynamic, long mostInverses, long &inversesOfStep, Reals tau,
                   Reals force) {
   // Solves the contact problem of the active `candidates`. Arrays over all candidates: penetration
@@ -141,7 +141,7 @@ static long solve(Ints candidates, Reals q, Reals place, Reals ahead, double dt,
   for (int i = 0; i < points; i++) {
     const long s = candidates[i];
     p.point[i] = {q[s], k[s], muStatic[s], muDynamic[s], sticks[s] == 1};
-    p.turned[i] = turns[s];
+    p.turned[i] = statusChanges[s];
     for (int c = 0; c < kinds; c++) {
       p.start[kinds * i + c] = place[s + c * ns];
       p.tau[kinds * i + c] = tau[c * points + i];
@@ -153,7 +153,7 @@ static long solve(Ints candidates, Reals q, Reals place, Reals ahead, double dt,
     for (int c = 0; c < kinds; c++) tau[c * points + i] = p.tau[kinds * i + c];
     if (law.slips > 0) {
       sticks[candidates[i]] = p.point[i].sticks;
-      turns[candidates[i]] = p.turned[i];
+      statusChanges[candidates[i]] = p.turned[i];
     }
   }
   std::copy(p.force.begin(), p.force.end(), (double *)force);
@@ -164,7 +164,7 @@ static void addContact() {
   ::add("kernelLaw", setLaw);
   ::add("kernelTractions", tractions);
   ::add("kernelSoft", +[](Table C) { problem.compliance(C.N(), &C(0, 0)); });
-  ::add("kernelLoose", +[](Reals C) { problem.looseness(C.n, &C[0]); });
+  ::add("kernelLumpedCompliance", +[](Reals C) { problem.looseness(C.n, &C[0]); });
   ::add("kernelSort", sortJacobian);
   ::add("kernelTake", take);
   ::add("kernelActiveSet", setActiveSet);
