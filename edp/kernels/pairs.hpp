@@ -336,7 +336,8 @@ private:
   std::vector<long> candidate;             // (n) numbers of the candidates
   std::vector<int> first, facet;            // candidate k has the facets facet[first[k]] to
                                            // facet[first[k + 1] - 1]
-  // for each entry of `facet`: y - x at the start, its increment, y - x in the middle and at the end
+  // for each entry of `facet`: y - x at the start, its increment, y - x in the middle and at the
+  // end
   std::vector<Patch<A>> patchAtStart, step, middle, end;
   std::vector<double> startGap;
   std::vector<bool> startUnseen;
