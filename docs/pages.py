@@ -277,22 +277,27 @@ def _literal(expression: ast.expr) -> str:
 
 
 def equations(prefix: str = "") -> str:
-    """A table of the equations of the paper and the lines of the source files that contain them."""
-    found = {}
-    for path in sorted((ROOT / "edp/core").rglob("*.idp")):
+    """A table of the equations of the paper: for each the lines of scripts and of kernels that have
+    it, and what these say of it."""
+    found: dict[int, dict[str, list[tuple[Path, int, str]]]] = {k: {"idp": [], "hpp": []} for k in range(1, 16)}
+    for path in sorted([*(ROOT / "edp/core").rglob("*.idp"), *(ROOT / "edp/kernels").glob("*.hpp")]):
         for number, line in enumerate(path.read_text().splitlines(), 1):
-            if match := EQUATION.search(line):
-                if line[: match.start()].strip():  # a line of code, not a comment
-                    found.setdefault(match[1], []).append(
-                        (path, number, line[match.end() :].strip())
-                    )
-    text = "| equation | line | what stands there |\n|---|---|---|\n"
-    for marks, places in sorted(found.items(), key=lambda each: int(re.search(r"\d+", each[0])[0])):
-        links = ", ".join(
-            f"[{path.parent.name}/{path.name}:{number}]({prefix}{path.relative_to(ROOT)}#L{number})"
-            for path, number, _ in places
-        )
-        text += f"| {marks} | {links} | {cell('; '.join(words for _, _, words in places))} |\n"
+            match = EQUATION.search(line)
+            if match and line[: match.start()].strip():  # a line of code, not a comment
+                for equation in re.findall(r"\d+", match[1]):
+                    place = path, number, line[match.end() :].strip()
+                    found[int(equation)][path.suffix[1:]].append(place)
+    text = "| equation | script | kernel | what stands there |\n|---|---|---|---|\n"
+    for equation, places in found.items():
+        links = [
+            ", ".join(
+                f"[{path.parent.name}/{path.name}:{number}]({prefix}{path.relative_to(ROOT)}#L{number})"
+                for path, number, _ in places[kind]
+            )
+            for kind in ("idp", "hpp")
+        ]
+        words = dict.fromkeys(words for _, _, words in places["idp"] if words)
+        text += f"| ({equation}) | {links[0]} | {links[1] or '—'} | {cell('; '.join(words))} |\n"
     return text
 
 

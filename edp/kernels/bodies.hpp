@@ -163,7 +163,8 @@ public:
     for (int i = 0; i < nodes * D; i++)
       nodal[i] = step.massScale * nodal[i] - inertiaKnown[unknown[i]];
     dispatch([&](auto stored) { this->template inertia<stored.D>(); });
-    for (int i = 0; i < nodes * D; i++) residual[unknown[i]] = pull[i] - bodyForce[unknown[i]];
+    for (int i = 0; i < nodes * D; i++)   // pull: P : Grad w + rho0 A, of unknown i
+      residual[unknown[i]] = pull[i] - bodyForce[unknown[i]];   // (1), (2): Div P + rho0 b = rho0 A
     return fine;
   }
 

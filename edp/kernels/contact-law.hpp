@@ -48,7 +48,7 @@ struct Law {
       stiff = k * m / 2 * std::pow(middle, m - 1);
     }
     if (where == stepEnd && vN1 > 0) {
-      t = k * std::pow(vN1, m);
+      t = k * std::pow(vN1, m);   // (10): t_N = k v_N^m where v_N > 0
       stiff = k * m * std::pow(vN1, m - 1);
     }
   }
@@ -65,7 +65,7 @@ struct Law {
         dPhi = std::pow(vOverEps * vOverEps + 1, -1.5);
         break;
       case tanhOf: phi = std::tanh(vOverEps);  dPhi = 1 - phi * phi;  break;
-      case linear: phi = std::min(vOverEps, 1.);  dPhi = vOverEps < 1;  break;
+      case linear: phi = std::min(vOverEps, 1.);  dPhi = vOverEps < 1;  break;   // (13): phi3
       case linearPrinted:
         phi = vOverEps < 1 - bridge ? vOverEps / 2
           : std::min(1., (1 - bridge) / 2 + (vOverEps - 1 + bridge) * (1 + bridge) / (2 * bridge));
@@ -76,7 +76,7 @@ struct Law {
       mu = a.muDynamic + half * (1 + std::cos(pi * std::max(0., std::min(1., vOverEps - 1))));
       if (vOverEps > 1 && vOverEps < 2) dMu = -half * pi * std::sin(pi * (vOverEps - 1));
     }
-    muPhi = mu * phi;
+    muPhi = mu * phi;   // (11), (12): mu_f phi(v_T)
     slope = mu * dPhi + dMu * phi;
     if (jumps && regularization == linearPrinted) {
       // sticking: mu_e v/(2 eps), constant beyond eps; sliding: the same up to mu_d or to the ramp

@@ -43,7 +43,7 @@ inline Matrix product(const Symmetric &A, const Symmetric &B) {   // A B
       + A[sym[J][2]] * B[sym[2][L]];
   return X;
 }
-inline Matrix product(const Matrix &F, const Symmetric &S) {   // P = F S (3)
+inline Matrix product(const Matrix &F, const Symmetric &S) {   // (3): P = F S
   Matrix P;
   for (int i = 0; i < 9; i += 3) for (int J = 0; J < 3; J++)
     P[i + J] = F[i] * S[sym[0][J]] + F[i + 1] * S[sym[1][J]] + F[i + 2] * S[sym[2][J]];
@@ -113,7 +113,7 @@ struct Material {
 // acoustic tensor, relative to mu, over directions in the plane of the mesh or (spatial) in space.
 struct Law {
   virtual ~Law() {}
-  virtual Symmetric stress(const Material &m, const Symmetric &C) const = 0;
+  virtual Symmetric stress(const Material &m, const Symmetric &C) const = 0;   // (4): S = g(E)
   virtual Symmetric algorithmicStress(const Material &m, const Symmetric &C0,
                                       const Symmetric &C1) const = 0;
   virtual double gradientCorrection(const Material &m, const Symmetric &M,
@@ -136,9 +136,10 @@ template<class Own> struct Conserving : Law {
 
 // St. Venant-Kirchhoff: W = lambda/2 (tr E)^2 + mu E:E.
 struct Svk : Conserving<Svk> {
-  Symmetric stress(const Material &m, const Symmetric &C) const {   // (5)
+  Symmetric stress(const Material &m, const Symmetric &C) const {
     const Symmetric twiceE = C - identity;
-    return m.lambda / 2 * trace(twiceE) * identity + m.mu * twiceE;
+    return m.lambda / 2 * trace(twiceE) * identity
+      + m.mu * twiceE;   // (5): S = lambda tr(E) I + 2 mu E
   }
   double gradientCorrection(const Material &, const Symmetric &, const Symmetric &) const {
     return 0;
@@ -218,7 +219,7 @@ struct Logarithm {
 struct NeoHookean : Conserving<NeoHookean> {
   static Logarithm rest(const Material &m) { return {m.lambda, m.mu}; }
   Symmetric stress(const Material &m, const Symmetric &C) const {
-    return rest(m).stress(C) + m.mu * identity;   // (6)
+    return rest(m).stress(C) + m.mu * identity;   // (6): S = mu (I - C^-1) + lambda ln J C^-1
   }
   double gradientCorrection(const Material &m, const Symmetric &M, const Symmetric &H) const {
     return rest(m).gradientCorrection(M, H);

@@ -481,7 +481,7 @@ private:
   }
 
   Place project(const std::vector<Patch<A>> &patch, int k) {
-    // (9): the closest point of candidate k on all its facets.
+    // The closest point of candidate k on all its facets.
     const int m = first[k + 1] - first[k];
     const double nearer = A == 3 ? 1 - 2e-13 : 1;   // of faces at the same distance, take the first
     int pick = 0;
@@ -490,7 +490,7 @@ private:
       closest(patch[first[k] + e], closestPoints[e]);
       const double off = dot(closestPoints[e].arm, closestPoints[e].arm)
         - nearer * dot(closestPoints[pick].arm, closestPoints[pick].arm);
-      if (off < 0 || (A == 2 && off == 0)) pick = e;
+      if (off < 0 || (A == 2 && off == 0)) pick = e;   // (9): min d(x1, x2) over the facets
     }
     Vector<A - 1> r = closestPoints[pick].r;
     // Of several facets that meet at the closest point, take the edge that ends there, or the first

@@ -88,7 +88,7 @@ class Surface {
     const double distance = size(away), side = dot(away, normal) < 0 ? -1 : 1;
     const double scale = size(normal);
     n = inside || distance == 0 ? (1 / scale) * normal : (side / distance) * away;
-    return side * distance - rounding;
+    return side * distance - rounding;   // (7): n.(x_B - x_R) = -v_N
   }
 
  private:
