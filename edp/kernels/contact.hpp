@@ -118,8 +118,8 @@ static void setActiveSet(Ints candidates, Ints index, long unknowns, long ns, In
 
 static long solve(Ints candidates, Reals q, Reals place, Reals ahead, double dt, long where,
                   double enough, long reuse, Ints sticks, Ints statusChanges, Reals k,
-                  Reals muStatic, Reals muDynamic, long mostInverses, long &inversesOfStep, Reals tau,
-                  Reals force) {
+                  Reals muStatic, Reals muDynamic, long mostInverses, long &inversesOfStep,
+                  Reals tau, Reals force) {
   // Solves the contact problem of the active `candidates`. Arrays over all candidates: penetration
   // q at the start of the step, `place` = x_w (trial state without contact), status, number of
   // status changes, stiffness, coefficients. ahead: displacement of the unknowns, without contact,
