@@ -25,6 +25,7 @@ def write_modes(folder: Path) -> None:
     path = folder / RECORDED
     if not path.exists():
         return
+    from scipy.linalg import eigh
     from scipy.sparse import coo_array, tril
     from scipy.sparse.linalg import eigsh
 
@@ -39,9 +40,12 @@ def write_modes(folder: Path) -> None:
         for name in ("stiffness", "mass")
     )
     stiffness = lower + tril(lower, -1).T  # the scripts keep the lower triangle
-    wanted = min(int(count + rigid), stiffness.shape[0] - 2)
+    size, wanted = stiffness.shape[0], int(count + rigid)
     # The recorded stiffness is K + shift M.
-    values, shapes = eigsh(stiffness, wanted, mass, sigma=0, tol=1e-12)
+    if 2 * wanted < size:
+        values, shapes = eigsh(stiffness, wanted, mass, sigma=0, tol=1e-12)
+    else:
+        values, shapes = eigh(stiffness.toarray(), mass.toarray())
     order = np.argsort(values)
     values, shapes = values[order] - shift, shapes[:, order]
     elastic = np.flatnonzero(values > 1e-3 * shift)[: int(count)]
