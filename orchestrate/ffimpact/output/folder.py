@@ -28,7 +28,6 @@ __all__ = [
     "clear",
     "failed_beside",
     "finished_in",
-    "lock_folder",
     "replace",
     "result_folder",
     "staging",
@@ -160,8 +159,6 @@ def staging(folder: Path) -> Iterator[tuple[Path, int]]:
         if not folder.exists() and _is_complete(stage):
             os.rename(stage, folder)  # its lock stays
             leaving.callback(os.close, lock := _lock(stage, folder))
-        elif folder.exists():
-            leaving.callback(os.close, lock_folder(folder, folder))  # Busy if it is in use
         # The folder of a run always contains checkpoint.json. A folder of that name without it
         # belongs to someone else.
         if os.listdir(stage) and not (stage / "checkpoint.json").exists():
@@ -207,7 +204,7 @@ def _lock(stage: Path, folder: Path) -> int:
                 f"{stage} cannot be made: {error.strerror}; choose another --out"
             ) from None
         try:
-            lock = lock_folder(stage, folder)
+            lock = _lock_folder(stage, folder)
         except FileNotFoundError:  # its run has just renamed it
             continue
         if _holds(lock, stage):  # else it was renamed before it was locked
@@ -223,7 +220,7 @@ def _holds(lock: int, path: Path) -> bool:
         return False
 
 
-def lock_folder(path: Path, folder: Path) -> int:
+def _lock_folder(path: Path, folder: Path) -> int:
     """Returns the folder `path`, opened and locked. Raises Busy if a run in `folder` holds it.
 
     The lock is flock() on the folder itself. FreeFem++ shares the open folder and so the lock. No
