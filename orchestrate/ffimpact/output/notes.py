@@ -1,6 +1,6 @@
 """Warnings and notes of a run: sentences `name: fact: meaning: advice`.
 
-They are made in edp/core/run/warnings.idp and estimate.py. A warning reports that a result may be
+They are made in output/warnings.py and output/estimate.py. A warning reports that a result may be
 wrong. A note is a remark about a number: a property of this number in every such scene, or a
 warning whose cause or effect another warning reports already. The summary holds the sentences, the
 screen shows one line for each.
