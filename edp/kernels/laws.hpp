@@ -251,7 +251,9 @@ struct MooneyRivlin : Conserving<MooneyRivlin> {
     rest(m).addModuli(C, D);
   }
   double ellipticity(const Material &m, const Symmetric &C, bool spatial) const {
-    return rest(m).ellipticity(C, spatial, m.mu - second(m), m.mu);
+    Logarithm whole = rest(m);
+    whole.l += m.bulk;                     // lambda of points and of elements (volume.idp)
+    return whole.ellipticity(C, spatial, m.mu - second(m), m.mu);
   }
 };
 

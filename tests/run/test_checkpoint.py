@@ -183,7 +183,7 @@ def test_killed_behind_the_run_that_estimates_the_error(tmp_path):
     out, stage, command = tmp_path / "out", tmp_path / "out.part", ["run", str(tmp_path / "rising.toml"), "--quiet", "--out"]
     assert call(*command, str(tmp_path / "straight"))[0] == 0
     process = start(*command, str(out))
-    wait_for(lambda: (stage / "coarser/summary.json").exists() and (stage / "checkpoint").exists())
+    wait_for(lambda: (stage / "coarser/record.json").exists() and (stage / "checkpoint").exists())
     process.kill()
     process.communicate()
     assert not out.exists() and call(*command, str(out))[0] == 0

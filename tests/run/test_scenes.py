@@ -114,7 +114,7 @@ def test_entries_are_set_on_the_command_line(mine, capsys):
     assert other["impulse"] > found.summary["impulse"] and run.read_scene(out)["body"][1]["young"] == 8e6
     direct = freefem_run("-mesh", str(out / "mesh.msh"), "-bodies", str(out / "scene.dat"), *freefem.words_of(values(out)), "-out", str(path.parent / "direct"))
     assert direct.returncode == 0, direct.stderr
-    assert json.loads((path.parent / "direct/summary.json").read_text())["impulse"] == pytest.approx(other["impulse"], rel=1e-9)
+    assert json.loads((path.parent / "direct/record.json").read_text())["impulse"] == pytest.approx(other["impulse"], rel=1e-9)
 
 
 @pytest.mark.robustness

@@ -2,17 +2,18 @@
 contacts.csv for every interval of contact of a contact pair, and the restitution and angles of
 the whole run.
 
-The normal n of an interval is the direction of its normal impulse; of circles and spheres it is
-that of the first and the last step, and of two about their centres of mass the line between
-these. The velocity jump is the impulse over the reduced mass of the pair. Numbers without a
-meaning are None:
+The normal n of an interval is the direction of its normal impulse. Where a circle or sphere is in
+contact with an obstacle or another one, the normals before and after contact are those of the
+first and the last step with a tenth of the peak force; if both turn about their centres, the line
+between these. The velocity jump is the impulse over the reduced mass of the pair. Numbers without
+a meaning are None:
 
 - separation, slip_after, angle_out and all restitutions if the contact is not over;
 - angles, all restitutions and impulse_ratio without one normal: the impulse along n is below 0.99
   of the impulse, as in a concave obstacle;
-- restitutions if the interval is no impact: the approach is below a quarter of the velocity jump,
-  so most of the impulse is that of weight, vibration or other contact pairs, or the pair does not
-  separate;
+- restitution, restitution_poisson and restitution_energetic if the interval is no impact: the
+  approach is below a quarter of the velocity jump, so most of the impulse is that of weight,
+  vibration or other contact pairs, or the pair does not separate;
 - restitution_tangential and angles if slip_before or the speed of the centres is below a twentieth
   of the velocity jump, and so has no direction.
 """
@@ -79,7 +80,7 @@ CONTACT_COLUMNS = {
     "slip_before": ("m/s", "velocity along the counter-body before contact"),
     "slip_after": ("m/s", "velocity along it in the direction of slip_before, after contact"),
     "restitution": ("", ""),
-    "restitution_poisson": ("1", "impulse during separation over impulse during approach"),
+    "restitution_poisson": ("1", "ratio of the impulse during separation to that during approach"),
     "restitution_energetic": (
         "1",
         "root of the work of the normal force during separation over that during approach",
@@ -99,9 +100,10 @@ CONTACT_COLUMNS = {
         "energy that viscosity and relaxation took of all bodies from start to end, whole steps",
     ),
 }
-# unit and meaning of the numbers of summary.json that are evaluated here. They are those of the
-# only contact pair of the run, from before
-# its first to after its last interval, and None if there are several pairs or impacts.
+# unit and meaning of the numbers of summary.json that are evaluated here. restitution,
+# restitution_tangential and angle_out are None unless the run is one impact that is over, of one
+# contact pair; impulse_ratio and angle_in need one pair and one normal. bounces counts all pairs,
+# and thresholded_contact_time is that of the total normal force.
 RUN_NUMBERS = {
     "thresholded_contact_time": ("s", "between the crossings of 1 % of the largest force"),
     "bounces": (
@@ -189,8 +191,8 @@ class Interval:
         self.phase_impulse, self.phase_work = self._phases(impulses)
 
     def _forces(self, means_of_ends: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Means over each step: size of the normal resultant (steps,), all forces and friction "
-        "(steps, 3)."""
+        """Means over each step: size of the normal resultant (steps,), all forces and friction
+        (steps, 3)."""
         force, total = self.rows[:, 3].copy(), self.rows[:, 9:12].copy()
         friction = total - force[:, None] * self.rows[:, 6:9]
         if means_of_ends:
@@ -300,8 +302,8 @@ class Interval:
 
 
 def intervals_of(folder: Path, diagnostics: Mapping[str, Any]) -> list[Interval]:
-    """The intervals of the run in `folder` in the order in which they ended; those that bore no "
-    "load are left out."""
+    """The intervals of the run in `folder` in the order in which they ended; those that bore no
+    load are left out."""
     arrays, _ = read_arrays(folder / RECORDED)
     rows, heads = arrays["rows"].reshape(-1, 36), arrays["intervals"].reshape(-1, 12)
     bodies, found = diagnostics["bodies"], []
@@ -420,8 +422,8 @@ def thresholds(
 
 
 def is_impact(over: bool, before: Motion, after: Motion, jump: float) -> bool:
-    """Whether an interval that is over is an impact: driven by its approach, and ended by a "
-    "separation."""
+    """Whether an interval that is over is an impact: driven by its approach, and ended by a
+    separation."""
     return bool(over and -before.normal > DRIVEN * jump and after.normal >= 0)
 
 
@@ -442,8 +444,8 @@ def along(
 
 
 def impulse_ratio(normal: np.ndarray, friction: np.ndarray) -> float | None:
-    """The impulse along the counter-body over that across it; of the friction impulse (3,) its "
-    "share along `normal` (3,) counts as normal."""
+    """The impulse along the counter-body over that across it; of the friction impulse (3,) its
+    share along `normal` (3,) counts as normal."""
     size = float(np.linalg.norm(normal))
     inward = float(friction @ normal) / max(size, 1e-300)
     tangential = friction - inward / max(size, 1e-300) * normal

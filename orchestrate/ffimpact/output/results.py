@@ -216,7 +216,10 @@ def read_history(folder: Path) -> dict[str, np.ndarray]:
     with reading(path):
         if not rows.endswith("\n"):
             raise ValueError("it is empty or cut off")
-        table = np.loadtxt(rows.splitlines(), delimiter=",", ndmin=2)
+        lines = rows.splitlines()
+        table = np.loadtxt(lines, delimiter=",", ndmin=2)
+        if len(table) < len(lines):
+            raise ValueError("it has empty lines")
         # The history has one row more than steps, that of the start.
         if len(table) <= (steps := read_json(folder / "summary.json").get("steps", 0)):
             raise ValueError(f"it has {len(table)} rows of {steps + 1}")

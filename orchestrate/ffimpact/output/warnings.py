@@ -27,7 +27,7 @@ __all__ = ["Evidence", "Sentence", "note", "percent", "rounded", "sentences", "w
 # time are within 1 and 0.3 %, with 36 and fewer within 6 %; a face has six.
 FEWEST_POINTS = {2: 9, 3: 60}
 FEWEST_STEPS = 15  # in contact
-SOFTEST = 0.02  # energy of the penalty over the elastic energy
+SOFTEST = 0.02  # penetration over the compression of the bodies, by their energies
 DEEPEST, UNSEEN = 0.05, 0.01  # penetration over the radius or half thickness
 CREEP = 0.05  # velocity of sticking points over that of the centre
 JUMPS = 0.01  # share of points and steps in a jump of the friction law
@@ -57,8 +57,8 @@ Sentence = tuple[str, str]  # "warning" or "note", and its text
 
 @dataclass(frozen=True)
 class Evidence:
-    """What warnings are decided from: the record of a run, the columns of history.csv, the "
-    "intervals of contact."""
+    """What warnings are decided from: the record of a run, the columns of history.csv, the
+    intervals of contact."""
 
     record: Mapping[str, Any]
     history: Mapping[str, np.ndarray]
@@ -76,8 +76,8 @@ class Evidence:
 
     @cached_property
     def forces(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Middle and length [s] of the steps with iterations, and their mean normal forces [N/m], "
-        "(n,) each."""
+        """Middle and length [s] of the steps with iterations, and their mean normal forces [N/m],
+        (n,) each."""
         normal = self.history["normal_force"].copy()
         if self.facts["means_of_ends"]:
             normal[1:] = (normal[1:] + normal[:-1]) / 2
@@ -86,8 +86,8 @@ class Evidence:
         return self.history["t"][solved] - step / 2, step, normal[solved]
 
     def thresholds(self, threshold: float = THRESHOLD) -> tuple[float, float] | None:
-        """The instants [s] at which the normal force of the run crosses `threshold` times its "
-        "maximum; None without contact."""
+        """The instants [s] at which the normal force of the run crosses `threshold` times its
+        maximum; None without contact."""
         middle, step, force = self.forces
         loaded = np.flatnonzero(force > 0)
         if not len(loaded):
@@ -158,16 +158,16 @@ class Evidence:
         return "the bodies" if len(self.bodies) > 1 else "the body and the plane"
 
     def radius(self, pair: Mapping[str, Any]) -> float:
-        """Half the smaller thickness of a pair, or the radius of the obstacle if it is smaller "
-        "[m]."""
+        """Half the smaller thickness of a pair, or the radius of the obstacle if it is smaller
+        [m]."""
         sizes = [
             self.bodies[k]["thickness"] / 2 for k in (pair["body"], pair["counter_body"]) if k >= 0
         ]
         return min([*sizes, *([pair["corner_radius"]] if pair["corner_radius"] > 0 else [])])
 
     def finer(self, sizes: str, pair: Mapping[str, Any] | None = None) -> str:
-        """The advice to refine the bodies of a pair, or all: by `sizes` of the scene, or by the "
-        "mesh of a file."""
+        """The advice to refine the bodies of a pair, or all: by `sizes` of the scene, or by the
+        mesh of a file."""
         numbers = (
             range(len(self.bodies))
             if pair is None
@@ -358,9 +358,8 @@ def _contact(e: Evidence) -> Iterator[Sentence]:
             "bounce faster than the waves in the bodies: take "
             f"{e.finer('a smaller contact_mesh_size')}, or integrator=energy-momentum"
         )
-    # penalty_share: energy of the penalty over the elastic energy; the share of the depth is (m +
-    # 1)/2 of it. A wave front that
-    # elements resolve has an estimate of its own.
+    # penalty_share is the energy of the penalty over the elastic energy. The share of the
+    # penetration is (m + 1)/2 times it. The estimate includes a wave front that elements resolve.
     front, rise = record["front_transit"] or 0, record["front_rise"] or 0
     depth = facts["penalty_share"] * (facts["exponent_used"] + 1) / 2
     if (
@@ -370,7 +369,7 @@ def _contact(e: Evidence) -> Iterator[Sentence]:
     ):
         yield warn(
             f"penalty: it stores {percent(facts['penalty_share'])} of the elastic energy at its "
-            f"largest: up to {percent(SOFTEST)} is small. The "
+            f"largest: up to {percent(2 * SOFTEST / (facts['exponent_used'] + 1))} is small. The "
             "contact is softer than that of a rigid plane: take a penalty of at least "
             f"{rounded(used * depth / SOFTEST)}"
         )
@@ -388,8 +387,8 @@ def _contact(e: Evidence) -> Iterator[Sentence]:
 
 
 def _peak(e: Evidence) -> Iterator[Sentence]:
-    """The mean force over half a transit time of a wave, beside the peak, and the speed of the "
-    "impact."""
+    """The mean force over half a transit time of a wave, beside the peak, and the speed of the
+    impact."""
     _, step, force = e.forces
     width = PEAK_WIDTH * e.facts["transit"]
     peak = int(force.argmax())
@@ -420,8 +419,8 @@ def _peak(e: Evidence) -> Iterator[Sentence]:
 
 
 def _mean_over(step: np.ndarray, force: np.ndarray, width: float) -> float:
-    """The mean of a force over the first `width` [s] of its steps; the force is zero beyond "
-    "them."""
+    """The mean of a force over the first `width` [s] of its steps; the force is zero beyond
+    them."""
     share = np.clip(width - (np.cumsum(step) - step), 0, step)
     return float(share @ force) / width
 
@@ -506,8 +505,8 @@ def _obstacles(e: Evidence) -> Iterator[Sentence]:
 
 
 def _pairs(e: Evidence) -> Iterator[Sentence]:
-    """The worst contact pair of each kind by name: penetration, contact points, and what passes "
-    "between these."""
+    """The worst contact pair of each kind by name: penetration, contact points, and what passes
+    between these."""
     pairs = e.facts["pairs"]
     deep = [pair for pair in pairs if pair["deepest"] > DEEPEST * e.radius(pair)]
     if deep:
@@ -526,7 +525,7 @@ def _pairs(e: Evidence) -> Iterator[Sentence]:
         if pair["blunt"] <= 1 and pair["deepest"] > max(UNSEEN * e.radius(pair), 2 * pair["felt"])
     ]
     if unseen:
-        worst = unseen[-1]
+        worst = max(unseen, key=lambda pair: pair["deepest"])
         yield warn(
             f"unseen contact: {e.pair(worst)}{_others(len(unseen))} overlap by "
             f"{rounded(worst['deepest'])} m at a corner or an edge: the corner lies "
@@ -604,10 +603,10 @@ def _ending(e: Evidence) -> Iterator[Sentence]:
     mass = sum(body["mass"] for body in e.bodies)
     strikes = record["impulse"] > 2 * mass * facts["body_acceleration"] * (
         record["contact_time"] or 0
-    )  # it does not lie there
+    )  # more than twice the impulse of the weight: an impact, not a body at rest
     pushed = (
         facts["supports_move"] or facts["pushing_loads"] > 0
-    )  # to the end, which is that of no impact
+    )  # held or loaded until the end, so no end of contact is expected
     several = len(e.bodies) > 1
     in_contact = facts["in_contact"] and not pushed and (several or strikes)
     if record["ended"] != "rest" and facts["rolling"] == 0 and (facts["until_rest"] or in_contact):
@@ -678,8 +677,8 @@ def _discretisation(e: Evidence) -> Iterator[Sentence]:
 
 
 def _friction(e: Evidence) -> Iterator[Sentence]:
-    """A body whose motion is mirrored about the normal creeps to both sides alike, and so does "
-    "one with hardly any tangential speed."""
+    """A body whose motion is mirrored about the normal creeps to both sides alike, and so does
+    one with hardly any tangential speed."""
     facts = e.facts
     if not facts["friction"]:
         return
