@@ -15,7 +15,7 @@ def test_each_goes_on_from_its_own_checkpoint(monkeypatch, tmp_path, lost):
     same results."""
     monkeypatch.setattr(freefem, "CORES", 2)
     out, real = tmp_path / "out", freefem.Process.end
-    straight = go("disc-normal", tmp_path / "straight", checkpoint_every="5")
+    straight = go("disc-normal", tmp_path / "straight", checkpoint_every="5", accuracy="0.003")
 
     def killed(process, progress=None):
         while not all((tmp_path / "out.part" / name).exists() for name in ("checkpoint", "coarser/checkpoint")):
@@ -23,10 +23,10 @@ def test_each_goes_on_from_its_own_checkpoint(monkeypatch, tmp_path, lost):
         raise KeyboardInterrupt
     monkeypatch.setattr(freefem.Process, "end", killed)
     with pytest.raises(KeyboardInterrupt):
-        go("disc-normal", out, checkpoint_every="5")
+        go("disc-normal", out, checkpoint_every="5", accuracy="0.003")
     monkeypatch.setattr(freefem.Process, "end", real)
     assert not at_work(tmp_path)
     (tmp_path / "out.part" / lost).unlink()
-    found = go("disc-normal", out, checkpoint_every="5")
+    found = go("disc-normal", out, checkpoint_every="5", accuracy="0.003")
     assert all((straight.folder / file).read_bytes() == (out / file).read_bytes() for file in ANSWERS)
     assert found.summary["estimated_error"] == straight.summary["estimated_error"] and not list(tmp_path.glob("out.*"))

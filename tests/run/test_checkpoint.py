@@ -156,7 +156,7 @@ def test_killed_driver(out, straight):
     assert not list(out.parent.glob("out.*"))
 
 
-RISING = """accuracy = 0.005
+RISING = """accuracy = 0.001
 young = 7e6
 nu = 0.45
 density = 1722
