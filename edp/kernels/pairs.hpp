@@ -422,9 +422,9 @@ private:
       turned += s.outward[i + c] * s.outward[i + e];
       square += w * w;
     }
-    const bool turns = turned < std::cos(80 * M_PI / 180);
-    if (turns && std::min(ahead, -behind) > 1e-9 * std::sqrt(square)) return 2;
-    return !shared && (turns || std::sqrt(square) > s.facetRadius[c] + s.facetRadius[e]) ? 1 : 0;
+    const bool angled = turned < std::cos(80 * M_PI / 180);
+    if (angled && std::min(ahead, -behind) > 1e-9 * std::sqrt(square)) return 2;
+    return !shared && (angled || std::sqrt(square) > s.facetRadius[c] + s.facetRadius[e]) ? 1 : 0;
   }
 
   double gapOf(int k, const Place &place) const {

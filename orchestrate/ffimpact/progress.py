@@ -81,7 +81,7 @@ class Line(contextlib.AbstractContextManager):
 
     def at(self, part: Hashable, share: float, words: str = "", cost: float = 1.0) -> None:
         """Reports that the fraction `share`, in [0, 1], of a part is completed. A part that was not
-        foreseen is added with its `cost`. The fraction never decreases.
+        expected is added with its `cost`. The fraction never decreases.
         """
         self.costs.setdefault(part, cost)
         self.shares[part] = (

@@ -53,8 +53,8 @@ def test_a_segment_of_a_circle_has_its_area_and_centre():
     with closed forms."""
     angles = np.linspace(0, math.pi, 8)
     corners = np.column_stack([np.cos(angles), np.sin(angles)]) + [3, 4]
-    hubs = np.where(np.arange(8)[:, None] < 7, [3.0, 4.0], math.nan)
-    for loop in (polygon_loop(corners, hubs), polygon_loop(corners[::-1], np.roll(hubs[::-1], -1, axis=0))):
+    arc_centres = np.where(np.arange(8)[:, None] < 7, [3.0, 4.0], math.nan)
+    for loop in (polygon_loop(corners, arc_centres), polygon_loop(corners[::-1], np.roll(arc_centres[::-1], -1, axis=0))):
         assert loop.area == pytest.approx(math.pi / 2, rel=1e-12) and loop.area_centre == pytest.approx([3, 4 + 4 / (3 * math.pi)], rel=1e-12)
         assert abs(np.linalg.norm(loop.polygon[loop.polygon[:, 1] > 4 + 1e-9] - [3, 4], axis=1) - 1).max() < 1e-12
 

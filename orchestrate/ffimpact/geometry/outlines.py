@@ -44,14 +44,14 @@ class Loop:
     """A closed counter-clockwise curve: a polygon, an ellipse, or a chain of lines and arcs.
 
     Segment k leads from corner k of `corners` (n, 2) [m] to the next corner. It is an arc if row k
-    of `hubs` (n, 2) [m] contains the centre of an arc, and straight if the row is nan. If
+    of `arc_centres` (n, 2) [m] contains the centre of an arc, and straight if the row is nan. If
     `semi_axes` (2,) [m] is set, the loop is an ellipse, and the four corners are its extreme points
     (right, top, left, bottom).
     """
 
     corners: np.ndarray
     semi_axes: np.ndarray | None = None
-    hubs: np.ndarray | None = None
+    arc_centres: np.ndarray | None = None
 
     @property
     def centre(self) -> np.ndarray:
@@ -67,16 +67,16 @@ class Loop:
     @property
     def circles(self) -> list[tuple[np.ndarray, float]]:
         """Centres (2,) and radii [m] of the circles on which segments lie, each circle once."""
-        if self.hubs is None:
+        if self.arc_centres is None:
             return [(self.centre, self.radius)] if self.radius else []
         which, first, *_ = self._arcs
         radii = np.linalg.norm(first, axis=1)
         _, once = np.unique(
-            np.column_stack([self.hubs[which], np.round(radii / radii.max(), 6)]),
+            np.column_stack([self.arc_centres[which], np.round(radii / radii.max(), 6)]),
             axis=0,
             return_index=True,
         )
-        return [(self.hubs[which[k]], float(radii[k])) for k in once]
+        return [(self.arc_centres[which[k]], float(radii[k])) for k in once]
 
     @cached_property
     def _arcs(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -85,12 +85,12 @@ class Loop:
         The angles (arcs,) from the first to the second vector are positive counter-clockwise.
         """
         which = (
-            np.flatnonzero(~np.isnan(self.hubs[:, 0]))
-            if self.hubs is not None
+            np.flatnonzero(~np.isnan(self.arc_centres[:, 0]))
+            if self.arc_centres is not None
             else np.array([], dtype=int)
         )
         a, b = (
-            ends[which] - self.hubs[which] if len(which) else np.empty((0, 2))
+            ends[which] - self.arc_centres[which] if len(which) else np.empty((0, 2))
             for ends in (self.corners, np.roll(self.corners, -1, axis=0))
         )
         return which, a, b, np.arctan2(cross(a, b), (a * b).sum(axis=1))
@@ -105,7 +105,7 @@ class Loop:
         if len(k := np.flatnonzero(which == piece)):
             turn = angles[k[0]]
             along = np.sin(np.outer(1 - s, turn)) * first[k] + np.sin(np.outer(s, turn)) * last[k]
-            return self.hubs[piece] + along / np.sin(turn)
+            return self.arc_centres[piece] + along / np.sin(turn)
         if self.semi_axes is None:
             return a + s[:, None] * (b - a)
         # An ellipse is an affine image of a circle with the conjugate radii a - c and b - c.
@@ -121,7 +121,7 @@ class Loop:
     @cached_property
     def lengths(self) -> np.ndarray:
         """The lengths (n,) [m] of the segments; for an ellipse to a relative 1e-6."""
-        s = np.linspace(0, 1, 2 if self.semi_axes is None and self.hubs is None else 1001)
+        s = np.linspace(0, 1, 2 if self.semi_axes is None and self.arc_centres is None else 1001)
         return np.array(
             [
                 np.linalg.norm(np.diff(self.at(k, s), axis=0), axis=1).sum()
@@ -137,7 +137,7 @@ class Loop:
     @property
     def sides(self) -> np.ndarray:
         """The corners (n, 2) of a polygon; for other loops the polygon of about SAMPLES sides."""
-        return self.corners if self.semi_axes is None and self.hubs is None else self.polygon
+        return self.corners if self.semi_axes is None and self.arc_centres is None else self.polygon
 
     @property
     def area(self) -> float:
@@ -171,7 +171,7 @@ class Loop:
         moment = (
             signed_area(self.corners) * polygon_centre(self.corners)
             + moments.sum(axis=0)
-            + areas @ self.hubs[self._arcs[0]]
+            + areas @ self.arc_centres[self._arcs[0]]
         )
         return moment / self.area
 
@@ -184,7 +184,7 @@ class Loop:
         return replace(
             self,
             corners=self.corners @ turn + centre,
-            hubs=None if self.hubs is None else self.hubs @ turn + centre,
+            arc_centres=None if self.arc_centres is None else self.arc_centres @ turn + centre,
         )
 
     def gap(self, points: np.ndarray) -> np.ndarray:
@@ -199,11 +199,14 @@ class Loop:
         )
 
 
-def polygon_loop(corners: np.ndarray, hubs: np.ndarray | None = None) -> Loop:
-    """The loop through the corners (n, 2), along arcs about `hubs`, made counter-clockwise."""
+def polygon_loop(corners: np.ndarray, arc_centres: np.ndarray | None = None) -> Loop:
+    """The loop through the corners (n, 2), along arcs about `arc_centres`, made counter-clockwise."""
     if signed_area(corners) > 0:
-        return Loop(corners, hubs=hubs)
-    return Loop(corners[::-1], hubs=None if hubs is None else np.roll(hubs[::-1], -1, axis=0))
+        return Loop(corners, arc_centres=arc_centres)
+    return Loop(
+        corners[::-1],
+        arc_centres=None if arc_centres is None else np.roll(arc_centres[::-1], -1, axis=0),
+    )
 
 
 def ellipse_loop(a: float, b: float) -> Loop:

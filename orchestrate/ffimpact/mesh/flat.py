@@ -187,8 +187,8 @@ def mesh_file(body: Mesh, folder: Path, script: str) -> mesh.Mesh:
         raise BadInput(
             f"{body.at('file')}: {str(error).removeprefix('mesh: ').replace(file.name if file else name, name)}"
         ) from None
-    hubs = np.array([*said["circles"], [math.nan] * 3])[said["circle_of"], :2]
-    return replace(found, hubs=hubs).scaled(body.scale or 1.0)
+    arc_centres = np.array([*said["circles"], [math.nan] * 3])[said["circle_of"], :2]
+    return replace(found, arc_centres=arc_centres).scaled(body.scale or 1.0)
 
 
 def _may_be_read(path: Path) -> bool:
@@ -207,7 +207,9 @@ def mesh_outline(found: mesh.Mesh) -> Outline:
 
     Edges on circles become arcs. A loop whose edges all lie on one circle becomes that circle.
     """
-    hub = {tuple(sorted(edge)): at for edge, at in zip(found.edges.tolist(), found.hubs)}
+    arc_centre = {
+        tuple(sorted(edge)): at for edge, at in zip(found.edges.tolist(), found.arc_centres)
+    }
     following = dict(mesh.boundary(found.triangles).tolist())
     loops = []
     while following:
@@ -218,15 +220,17 @@ def mesh_outline(found: mesh.Mesh) -> Outline:
         loops.append(
             _loop(
                 found.points[chain[:-1]],
-                np.array([hub[tuple(sorted(edge))] for edge in zip(chain, chain[1:])]),
+                np.array([arc_centre[tuple(sorted(edge))] for edge in zip(chain, chain[1:])]),
             )
         )
     return Outline(tuple(sorted(loops, key=lambda loop: -loop.area)))
 
 
-def _loop(corners: np.ndarray, hubs: np.ndarray) -> Loop:
-    if np.isnan(hubs).all():
+def _loop(corners: np.ndarray, arc_centres: np.ndarray) -> Loop:
+    if np.isnan(arc_centres).all():
         return polygon_loop(corners)
-    if (hubs == hubs[0]).all():
-        return circle_loop(float(np.linalg.norm(corners[0] - hubs[0]))).placed(hubs[0], 0.0)
-    return polygon_loop(corners, hubs)
+    if (arc_centres == arc_centres[0]).all():
+        return circle_loop(float(np.linalg.norm(corners[0] - arc_centres[0]))).placed(
+            arc_centres[0], 0.0
+        )
+    return polygon_loop(corners, arc_centres)

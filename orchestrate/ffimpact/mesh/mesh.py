@@ -82,7 +82,7 @@ class Mesh:
     """A mesh of triangles in the plane.
 
     `points` (n, 2) are in m, `triangles` (t, 3) are counter-clockwise, `edges` (e, 2) of the
-    boundary have the `labels` (e,). `hubs` (e, 2) [m], of meshes of files, are the centres of the
+    boundary have the `labels` (e,). `arc_centres` (e, 2) [m], of meshes of files, are the centres of the
     circles on which edges lie, nan for straight edges. `region` is the number of all triangles.
     """
 
@@ -90,7 +90,7 @@ class Mesh:
     triangles: np.ndarray
     edges: np.ndarray
     labels: np.ndarray
-    hubs: np.ndarray | None = None
+    arc_centres: np.ndarray | None = None
     region: int = 0
     NEVER: ClassVar[int] = 3  # label of edges that never come into contact
 
@@ -101,13 +101,15 @@ class Mesh:
     def moved(self, by: np.ndarray) -> "Mesh":
         """The mesh, translated by the vector `by` (2,) [m]."""
         return replace(
-            self, points=self.points + by, hubs=None if self.hubs is None else self.hubs + by
+            self,
+            points=self.points + by,
+            arc_centres=None if self.arc_centres is None else self.arc_centres + by,
         )
 
     def scaled(self, factor: float) -> "Mesh":
         """The mesh, scaled by `factor` about the origin."""
-        hubs = None if self.hubs is None else self.hubs * factor
-        return replace(self, points=self.points * factor, hubs=hubs)
+        arc_centres = None if self.arc_centres is None else self.arc_centres * factor
+        return replace(self, points=self.points * factor, arc_centres=arc_centres)
 
 
 MOST_ON_CURVE = 50_000  # largest number of samples of a curve; no run could use a mesh so fine

@@ -147,7 +147,7 @@ def _mirror(half: mesh.Mesh) -> mesh.Mesh:
         half.triangles[:, ::-1],
         half.edges[:, ::-1],
         half.labels,
-        half.hubs * [-1, 1],
+        half.arc_centres * [-1, 1],
     )
 
 
@@ -243,7 +243,7 @@ def whole(half: mesh.Mesh) -> mesh.Mesh:
         np.vstack([half.triangles, mirrored[half.triangles][:, ::-1]]),
         np.vstack([half.edges[outer], mirrored[half.edges[outer]][:, ::-1]]),
         np.tile(half.labels[outer], 2),
-        np.vstack([half.hubs[outer], half.hubs[outer] * [-1, 1]]),
+        np.vstack([half.arc_centres[outer], half.arc_centres[outer] * [-1, 1]]),
     )
 
 

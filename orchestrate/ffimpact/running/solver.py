@@ -233,7 +233,7 @@ def _tail(stage: Path) -> str:
 
 
 def runs(estimate: bool) -> dict[str, float]:
-    """Returns the foreseen runs with their costs."""
+    """Returns the runs that are expected with their costs."""
     return {"main run": 1.0} | ({"coarser run": COST} if estimate else {})
 
 
