@@ -57,4 +57,4 @@ def bars(folder: Path) -> Iterator[Row]:
 def rigids(folder: Path) -> Iterator[Row]:
     for exponent in (1, 1.5, 2):
         for dt in (1.6e-3, 8e-4, 4e-4, 2e-4):
-            yield from rigid(folder, exponent, 1, dt)
+            yield from rigid(folder / f"{exponent:g}-{dt:g}", exponent, 1, dt)
