@@ -39,7 +39,7 @@ template<int dimensions, int revolves> struct Stored {
 };
 
 // How an evaluation ended, as stepEnded of residual.idp.
-enum { fine = 0, inverted = 2, notANumber = 3 };
+enum { fine = 0, diverged = 1, inverted = 2, notANumber = 3 };
 enum { stepMean = 0, stepMiddle = 1, stepEnd = 2 };   // where in the step, as in normal.idp
 
 const int most = 10, mostPoints = 8;       // nodes of an element (quadratic tetrahedron); points
@@ -51,8 +51,13 @@ struct Deformation { double *F0, *C0, *F1, *C1, *jacobian1, *Fs, *Ss; };
 // are carried from iterate to iterate, and the residual is the condensed one (volume.idp).
 struct Step { double massScale, rate;  int where;  bool breaks, carries; };
 
-// Arrays of volume.idp, over elements as numbered there; dBase and lag over unknowns.
-struct Volume { double *carried, *star, *now, *dBase, *lag; };
+// Arrays of volume.idp over elements as numbered there: p* = star; the pressures p as they are
+// carried into an iteration and now. Over unknowns: the increment dBase from which they were carried,
+// and the part `lag` of the residual (miss()).
+struct Volume {
+  double *star = nullptr;
+  std::vector<double> carried, now, dBase, lag;
+};
 
 class Bodies {
 public:
@@ -79,12 +84,14 @@ public:
   std::vector<int> cell;
   std::vector<double> elementWeight, slope, g0;
   bool slopeKnown = false;
-  Volume volume = Volume();
+  Volume volume;
 
   void addPoint(const laws::Material &m) {
     if (materials.empty() || !(materials.back() == m)) materials.push_back(m);
     materialOf.push_back(int(materials.size()) - 1);
   }
+  int sizeOfF() const { return nq * (D * D + H); }
+  int sizeOfC() const { return nq * (D == 3 ? 6 : 4); }
   const laws::Material &material(int q) const { return materials[materialOf[q]]; }
 
   void component(int i, int dimensions, const Triplets &pick) {
@@ -101,8 +108,7 @@ public:
     // Elements, shapes and pairs from `gradient` (nF nq x ndof) and the consistent mass (ndof x
     // ndof). Shapes are read from the rows of F_11, F_12 ... and, for revolution, F_33; the mass
     // from the first component, as all components have the same mass and are not coupled.
-    std::vector<int> nodeOf(ndof, -1);
-    for (int a = 0; a < nodes; a++) nodeOf[unknown[a * D]] = a;
+    const std::vector<int> nodeOf = nodesOfUnknowns();
     nq = int(weight.size());
     H = gradient.n / nq - D * D;
     std::vector<std::map<int, std::vector<double>>> at(nq);
@@ -129,11 +135,17 @@ public:
       firstShape.push_back(shape.size());
       firstPair.push_back(int(pairOf.size()));
     }
+    setMass(mass);
+    block.assign(pairA.size() * D * D, 0.);
+  }
+
+  void setMass(const Triplets &mass) {
+    const std::vector<int> nodeOf = nodesOfUnknowns();
+    std::fill(massOf.begin(), massOf.end(), 0.);
     for (size_t e = 0; e < mass.size; e++) {
       const int a = nodeOf[mass.row[e]], b = nodeOf[mass.column[e]];
       if (b >= 0 && a >= b) massOf[pair(a, b)] += mass.value[e];
     }
-    block.assign(pairA.size() * D * D, 0.);
   }
 
   void elements(const std::vector<int> &elementOfPoint) {
@@ -145,6 +157,11 @@ public:
       for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++) elementWeight[g] += weight[q];
       if (elementWeight[g] == 0) elementWeight[g] = 1;   // in a rigid body, which has no strain
     }
+    const int elementsOfMesh = 1 + *std::max_element(elementOfPoint.begin(), elementOfPoint.end());
+    volume.carried.assign(elementsOfMesh, 0.);
+    volume.now = volume.carried;
+    volume.dBase.assign(ndof, 0.);
+    volume.lag = volume.dBase;
     slope.assign(cell.size(), 0.);
     g0.assign(node.size() * D, 0.);
   }
@@ -236,6 +253,11 @@ public:
   }
 
 private:
+  std::vector<int> nodesOfUnknowns() const {   // the node of each unknown of component 0, else -1
+    std::vector<int> nodeOf(ndof, -1);
+    for (int a = 0; a < nodes; a++) nodeOf[unknown[a * D]] = a;
+    return nodeOf;
+  }
   std::map<std::pair<int, int>, int> knownPairs;   // number of each pair of nodes
   int pair(int a, int b) {
     // The number of the pair of nodes a >= b, which is added if it is new.
@@ -385,8 +407,7 @@ private:
 
   // Volume term of an element (volume.idp): pressure p, p* - p, and T = 2 dj/dC at its points.
   struct Pressed { double p, left;  Symmetric T[mostPoints]; };
-  template<class T> void press(size_t g, const Step &step, const Deformation &at,
-                               Pressed &its) const {
+  template<class T> void press(size_t g, const Step &step, const Deformation &at, Pressed &its) {
     // p* from the mean volume measures theta0, theta1 at both ends of the step; p is p*, or, if it
     // is carried, carried + slope g0.(d - dBase). Incompressible: p* = p + kappa/2 (theta1 - 1).
     const laws::Material &m = material(firstPoint[g]);

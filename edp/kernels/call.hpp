@@ -8,6 +8,7 @@
 #include <new>
 #include <utility>
 #include <vector>
+#include <eigen3/Eigen/Dense>
 #include "ff++.hpp"
 
 // Ends the program with exit code 14 and one line on stderr. For a library that has run out of
@@ -31,15 +32,66 @@ template <class T, class R> std::vector<T> copied(const KN<R> &array) {
   return std::vector<T>(from, from + array.N());
 }
 
+// A script array that later calls read or fill without having it as an argument. FreeFEM may
+// reallocate the numbers of an array, so the array is kept and not a pointer to its numbers.
+template <class R> struct Kept {
+  typedef Eigen::Matrix<R, Eigen::Dynamic, 1> Numbers;
+  KN<R> *of = nullptr;
+  operator R *() const { return of ? static_cast<R *>(*of) : nullptr; }
+  R &operator[](long i) const { return (*of)[i]; }
+  long size() const { return of->N(); }
+  Eigen::Map<Numbers> numbers() const { return {static_cast<R *>(*of), of->N()}; }
+};
+
+// Writes values to `numbers`, or reads them from there in the same order.
+struct Archive {
+  std::vector<double> numbers;
+  size_t at = 0;
+  bool reads = false;
+  double next() { return numbers[at++]; }
+  template <class R> void one(R &x) { if (reads) x = R(next()); else numbers.push_back(double(x)); }
+  void operator()(int &x) { one(x); }
+  void operator()(long &x) { one(x); }
+  void operator()(double &x) { one(x); }
+  void operator()(std::vector<int> &v) {
+    long n = v.size();
+    one(n);
+    v.resize(n);
+    for (int &x : v) one(x);
+  }
+  template <int columns> void operator()(Eigen::Matrix<double, Eigen::Dynamic, columns> &A) {
+    long rows = A.rows(), size = A.cols();
+    one(rows);
+    one(size);
+    A.resize(rows, size);
+    for (long k = 0; k < A.size(); k++) one(A.data()[k]);
+  }
+};
+
+// An argument that is an expression of the script, evaluated when the kernel calls it.
+struct Callback {
+  Expression expression;
+  Stack stack;
+  long operator()() const {
+    const long result = GetAny<long>((*expression)(stack));
+    WhereStackOfPtr2Free(stack)->clean();
+    return result;
+  }
+};
+
 // Converts a FreeFEM argument to a parameter of type P. FreeFEM passes a value as itself and a
 // reference as a pointer.
 template <class P> struct Given {
   typedef P Type;
-  static P of(AnyType a) { return GetAny<Type>(a); }
+  static P of(Expression e, Stack s) { return GetAny<Type>((*e)(s)); }
 };
 template <class P> struct Given<P &> {
   typedef P *Type;
-  static P &of(AnyType a) { return *GetAny<Type>(a); }
+  static P &of(Expression e, Stack s) { return *GetAny<Type>((*e)(s)); }
+};
+template <> struct Given<Callback> {
+  typedef long Type;
+  static Callback of(Expression e, Stack s) { return {e, s}; }
 };
 
 // One call in a script: evaluates the argument expressions, then f.
@@ -49,11 +101,11 @@ template <class F, class... A> struct Called : E_F0mps {
   explicit Called(F g) : f(g) {}
   template <size_t... i>
   long call(long (*)(A...), Stack s, std::index_sequence<i...>) const {
-    return f(Given<A>::of((*argument[i])(s))...);
+    return f(Given<A>::of(argument[i], s)...);
   }
   template <size_t... i>
   long call(void (*)(A...), Stack s, std::index_sequence<i...>) const {
-    f(Given<A>::of((*argument[i])(s))...);
+    f(Given<A>::of(argument[i], s)...);
     return 0;
   }
   AnyType operator()(Stack s) const {

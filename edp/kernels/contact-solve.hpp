@@ -7,6 +7,7 @@
 // and the force c x. Exports Problem.
 #pragma once
 #include <umfpack.h>
+#include <eigen3/Eigen/Dense>
 #include <memory>
 #include <vector>
 #include "call.hpp"
@@ -28,25 +29,14 @@ void spotri_(const char *, const int *, float *, const int *, int *);
 
 namespace contact {
 
-using Vector = std::vector<double>;
 using Indices = std::vector<int>;
+using Vector = Eigen::VectorXd;
 
-inline double dot(const Vector &a, const Vector &b) {
-  double s = 0;
-  for (size_t i = 0; i < a.size(); i++) s += a[i] * b[i];
-  return s;
-}
-inline double norm(const Vector &a) { return std::sqrt(dot(a, a)); }
-inline void add(double s, const Vector &a, Vector &b) {   // b += s a
-  for (size_t i = 0; i < a.size(); i++) b[i] += s * a[i];
-}
 inline double largest(const Vector &a) {   // largest |a_i|, nan if there is one
-  double m = 0;
-  for (double v : a) if (!(std::abs(v) <= m)) { m = std::abs(v);  if (m != m) return m; }
-  return m;
+  return a.size() == 0 ? 0 : a.lpNorm<Eigen::Infinity>();
 }
-template <class Real>
-bool invert(int n, std::vector<Real> &A,
+template <class Numbers, class Real>
+bool invert(int n, Numbers &A,
             void (*factor)(const char *, const int *, Real *, const int *, int *),
             void (*inverse)(const char *, const int *, Real *, const int *, int *)) {
   // Replaces the symmetric n x n matrix A by its inverse, with LAPACK's potrf and potri. Returns
@@ -59,22 +49,22 @@ bool invert(int n, std::vector<Real> &A,
     for (int i = j + 1; i < n; i++) A[(size_t)n * i + j] = A[(size_t)n * j + i];
   return true;
 }
-inline bool isDiagonal(const Vector &A, int n) { return n > 1 && A.size() == (size_t)n; }
+inline bool isDiagonal(const Vector &A, int n) { return n > 1 && A.size() == n; }
 inline void symmetric(const Vector &A, const Vector &x, Vector &y) {
   // y = A x with a symmetric A, full or diagonal.
   const double one = 1, zero = 0;
   const int n = x.size(), step = 1;
+  if (isDiagonal(A, n)) { y = A.cwiseProduct(x);  return; }
   y.resize(n);
-  if (isDiagonal(A, n)) { for (int j = 0; j < n; j++) y[j] = A[j] * x[j];  return; }
   if (n > 0) dsymv_("L", &n, &one, A.data(), &n, x.data(), &step, &zero, y.data(), &step);
 }
-inline void symmetric(const std::vector<float> &A, const Vector &x, Vector &y) {
+inline void symmetric(const Eigen::VectorXf &A, const Vector &x, Vector &y) {
   // The same in single precision.
   const float one = 1, zero = 0;
   const int n = x.size(), step = 1;
-  std::vector<float> from(x.begin(), x.end()), to(n);
+  Eigen::VectorXf from = x.cast<float>(), to(n);
   if (n > 0) ssymv_("L", &n, &one, A.data(), &n, from.data(), &step, &zero, to.data(), &step);
-  y.assign(to.begin(), to.end());
+  y = to.cast<double>();
 }
 
 // The gap Jacobian B on n unknowns: a block of `kinds` rows for each active candidate, then a block
@@ -84,7 +74,8 @@ struct Rows {
   int n = 0, points = 0, kinds = 1;              // points: without the geometric terms
   Indices first{0}, column, owner;               // point b has the entries first[b] to
                                                  // first[b + 1] - 1; unknown and point of an entry
-  Vector value, geometric;                       // kinds values an entry; stiffness c of the terms
+  std::vector<double> value;
+  Vector geometric;                       // kinds values an entry; stiffness c of the terms
   // Sparsity pattern of K and the diagonal for B with the entries `first`, `column`: by columns in
   // start and row; `place` of each contribution of stiffness(); UMFPACK's symbolic factorisation.
   struct Pattern { Indices first, column, start, row, place;  std::shared_ptr<void> symbolic; };
@@ -116,20 +107,20 @@ struct Rows {
     points = blocks() - geometric.size();
   }
   void push(const Vector &t, Vector &force) const {   // force = B^T t
-    force.assign(n, 0.);
+    force = Vector::Zero(n);
     for (size_t e = 0; e < column.size(); e++)
       for (int c = 0; c < kinds; c++)
         force[column[e]] += value[kinds * e + c] * t[kinds * owner[e] + c];
   }
   void pull(const Vector &increment, Vector &move) const {   // move = B increment
-    move.assign(kinds * blocks(), 0.);
+    move = Vector::Zero(kinds * blocks());
     for (size_t e = 0; e < column.size(); e++)
       for (int c = 0; c < kinds; c++)
         move[kinds * owner[e] + c] += value[kinds * e + c] * increment[column[e]];
   }
   void slope(const Vector &D, const Vector &move, Vector &change) const {
     // change = D move; D has a kinds x kinds block for each point
-    change.assign(move.size(), 0.);
+    change = Vector::Zero(move.size());
     for (int b = 0; b < blocks(); b++)
       for (int i = 0; i < kinds; i++)
         for (int j = 0; j < kinds; j++)
@@ -194,15 +185,15 @@ class Newton {
     // S = C^-1, full. For iterations it is only made in single precision, and S stays empty, if
     // that finds C positive definite.
     const int size = std::lround(std::sqrt((double)C.size()));
-    S.clear();
-    rounded.assign(C.begin(), C.end());
+    S.resize(0);
+    rounded = C.cast<float>();
     if (size > mostDense && invert(size, rounded, spotrf_, spotri_)) return;
     S = C;
     invert(size, S, dpotrf_, dpotri_);
-    rounded.assign(S.begin(), S.end());
+    rounded = S.cast<float>();
   }
   bool fits(const Rows &B) const {
-    return made && n == B.n && D.size() == (size_t)B.blocks() * B.kinds * B.kinds;
+    return made && n == B.n && D.size() == B.blocks() * B.kinds * B.kinds;
   }
 
   void make(Rows &B, const Vector &slopes, const Vector &S) {
@@ -228,7 +219,7 @@ class Newton {
  private:
   int n = 0, iterations = 0;                     // unknowns; iterations of the last solve
   bool dense = false;
-  std::vector<float> rounded;                    // S
+  Eigen::VectorXf rounded;                      // S
   Vector LU, P;
   Indices pivots;
   std::shared_ptr<const Rows::Pattern> pattern;  // of P
@@ -265,8 +256,8 @@ class Newton {
     control[UMFPACK_IRSTEP] = 0;
     Vector residual = f, move, change, more;
     std::vector<Vector> increments, images;
-    y.assign(n, 0.);
-    for (iterations = 0; iterations < 200 && norm(residual) > goal; iterations++) {
+    y = Vector::Zero(n);
+    for (iterations = 0; iterations < 200 && residual.norm() > goal; iterations++) {
       Vector increment(n), image;
       const int status = umfpack_di_solve(UMFPACK_A, pattern->start.data(), pattern->row.data(),
                                           P.data(), increment.data(), residual.data(),
@@ -278,20 +269,18 @@ class Newton {
       B.pull(increment, move);
       B.slope(D, move, change);
       B.push(change, more);
-      add(1, more, image);
+      image += more;
       for (size_t k = 0; k < increments.size(); k++) {
-        const double h = dot(image, images[k]);
-        add(-h, images[k], image);
-        add(-h, increments[k], increment);
+        const double h = image.dot(images[k]);
+        image -= h * images[k];
+        increment -= h * increments[k];
       }
-      const double scale = 1 / std::max(norm(image), 1e-300),
-        along = scale * scale * dot(residual, image);
-      add(along, increment, y);
-      add(-along, image, residual);
-      for (double &v : increment) v *= scale;
-      for (double &v : image) v *= scale;
-      increments.push_back(increment);
-      images.push_back(image);
+      const double scale = 1 / std::max(image.norm(), 1e-300),
+        along = scale * scale * residual.dot(image);
+      y += along * increment;
+      residual -= along * image;
+      increments.push_back(scale * increment);
+      images.push_back(scale * image);
     }
   }
 };
@@ -312,12 +301,8 @@ class Problem {
   int inverses = 0, mostStatusChanges = 4,       // matrices of this solve; limit of changes
     agreeingFrom = 20;                           // matrices before the line search is used
 
-  void compliance(int n, const double *values) {   // C, full
-    C.assign(values, values + (size_t)n * n);
-    stiff = false;
-  }
-  void looseness(int n, const double *values) {   // C, diagonal
-    C.assign(values, values + n);
+  void comply(const Vector &compliance) {   // C: n x n values, or n if C is diagonal
+    C = compliance;
     stiff = false;
   }
 
@@ -331,14 +316,14 @@ class Problem {
     place();
     evaluate(nullptr);
     double biggest = 0, roundOff = 0, errorBefore = newton.made ? 1e300 : 0;
-    for (double v : x) roundOff = std::max(roundOff, std::abs(v));
+    roundOff = largest(x);
     const double close = 1e-13 + (rubs ? 1e-15 * roundOff / (law.dt * law.slipVelocity) : 0);
-    sigma.clear();
+    sigma.resize(0);
     inverses = 0;
     for (int it = 0; inverses < 60 && inversesOfStep <= mostInverses; it++) {
       const double scale = largest(t) + largest(tau), error = largest(unbalance);
       if (it == 0) biggest = scale;
-      bool done = error <= close * scale || scale == 0 || norm(unbalance) <= enough;
+      bool done = error <= close * scale || scale == 0 || unbalance.norm() <= enough;
       if (!done) {
         if (!(error <= 1e6 * biggest)) return -1;   // divergence or nan
         const bool searches = !rubs || inverses >= agreeingFrom;
@@ -367,28 +352,28 @@ class Problem {
   Vector C, S, x, t, slopes, unbalance, step, move, sigma;
 
   void stiffen() {   // S = C^-1
-    if (stiff || C.empty()) return;
+    if (stiff || C.size() == 0) return;
     stiff = true;
-    if (isDiagonal(C, B.n)) { S = C;  for (double &s : S) s = 1 / s; }
+    if (isDiagonal(C, B.n)) S = C.cwiseInverse();
     else newton.stiffen(C, S);
   }
-  void comply(const Vector &f, Vector &increment) const {   // increment = B C B^T f
+  void displace(const Vector &f, Vector &increment) const {   // increment = B C B^T f
     Vector g, y;
     B.push(f, g);
     symmetric(C, g, y);
     B.pull(y, increment);
   }
   void place() {   // x = x_w - B C B^T tau
-    comply(tau, x);
-    for (size_t i = 0; i < x.size(); i++) x[i] = start[i] - x[i];
+    displace(tau, x);
+    x = start - x;
   }
 
-  void evaluate(const std::vector<double> *at) {
+  void evaluate(const Vector *at) {
     // t, D and t - tau at x; negative diagonal terms of D count as 0. `at`, if not null, has the
     // velocity at which friction is linearised, slips values for each point; nan: not linearised.
     const int k = B.kinds;
-    t.assign(x.size(), 0.);
-    slopes.assign(k * x.size(), 0.);
+    t = Vector::Zero(x.size());
+    slopes = Vector::Zero(k * x.size());
     for (int b = 0; b < B.points; b++) {
       Forces f;
       const double *linearised = at && (*at)[law.slips * b] == (*at)[law.slips * b]
@@ -404,8 +389,7 @@ class Problem {
       t[k * b] = B.geometric[s] * x[k * b];
       slopes[k * k * b] = B.geometric[s];
     }
-    unbalance = t;
-    add(-1, tau, unbalance);
+    unbalance = t - tau;
   }
 
   void linearise() {
@@ -413,15 +397,15 @@ class Problem {
     // t_T/(mu_f t_N) + v/sigma with the linear phi; sigma [m/s] is the velocity change that full
     // friction causes in the step (lineariseFriction() of solve.idp).
     const int k = B.kinds, slips = law.slips, blocks = B.points;
-    if (sigma.empty()) {
-      Vector full(x.size(), 0.), increment;
+    if (sigma.size() == 0) {
+      Vector full = Vector::Zero(x.size()), increment;
       for (int b = 0; b < blocks; b++) full[k * b + 1] = t[k * b] * point[b].muStatic;
-      comply(full, increment);
+      displace(full, increment);
       sigma.resize(blocks);
       for (int b = 0; b < blocks; b++)
         sigma[b] = std::max(increment[k * b + 1] / law.dt, law.slipVelocity);
     }
-    Vector at(slips * blocks, NAN);
+    Vector at = Vector::Constant(slips * blocks, NAN);
     for (int b = 0; b < blocks; b++) {
       const Point &a = point[b];
       const double cap = std::max(1e-200,
@@ -444,13 +428,12 @@ class Problem {
     // step = t - tau - D B y, of gap and slip move = -B C B^T step.
     Vector f, y, change;
     B.push(unbalance, f);
-    newton.solve(B, f, S, std::max(share * norm(f), 1e-2 * enough), y);
+    newton.solve(B, f, S, std::max(share * f.norm(), 1e-2 * enough), y);
     B.pull(y, move);
     B.slope(newton.D, move, change);
-    step = unbalance;
-    add(-1, change, step);
-    comply(step, move);
-    for (double &v : move) v = -v;
+    step = unbalance - change;
+    displace(step, move);
+    move = -move;
   }
 
   bool advance(bool searches) {
@@ -458,15 +441,15 @@ class Problem {
     // slope of the convex potential has become small (bisection). Returns false if `move` is not a
     // descent direction.
     double low = 0, high = 1, s = 1, applied = 0;
-    const double slopeStart = dot(unbalance, move);
+    const double slopeStart = unbalance.dot(move);
     if (searches && !(slopeStart < 0)) return false;
     for (int cut = 0; cut < 40; cut++) {
-      add(s - applied, step, tau);
-      add(s - applied, move, x);
+      tau += (s - applied) * step;
+      x += (s - applied) * move;
       applied = s;
       evaluate(nullptr);
       if (!searches) return true;
-      const double slope = dot(unbalance, move);
+      const double slope = unbalance.dot(move);
       if (slope > -0.1 * slopeStart) high = s;   // too far
       else if (slope < 0.9 * slopeStart && s < 1) low = s;   // too short
       else return true;

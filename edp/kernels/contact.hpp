@@ -1,174 +1,276 @@
-// contact.hpp: the kernels of core/contact/{normal,tractions,window,solve}.idp: tractions of
-// contact candidates, the active set and its gap Jacobian, and the contact problem on the active
-// set. Arrays over ns candidates are stacked by component, component c of candidate s at c ns + s;
-// `kinds` = 1 + slips is the number of components of gap and tangential slip.
+// contact.hpp: contact in a step: gaps and tractions of all candidates, the active set (the
+// candidates near contact and the unknowns on which they act) with its compliance C = (A^-1)_uu, and
+// the contact problem on it (contact-solve.hpp). Arrays over ns candidates are stacked by component,
+// component c of candidate s at c ns + s; kinds = 1 + slips is their number (gap, tangential slip).
+// Exports Contact.
 #pragma once
 #include "call.hpp"
 #include "contact-solve.hpp"
+#include "factor.hpp"
 
 namespace contact {
 
-static Problem problem;
-static Law &law = problem.law;
+// Arrays of the scripts. The scripts set the gap Jacobian B (triplets row, column, value), the
+// penetrations q0 at the start of the step, gapSlipStart (gap and slip for the increment 0) and the
+// geometric contact stiffness: terms of the given stiffness, whose rows are triplets.
+struct Arrays {
+  Kept<double> q0, q1, gapSlip, gapSlipStart, tractions, force, k, muStatic, muDynamic;
+  Kept<long> sticks, statusChanges, row, column, termOf, termUnknown;
+  Kept<double> value, termValue, termStiffness;
+};
 
-static void setLaw(double exponent, double slipVelocity, double bridge, double sticksBelow,
-                   std::string &regularization, bool jumps, long slips) {
-  // Sets the parameters of (10)-(13) that all contact points share; see Law and Problem.
-  law.exponent = exponent;
-  law.slipVelocity = slipVelocity;
-  law.bridge = bridge;
-  law.regularization = regularization == "sqrt" ? sqrtOf : regularization == "tanh" ? tanhOf
-    : regularization == "linear" ? linear : linearPrinted;
-  law.jumps = jumps;
-  law.slips = slips;
-  problem.sticksBelow = sticksBelow;
-}
+class Contact {
+ public:
+  Arrays its;
+  Problem problem;
+  Law &law = problem.law;
+  bool jacobianFixed = false;                    // B never changes
+  Vector diagonal;                               // explicit steps: A^-1 is diagonal, else empty
+  Indices candidates, unknowns, expected;        // of the active set; `expected`: ordered last in A
+  Vector last;                                   // tractions of the last solve, all rows
+  long inversesOfStep = 0, mostInverses = 1000000000;
 
-static void tractions(Reals vN0, Reals place, Reals k, Ints candidates, Ints sticks,
-                      Reals muStatic, Reals muDynamic, double dt, long where, Reals t, Reals stiff,
-                      Reals drag, Reals coupling) {
-  // t = (t_N, -t_T) of n points that belong to `candidates`. stiff = dt_N/dq, drag = -dt_T/d(slip)
-  // (in space 11, 22, 12), coupling = -dt_T/dq. The coefficients are arrays over all candidates.
-  const int n = vN0.n, kinds = 1 + law.slips;
-  law.where = where;
-  law.dt = dt;
-  for (int i = 0; i < n; i++) {
-    const int s = candidates[i];
-    double x[3];
-    Forces f;
-    for (int c = 0; c < kinds; c++) x[c] = place[c * n + i];
-    law.at({vN0[i], k[i], muStatic[s], muDynamic[s], sticks[i] == 1}, x, nullptr, f);
-    for (int c = 0; c < kinds; c++) t[c * n + i] = f.t[c];
-    stiff[i] = f.slope[0][0];
-    for (int c = 1; c < kinds; c++) {
-      coupling[(c - 1) * n + i] = f.slope[c][0];
-      drag[(c - 1) * n + i] = f.slope[c][c];
+  Contact(Factor &factorOfA, int &numberOfUnknowns) : factor(factorOfA), ndof(numberOfUnknowns) {}
+
+  long ns() const { return its.q0.size(); }
+  int kinds() const { return 1 + law.slips; }
+
+  void takeJacobian() {
+    // Sorts the triplets of B by rows; row r has the entries first[r] to first[r + 1] - 1.
+    const long rows = kinds() * ns(), entries = its.row.size();
+    Indices next;
+    first.assign(rows + 1, 0);
+    column.resize(entries);
+    value.resize(entries);
+    for (long e = 0; e < entries; e++) first[its.row[e] + 1]++;
+    for (long r = 0; r < rows; r++) first[r + 1] += first[r];
+    next = first;
+    for (long e = 0; e < entries; e++) {
+      const int at = next[its.row[e]]++;
+      column[at] = int(its.column[e]);
+      value[at] = its.value[e];
     }
-    if (kinds == 3) drag[2 * n + i] = f.slope[1][2];
+    rowsChanged = true;
+    if (last.size() != rows) last = Vector::Zero(rows);
   }
-}
 
-static void sortJacobian(Ints row, Ints column, Reals value, Ints start, Ints unknowns,
-                         Reals values) {
-  // Sorts the triplets of the gap Jacobian by rows; row r has the entries start[r] to
-  // start[r + 1] - 1. Entries of a row keep their order.
-  const long entries = row.n, rows = start.n - 1;
-  start = 0L;
-  unknowns.resize(entries);
-  values.resize(entries);
-  for (long k = 0; k < entries; k++) start[row[k] + 1]++;
-  for (long i = 0; i < rows; i++) start[i + 1] += start[i];
-  std::vector<long> next = copied<long>(start);
-  for (long k = 0; k < entries; k++) {
-    const long at = next[row[k]]++;
-    unknowns[at] = column[k];
-    values[at] = value[k];
+  Vector move(const Vector &increment) const {   // B increment
+    Vector moved = Vector::Zero(kinds() * ns());
+    for (long r = 0; r < moved.size(); r++)
+      for (int e = first[r]; e < first[r + 1]; e++) moved[r] += value[e] * increment[column[e]];
+    return moved;
   }
-}
+  Vector gapSlip(const Vector &d) const { return move(d) + its.gapSlipStart.numbers(); }
 
-static void take(Reals q, double searchDistance, long kinds, Ints jacobianStart,
-                 Ints jacobianUnknown, Reals jacobianValue, Ints geometricUnknown,
-                 Reals geometricValue, Ints inActiveSet, Reals outsideActiveSet, Ints candidates,
-                 Ints index, Ints unknowns) {
-  // Adds the candidates with penetration q > -searchDistance to the active set, and the unknowns on
-  // which its rows of the gap Jacobian and of the geometric terms act. index: position of an
-  // unknown in `unknowns`, -1 if it is not there.
-  const long ns = q.n;
-  std::vector<long> candidate = copied<long>(candidates), unknown = copied<long>(unknowns);
-  const auto join = [&](long j, double value) {
-    if (value != 0 && index[j] < 0) { index[j] = unknown.size();  unknown.push_back(j); }
-  };
-  for (long s = 0; s < ns; s++) if (inActiveSet[s] == 0 && q[s] > -searchDistance) {
-    inActiveSet[s] = 1;
-    outsideActiveSet[s] = 0;
-    candidate.push_back(s);
-  }
-  for (long s : candidate) for (long r = s; r < kinds * ns; r += ns)
-    for (long k = jacobianStart[r]; k < jacobianStart[r + 1]; k++)
-      join(jacobianUnknown[k], jacobianValue[k]);
-  for (long k = 0; k < geometricUnknown.n; k++) join(geometricUnknown[k], geometricValue[k]);
-  candidates.resize(candidate.size());
-  unknowns.resize(unknown.size());
-  std::copy(candidate.begin(), candidate.end(), (long *)candidates);
-  std::copy(unknown.begin(), unknown.end(), (long *)unknowns);
-}
-
-static void setActiveSet(Ints candidates, Ints index, long unknowns, long ns, Ints jacobianStart,
-                         Ints jacobianUnknown, Reals jacobianValue, Ints geometricOf,
-                         Ints geometricUnknown, Reals geometricValue, Reals geometricStiffness) {
-  // Fills the Jacobian B of the problem: the rows of the active candidates, then those of the
-  // geometric contact stiffness, which come as triplets (geometricOf, geometricUnknown, value).
-  Rows &B = problem.B;
-  const int kinds = 1 + law.slips;
-  B.begin(unknowns, kinds);
-  for (int i = 0; i < candidates.n; i++) {
-    for (int c = 0; c < kinds; c++)
-      for (long r = candidates[i] + c * ns, k = jacobianStart[r]; k < jacobianStart[r + 1]; k++)
-        if (jacobianValue[k] != 0) B.entry(index[jacobianUnknown[k]], c, jacobianValue[k]);
-    B.endPoint();
-  }
-  for (int s = 0; s < geometricStiffness.n; s++) {
-    for (int k = 0; k < geometricOf.n; k++)
-      if (geometricOf[k] == s && geometricValue[k] != 0)
-        B.entry(index[geometricUnknown[k]], 0, geometricValue[k]);
-    B.endPoint();
-  }
-  B.end(copied<double>(geometricStiffness));
-}
-
-static long solve(Ints candidates, Reals q, Reals place, Reals ahead, double dt, long where,
-                  double enough, long reuse, Ints sticks, Ints statusChanges, Reals k,
-                  Reals muStatic, Reals muDynamic, long mostInverses, long &inversesOfStep,
-                  Reals tau, Reals force) {
-  // Solves the contact problem of the active `candidates`. Arrays over all candidates: penetration
-  // q at the start of the step, `place` = x_w (trial state without contact), status, number of
-  // status changes, stiffness, coefficients. ahead: displacement of the unknowns, without contact,
-  // from the state in which the geometric terms exert no force. tau: forces, in and out;
-  // force = B^T tau. reuse: 2 keeps the matrix of the last solve, 1 its preconditioner, 0 nothing.
-  // Returns the number of iterations, -1 if they do not converge.
-  Problem &p = problem;
-  const Rows &B = p.B;
-  const long points = candidates.n, ns = q.n, kinds = B.kinds;
-  law.dt = dt;
-  law.where = where;
-  p.enough = enough;
-  if (reuse == 0) p.newton.forget();
-  if (reuse == 1) p.newton.made = false;
-  p.point.resize(points);
-  p.turned.resize(points);
-  B.pull(copied<double>(ahead), p.start);
-  p.tau.assign(p.start.size(), 0.);
-  for (int i = 0; i < points; i++) {
-    const long s = candidates[i];
-    p.point[i] = {q[s], k[s], muStatic[s], muDynamic[s], sticks[s] == 1};
-    p.turned[i] = statusChanges[s];
-    for (int c = 0; c < kinds; c++) {
-      p.start[kinds * i + c] = place[s + c * ns];
-      p.tau[kinds * i + c] = tau[c * points + i];
+  void evaluate(const Vector &d) {
+    // gapSlip, q1, tractions (10)-(13) and force = B^T tractions (15) at the increment d.
+    its.gapSlip.numbers() = gapSlip(d);
+    its.q1.numbers() = its.gapSlip.numbers().head(ns());
+    its.tractions.numbers().setZero();
+    its.force.numbers().setZero();
+    for (long s = 0; s < ns(); s++) if (its.q0[s] > 0 || its.q1[s] > 0) {
+      double x[3];
+      Forces f;
+      for (int c = 0; c < kinds(); c++) x[c] = its.gapSlip[c * ns() + s];
+      law.at(point(s), x, nullptr, f);
+      for (int c = 0; c < kinds(); c++) {
+        const long r = c * ns() + s;
+        its.tractions[r] = f.t[c];
+        for (int e = first[r]; e < first[r + 1]; e++) its.force[column[e]] += value[e] * f.t[c];
+      }
     }
   }
-  const long iterations = p.solve(mostInverses, inversesOfStep);
-  if (iterations < 0) return -1;
-  for (int i = 0; i < points; i++) {
-    for (int c = 0; c < kinds; c++) tau[c * points + i] = p.tau[kinds * i + c];
-    if (law.slips > 0) {
-      sticks[candidates[i]] = p.point[i].sticks;
-      statusChanges[candidates[i]] = p.turned[i];
+  bool touches() const {
+    // Whether a candidate penetrates at the start or at the end of the step.
+    return ns() > 0 && std::max(its.q0.numbers().maxCoeff(), its.q1.numbers().maxCoeff()) > 0;
+  }
+
+  void empty() {
+    // Removes all candidates from the active set. C remains.
+    active.assign(ns(), 0);
+    candidates.clear();
+    setsMade++;
+  }
+  void reset() {
+    // Empties the active set and C, for a new A. `expected`: the unknowns of the active candidates
+    // or, if rows change, all that were in the active set.
+    known = 0;
+    if (jacobianFixed || diagonal.size() > 0) {
+      index.assign(ndof, -1);
+      unknowns.clear();
+    }
+    if (diagonal.size() == 0) {
+      if (jacobianFixed && !candidates.empty()) takeUnknowns();
+      expected = unknowns;
+    }
+    empty();
+  }
+  void beginStep() {
+    inversesOfStep = 0;
+    solvedSet = -1;
+  }
+  void update(const Vector &q, double distance) {
+    // Adds the candidates with q > -distance [m] to the active set; renews its rows and C.
+    bool joins = false;
+    if (active.size() != size_t(ns())) active.assign(ns(), 0);
+    for (long s = 0; s < ns(); s++) joins = joins || (!active[s] && q[s] + distance > 0);
+    if (!joins && !rowsChanged) return;
+    setsMade += joins;
+    for (long s = 0; s < ns(); s++) if (!active[s] && q[s] > -distance) {
+      active[s] = 1;
+      candidates.push_back(int(s));
+    }
+    takeUnknowns();
+    if (known != unknowns.size()) extendCompliance();
+    fillRows();
+  }
+  bool penetrates(const Vector &q) const {
+    // Whether a candidate outside the active set penetrates.
+    for (long s = 0; s < ns(); s++) if (!active[s] && q[s] > 0) return true;
+    return false;
+  }
+
+  Vector ofActive(const Vector &rows) const {    // the active ones of values over all rows
+    Vector its(kinds() * candidates.size());
+    for (int c = 0, i = 0; c < kinds(); c++) for (int s : candidates) its[i++] = rows[c * ns() + s];
+    return its;
+  }
+  Vector onUnknowns(const Vector &values) const {   // values of the active unknowns, else 0
+    Vector all = Vector::Zero(ndof);
+    for (size_t j = 0; j < unknowns.size(); j++) all[unknowns[j]] = values[j];
+    return all;
+  }
+  Vector comply(const Vector &f) const {         // C f
+    Vector u;
+    symmetric(C, f, u);
+    return u;
+  }
+
+  int solve(const Vector &start, const Vector &ahead, double enough, Vector &tau, Vector &force) {
+    // Solves the contact problem of the active set. start: gap and slip without contact (all rows);
+    // ahead: displacement of the active unknowns without contact, from the state in which the
+    // geometric terms exert no force. tau: forces of the active rows, in and out; force = B^T tau.
+    // `enough`: tolerance of the forces [N]. Returns the iterations, -1 if they do not converge.
+    Problem &p = problem;
+    const int n = int(candidates.size()), kinds = this->kinds();
+    if (solvedSet < 0) p.newton.forget();
+    else if (solvedSet != setsMade) p.newton.made = false;
+    solvedSet = setsMade;
+    p.enough = enough;
+    p.point.clear();
+    p.turned.clear();
+    p.B.pull(ahead, p.start);
+    p.tau = Vector::Zero(p.start.size());
+    for (int i = 0; i < n; i++) {
+      p.point.push_back(point(candidates[i]));
+      p.turned.push_back(int(its.statusChanges[candidates[i]]));
+      for (int c = 0; c < kinds; c++) {
+        p.start[kinds * i + c] = start[c * ns() + candidates[i]];
+        p.tau[kinds * i + c] = tau[c * n + i];
+      }
+    }
+    const int iterations = p.solve(mostInverses, inversesOfStep);
+    if (iterations < 0) return -1;
+    for (int i = 0; i < n; i++) {
+      for (int c = 0; c < kinds; c++) tau[c * n + i] = p.tau[kinds * i + c];
+      if (law.slips == 0) continue;
+      its.sticks[candidates[i]] = p.point[i].sticks;
+      its.statusChanges[candidates[i]] = p.turned[i];
+    }
+    force = p.force;
+    return iterations;
+  }
+  void chooseStatus(const Vector &motion) {
+    // Status of candidates without load, from their tangential velocities under a motion [m/s], as
+    // chooseSides() of tractions.idp; no status has changed yet.
+    const Vector moved = move(motion);
+    its.statusChanges.numbers().setZero();
+    for (long s = 0; s < ns(); s++) if (!(last[s] > 0)) {
+      const double speed = law.slips == 1 ? std::abs(moved[ns() + s])
+        : std::hypot(moved[ns() + s], moved[2 * ns() + s]);
+      its.sticks[s] = speed < law.slipVelocity;
     }
   }
-  std::copy(p.force.begin(), p.force.end(), (double *)force);
-  return iterations;
-}
+  void remember(const Vector &tau) {             // `last` of the active rows
+    const int n = int(candidates.size());
+    for (int i = 0; i < tau.size(); i++) last[candidates[i % n] + i / n * ns()] = tau[i];
+  }
 
-static void addContact() {
-  ::add("kernelLaw", setLaw);
-  ::add("kernelTractions", tractions);
-  ::add("kernelSoft", +[](Table C) { problem.compliance(C.N(), &C(0, 0)); });
-  ::add("kernelLumpedCompliance", +[](Reals C) { problem.looseness(C.n, &C[0]); });
-  ::add("kernelSort", sortJacobian);
-  ::add("kernelTake", take);
-  ::add("kernelActiveSet", setActiveSet);
-  ::add("kernelContact", solve);
-}
+  template<class Archive> void archive(Archive &archive) {
+    archive(candidates);  archive(unknowns);  archive(expected);  archive(last);
+  }
+  void restore() {
+    // The active set from its candidates and unknowns.
+    active.assign(ns(), 0);
+    for (int s : candidates) active[s] = 1;
+    index.assign(ndof, -1);
+    for (size_t j = 0; j < unknowns.size(); j++) index[unknowns[j]] = int(j);
+    known = 0;
+    extendCompliance();
+    if (jacobianFixed && !candidates.empty()) fillRows();
+  }
+
+ private:
+  Factor &factor;
+  int &ndof;
+  Indices first{0}, column;                      // B by rows
+  std::vector<double> value;
+  bool rowsChanged = true;                       // since the active rows were filled
+  std::vector<char> active;                      // (ns) 1: in the active set
+  Indices index;                                 // (ndof) position in `unknowns`, or -1
+  size_t known = 0;                              // number of unknowns in C
+  long setsMade = 0, solvedSet = -1;             // active sets so far; the last one solved
+  Vector C;                                      // full, or the diagonal
+
+  Point point(long s) const {
+    return {its.q0[s], its.k[s], its.muStatic[s], its.muDynamic[s], its.sticks[s] == 1};
+  }
+  void takeUnknowns() {
+    // Adds the unknowns on which the active rows and the geometric terms act.
+    if (index.size() != size_t(ndof)) index.assign(ndof, -1);
+    const auto take = [&](int j, double v) {
+      if (v == 0 || index[j] >= 0) return;
+      index[j] = int(unknowns.size());
+      unknowns.push_back(j);
+    };
+    for (int s : candidates) for (long r = s; r < kinds() * ns(); r += ns())
+      for (int e = first[r]; e < first[r + 1]; e++) take(column[e], value[e]);
+    for (long e = 0; e < its.termUnknown.size(); e++)
+      take(int(its.termUnknown[e]), its.termValue[e]);
+  }
+  void extendCompliance() {
+    // Adds the rows and columns of new unknowns to C.
+    const size_t n = unknowns.size(), before = known;
+    if (diagonal.size() > 0) C = diagonal(unknowns);
+    else {
+      const Vector old = C;
+      C.resize(n * n);
+      for (size_t j = 0; j < before; j++)
+        C.segment(j * n, before) = old.segment(j * before, before);
+      if (n > 0) factor.compliance(unknowns, before, C.data());
+    }
+    known = n;
+    problem.comply(C);
+  }
+  void fillRows() {
+    // B of the problem: the rows of the active candidates, then those of the geometric terms.
+    Rows &B = problem.B;
+    B.begin(int(unknowns.size()), kinds());
+    for (int s : candidates) {
+      for (int c = 0; c < kinds(); c++)
+        for (int r = s + c * ns(), e = first[r]; e < first[r + 1]; e++)
+          if (value[e] != 0) B.entry(index[column[e]], c, value[e]);
+      B.endPoint();
+    }
+    for (long t = 0; t < its.termStiffness.size(); t++) {
+      for (long e = 0; e < its.termOf.size(); e++)
+        if (its.termOf[e] == t && its.termValue[e] != 0)
+          B.entry(index[its.termUnknown[e]], 0, its.termValue[e]);
+      B.endPoint();
+    }
+    B.end(its.termStiffness.numbers());
+    rowsChanged = false;
+  }
+};
 
 }

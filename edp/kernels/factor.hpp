@@ -280,13 +280,16 @@ public:
     }
   }
 
-  void product(const double *x, double *y) const {
-    // y = A x, from the lower triangle of A.
-    std::fill(y, y + n, 0.);
+  template<class Size, class Entry> void entries(Size size, Entry entry) const {
+    // Calls size(number of entries), then entry(number, row, column, value), of both triangles of A.
+    long all = 0;
     for (int j = 0; j < n; j++)
+      for (int e = column[j]; e < column[j + 1]; e++) all += row[e] == j ? 1 : 2;
+    size(all);
+    for (int j = 0, k = 0; j < n; j++)
       for (int e = column[j]; e < column[j + 1]; e++) {
-        y[row[e]] += value[e] * x[j];
-        if (row[e] != j) y[j] += value[e] * x[row[e]];
+        entry(k++, row[e], j, value[e]);
+        if (row[e] != j) entry(k++, j, row[e], value[e]);
       }
   }
 

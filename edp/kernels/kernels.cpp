@@ -8,21 +8,16 @@
 #include "call.hpp"
 #include "bodies.hpp"
 #include "factor.hpp"
-#include "contact.hpp"
+#include "explicit.hpp"
 #include "pairs.hpp"
+#include "step.hpp"
 #include "surface.hpp"
 
 static bodies::Bodies body;
-// A script array that later calls read or fill without having it as an argument. FreeFEM may
-// reallocate the numbers of an array, so the array is kept and not a pointer to its numbers.
-struct Array {
-  KN<double> *of = nullptr;
-  operator double *() const { return of ? static_cast<double *>(*of) : nullptr; }
-};
 static struct {
-  Array F0, C0, F1, C1, jacobian1, Fs, Ss,           // set by kernelDeformation
+  Kept<double> F0, C0, F1, C1, jacobian1, Fs, Ss,    // set by kernelDeformation
     damping,                                         // by kernelMaterial
-    carried, star, now, dBase, lag;                  // by kernelVolume
+    star;                                            // by kernelVolume
 } arrays;
 static bodies::Deformation deformation() {
   return {arrays.F0, arrays.C0, arrays.F1, arrays.C1, arrays.jacobian1, arrays.Fs, arrays.Ss};
@@ -30,11 +25,14 @@ static bodies::Deformation deformation() {
 static bodies::Bodies &bodyNow() {
   // The bodies, with the present addresses of the script arrays.
   body.damping = arrays.damping;
-  body.volume = {arrays.carried, arrays.star, arrays.now, arrays.dBase, arrays.lag};
+  body.volume.star = arrays.star;
   return body;
 }
 static std::vector<const laws::Law *> law;           // by its number in lawOfPoint
 static Factor factor;
+static contact::Contact touching(factor, body.ndof);
+static ImplicitStep step(body, factor, touching);
+static ExplicitContact substep(touching);
 
 static bodies::Triplets entries(Sparse A) {
   // The entries of a sparse matrix. The kernels take no half (symmetric) or 1-based storage.
@@ -48,11 +46,11 @@ static void addBodies() {
   add("kernelComponent", +[](long i, long dimensions, Sparse pick) {
     body.component(int(i), int(dimensions), entries(pick));
   });
-  add("kernelKnows", +[](long number, std::string &name) {
-    // Whether the law `name`, which has this number in lawOfPoint, is compiled.
+  add("kernelKnows", +[](std::string &name) { return long(laws::known(name) != nullptr); });
+  add("kernelLawNumber", +[](long number, std::string &name) {
+    // The number of a law in lawOfPoint.
     law.resize(std::max(law.size(), size_t(number + 1)));
     law[number] = laws::known(name);
-    return long(law[number] != nullptr);
   });
   add("kernelMaterial", +[](Reals lambda, Reals mu, Reals own, Reals eta, Reals zeta,
                            Reals relaxing, Reals relaxTime, Reals bulk, Reals dampingState,
@@ -73,6 +71,7 @@ static void addBodies() {
     body.make(entries(gradient), entries(mass));
     factor.pattern(body);
   });
+  add("kernelMass", +[](Sparse mass) { body.setMass(entries(mass)); });
   // after a change of the unknowns that supports hold
   add("kernelFree", +[](Reals free) { body.free = copied<double>(free); });
   add("kernelDeformation", +[](Reals F0, Reals C0, Reals F1, Reals C1, Reals jacobian1, Reals Fs,
@@ -81,16 +80,14 @@ static void addBodies() {
     arrays.jacobian1 = {&jacobian1};
     arrays.Fs = {&Fs};  arrays.Ss = {&Ss};
   });
-  add("kernelVolume", +[](Ints elementOfPoint, Reals carried, Reals star, Reals now, Reals dBase,
-                         Reals lag) {
-    arrays.carried = {&carried};  arrays.star = {&star};  arrays.now = {&now};
-    arrays.dBase = {&dBase};  arrays.lag = {&lag};
+  add("kernelVolume", +[](Ints elementOfPoint, Reals star) {
+    arrays.star = {&star};
     body.elements(copied<int>(elementOfPoint));
   });
   add("kernelForces", +[](Reals d, Reals inertiaKnown, Reals bodyForce, double massScale,
-                         double rate, long where, bool breaks, bool carries, Reals residual) {
+                         double rate, long where, bool breaks, Reals residual) {
     return long(bodyNow().forces(d, inertiaKnown, bodyForce,
-      {massScale, rate, int(where), breaks, carries}, deformation(), residual));
+      {massScale, rate, int(where), breaks, false}, deformation(), residual));
   });
   add("kernelEnergy", +[](Reals C, Reals W) { bodyNow().energies(C, W); });
   add("kernelDamp", +[](Reals C0, Reals C1, double dt) { bodyNow().damp(C0, C1, dt); });
@@ -110,18 +107,88 @@ static void addFactor() {
     bodyNow().tangent(F, S, p, massScale, stiffnessScale, rate);
     factor.numbers(body);
   });
-  add("kernelTangentProduct", +[](Reals x, Reals y) { factor.product(x, y); });
-  add("kernelFactorise", +[](Ints last) { return long(factor.factorise(copied<int>(last))); });
-  add("kernelRenewalCost", +[]() { return factor.renewalCost(); });
-  add("kernelSolve", +[](Reals b, Reals x) { factor.solve(b, x); });
-  add("kernelRespond", +[](Ints unknowns, Reals b, Reals x) {
-    factor.respond(copied<int>(unknowns), b, x);
+  add("kernelTangentEntries", +[](Ints row, Ints column, Reals value) {
+    // The entries of both triangles of A.
+    factor.entries([&](long n) { row.resize(n);  column.resize(n);  value.resize(n); },
+                   [&](long e, int i, int j, double a) { row[e] = i;  column[e] = j;  value[e] = a; });
   });
-  add("kernelCompliance", +[](Ints unknowns, long known, Table C) {
-    // C = (A^-1)_uu of the unknowns u. The rows and columns of the first `known` are in C already.
-    const long n = unknowns.N();
-    C.resize(n, n);
-    if (n > 0) factor.compliance(copied<int>(unknowns), known, &C(0, 0));
+}
+
+static void addStep() {
+  // Kernels of contact.hpp, step.hpp and explicit.hpp. The first three are called once.
+  add("kernelContactArrays", +[](bool jacobianFixed, Reals q0, Reals q1, Reals gapSlip,
+                                Reals gapSlipStart, Reals tractions, Reals force, Reals k,
+                                Reals muStatic, Reals muDynamic, Ints sticks, Ints statusChanges,
+                                Ints row, Ints column, Reals value, Ints termOf, Ints termUnknown,
+                                Reals termValue, Reals termStiffness) {
+    touching.jacobianFixed = jacobianFixed;
+    touching.its = {{&q0}, {&q1}, {&gapSlip}, {&gapSlipStart}, {&tractions}, {&force}, {&k},
+                    {&muStatic}, {&muDynamic}, {&sticks}, {&statusChanges}, {&row}, {&column},
+                    {&termOf}, {&termUnknown}, {&value}, {&termValue}, {&termStiffness}};
+    touching.takeJacobian();
+  });
+  add("kernelStepArrays", +[](Reals d, Reals v, Reals inertiaKnown, Reals bodyForce,
+                             Reals loadForce, Reals frameMotion, Reals heldResidual,
+                             Reals jacobian0, Reals pressureStart, Reals pressureStar,
+                             Reals seconds, Ints counts, Sparse translations) {
+    step.its = {{&d}, {&v}, {&inertiaKnown}, {&bodyForce}, {&loadForce}, {&frameMotion},
+                {&heldResidual}, {&jacobian0}, {&pressureStart}, {&pressureStar}, {&seconds},
+                {&counts}};
+    step.translations = entries(translations);
+  });
+  add("kernelSettings", +[](double tolerance, double momentumShare, bool breaks,
+                           bool refusesCollapse, bool newMatrix, bool everyCandidate, bool damped,
+                           bool loads, long fallbackCost) {
+    step.settings = {tolerance, momentumShare, breaks, refusesCollapse, newMatrix, everyCandidate,
+                     damped, loads, fallbackCost};
+  });
+  add("kernelStep", +[](double dt, double massScale, double stiffnessScale, long stressAt,
+                       long where, double reach, double energyScale, double momentumScale,
+                       double roundOff, long mostInverses, double &lastResidual, Callback gaps,
+                       Callback terms, Callback loads, Callback search) {
+    bodyNow();
+    touching.mostInverses = mostInverses;
+    const long ended = step.take({dt, massScale, stiffnessScale, stressAt, where, reach,
+      energyScale, momentumScale, roundOff}, {gaps, terms, loads, search}, deformation());
+    lastResidual = step.lastResidual;
+    return ended;
+  });
+  add("kernelForget", +[]() { step.forget(); });
+  add("kernelState", +[](Reals state) {
+    // Stores in an array what the step remembers from earlier ones.
+    Archive archive;
+    step.archive(archive);
+    state.resize(long(archive.numbers.size()));
+    std::copy(archive.numbers.begin(), archive.numbers.end(), (double *)state);
+  });
+  add("kernelRestore", +[](Reals state) {
+    Archive archive;
+    archive.numbers = copied<double>(state);
+    archive.reads = true;
+    step.archive(archive);
+    bodyNow();
+    if (step.known()) step.restore();
+  });
+  add("kernelSubsteps", +[](Reals compliance, double distance) {
+    substep.begin(Kept<double>{&compliance}.numbers(), distance);
+  });
+  add("kernelSubstep", +[](Reals increment, Reals kicked, double h, Callback gaps) {
+    return substep.take(Kept<double>{&increment}.numbers(), Kept<double>{&kicked}.numbers(), h,
+                        gaps);
+  });
+  add("kernelLaw", +[](double exponent, double slipVelocity, double bridge, double sticksBelow,
+                      std::string &regularization, bool jumps, long slips) {
+    // Parameters of (10)-(13) that all contact points share; see Law and Problem.
+    contact::Law &law = touching.law;
+    law.exponent = exponent;
+    law.slipVelocity = slipVelocity;
+    law.bridge = bridge;
+    law.regularization = regularization == "sqrt" ? contact::sqrtOf
+      : regularization == "tanh" ? contact::tanhOf
+      : regularization == "linear" ? contact::linear : contact::linearPrinted;
+    law.jumps = jumps;
+    law.slips = int(slips);
+    touching.problem.sticksBelow = sticksBelow;
   });
 }
 
@@ -141,7 +208,7 @@ static void addKernels() {
   limitThreads();
   addBodies();
   addFactor();
-  contact::addContact();
+  addStep();
   pairs::addPairs();
   surface::addSurface();
 }

@@ -1,0 +1,423 @@
+// step.hpp: the increment d of an implicit step of (2), by Newton's method with a frozen
+// factorisation A of the tangent of the bodies, massScale M + stiffnessScale K. An iteration
+// computes the correction -A^-1 r of the residual r, applies it to the trial state w (the motion
+// without contact forces), and solves contact and friction exactly for d = w - A^-1 B^T t(d). A line
+// search limits the correction; if convergence is poor, A is factorised anew. Exports ImplicitStep.
+#pragma once
+#include <ctime>
+#include "anderson.hpp"
+#include "bodies.hpp"
+#include "contact.hpp"
+
+// Numbers that do not change in a run. `newMatrix`: factorise in every iteration.
+struct Settings {
+  double tolerance = 1e-8, momentumShare = 1e-10;   // of energy (10^-8: default), of momentum
+  bool breaks = true, refusesCollapse = true, newMatrix = false, everyCandidate = false,
+    damped = false, loads = false;
+  long fallbackCost = 2;                         // of a factorisation, in iterations
+};
+// Numbers of a step, as setIntegrator() of integrators.idp sets them; scales of energy [J/m; J] and
+// momentum; reach of the contact search [m]; residual force [N/m; N] that is round-off.
+struct Motion {
+  double dt, massScale, stiffnessScale;
+  long stressAt, where;
+  double reach, energyScale, momentumScale, roundOff;
+};
+// What scripts do in a step: gaps: B, q0 and gapSlipStart at d; terms: geometric contact stiffness
+// under the tractions; loads: loadForce at d; search: 1 if d moves beyond the last contact search,
+// which is then made anew.
+struct Scripts { Callback gaps, terms, loads, search; };
+
+// Arrays of the scripts (integrators.idp, reactions.idp): v (ndof) and so on.
+struct StepArrays {
+  Kept<double> d, v, inertiaKnown, bodyForce, loadForce, frameMotion, heldResidual, jacobian0,
+    pressureStart, pressureStar, seconds;        // seconds, counts: see evaluations ... below
+  Kept<long> counts;
+};
+
+class ImplicitStep {
+ public:
+  using Vector = Eigen::VectorXd;
+  StepArrays its;
+  Settings settings;
+  bodies::Triplets translations = {};            // (ndof x 3 bodies)
+  double lastResidual = 0;                       // work of the residual over energyScale
+
+  ImplicitStep(bodies::Bodies &allBodies, Factor &factorOfA, contact::Contact &contactOfStep)
+    : body(allBodies), factor(factorOfA), contact(contactOfStep) {}
+
+  int take(const Motion &stepMotion, const Scripts &stepScripts, const bodies::Deformation &arrays) {
+    // Finds d from the prediction in d. Returns fine, or the reason of the failure (bodies.hpp).
+    begin(stepMotion, stepScripts, arrays);
+    predict();
+    const int failed = ended != bodies::fine ? ended : iterate();
+    its.counts[iterationsMade] = iterations;
+    its.counts[inverses] = contact.inversesOfStep;
+    return failed;
+  }
+
+  void forget() {                                // for the next step, A is factorised anew
+    massScaleOfA = -1;
+    contact.reset();
+  }
+  bool known() const { return massScaleOfA >= 0; }
+  template<class Archive> void archive(Archive &archive) {
+    // The state that lasts from step to step.
+    archive(massScaleOfA);  archive(motion.stiffnessScale);  archive(FofA);  archive(SofA);
+    archive(pOfA);  archive(fewest);  archive(excess);
+    history.archive(archive);
+    contact.archive(archive);
+  }
+  void restore() {                               // A of an archived state
+    assemble();
+    factor.factorise(contact.expected);
+    contact.restore();
+  }
+
+ private:
+  bodies::Bodies &body;
+  Factor &factor;
+  contact::Contact &contact;
+  Motion motion = {};
+  const Scripts *scripts = nullptr;
+  bodies::Deformation at = {};
+  Anderson history;
+  int ended = bodies::fine;
+  // A: its massScale (-1: there is none), F, S and pressures at which it was assembled
+  double massScaleOfA = -1;
+  Vector FofA, SofA, pOfA;
+  // iterations: least of a step with this A; excess over it, summed over steps
+  long fewest = 1000, excess = 0;
+  // of this step; factorisations, and the iteration of the last one
+  int iterations = 0, renewed = 0, renewedAt = 0;
+  // trial belongs to d with this A, and correctionBefore to the previous trial state
+  bool chained = false;
+  double residualNow = 0, residualBefore = 0, residualFirst = 0, convergence = 0, reach = 0;
+  // d; w; -A^-1 r, now and before; change of w; r of the bodies, with contact
+  Vector d, dBack, trial, correction, correctionBefore, trialMove, ofBodies, residual;
+  // p* - p of the elements, its change in w, p at the last iterate (volume.idp)
+  Vector missing, missingBefore, pressureMove, pressureBack;
+
+  struct Timed {                                 // adds the processor time of a block
+    double &sum;
+    std::clock_t start = std::clock();
+    explicit Timed(double &total) : sum(total) {}
+    ~Timed() { sum += double(std::clock() - start) / CLOCKS_PER_SEC; }
+  };
+  enum { assembly, factorisation, solution, contacts };   // entries of `seconds`
+  enum { iterationsMade, evaluations, factorisations, inverses };   // entries of `counts`
+  double &seconds(int phase) { return its.seconds[phase]; }
+
+  bool inMean() const { return !body.cell.empty(); }
+  Eigen::Map<const Vector> ofPoints(const double *values, long n) const { return {values, n}; }
+  Eigen::Map<Vector> mapped(std::vector<double> &v) const { return {v.data(), long(v.size())}; }
+  void setD(const Vector &next) { its.d.numbers() = d = next; }
+
+  int iterate() {
+    // Newton's iterations. An old matrix costs iterations, a new one about as much as `cost` of them. It is renewed when
+    // the excess over the best step since the last factorisation has reached this cost (ski rental).
+    if (massScaleOfA != motion.massScale || excess > cost() || settings.newMatrix)
+      if (!factorise()) return bodies::diverged;
+    residualNow = residualFirst = residual.norm();
+    double rate = 0.1;
+    while (iterations < 120) {
+      direct();
+      dBack = d;
+      lineSearch();
+      iterations++;
+      measure();
+      if (convergence <= 1 && chained) {
+        if (collapses()) return bodies::inverted;
+        if (scripts->search() == 0) return accept();
+        if (!contact.jacobianFixed) contact.empty();
+        evaluate();
+        chained = false;
+        continue;
+      }
+      rate = iterations - renewedAt < 2 ? 0.1 : std::sqrt(rate * residualNow / residualBefore);
+      if (wearsOut(rate)) {
+        const int failed = renew();
+        if (failed != bodies::fine) return failed;
+      }
+    }
+    return bodies::diverged;
+  }
+
+  void begin(const Motion &stepMotion, const Scripts &stepScripts,
+             const bodies::Deformation &arrays) {
+    motion = stepMotion;
+    scripts = &stepScripts;
+    at = arrays;
+    contact.law.dt = motion.dt;
+    contact.law.where = int(motion.where);
+    contact.beginStep();
+    if (!contact.jacobianFixed) contact.empty();
+    d = its.d.numbers();
+    its.counts.numbers().setZero();
+    iterations = renewed = renewedAt = 0;
+    chained = false;
+    if (!inMean()) missing = missingBefore = pressureMove = pressureBack = Vector();
+    // a changing B is set up in every iteration: few candidates
+    reach = contact.jacobianFixed ? motion.dt * its.v.numbers().lpNorm<Eigen::Infinity>()
+      : motion.reach / 5;
+    if (settings.everyCandidate) reach = 1e30;
+  }
+
+  void predict() {
+    // Evaluates at the prediction, which is halved, up to six times, while it inverts elements.
+    const Eigen::Map<const Vector> start(its.pressureStart, its.pressureStart.size());
+    returnTo(d, start);
+    for (int cut = 0; ended != bodies::fine && cut < 6; cut++) {
+      for (int j = 0; j < d.size(); j++) if (body.free[j] != 0) d[j] /= 2;
+      returnTo(d, start);
+    }
+  }
+
+  void returnTo(const Vector &increment, const Vector &pressures) {
+    // Evaluates the residual at an increment with the carried pressures of the elements.
+    setD(increment);
+    if (inMean()) {
+      mapped(body.volume.dBase) = d;
+      mapped(body.volume.carried) = pressures;
+    }
+    evaluate();
+  }
+
+  void evaluate() {
+    evaluateBodies();
+    if (ended == bodies::fine) evaluateContact();
+  }
+  void evaluateBodies() {
+    // Residual of the bodies, with 0 at held unknowns; heldResidual is that before.
+    const Timed timed(seconds(assembly));
+    its.counts[evaluations]++;
+    ofBodies.resize(d.size());
+    ended = body.forces(d.data(), its.inertiaKnown, its.bodyForce,
+      {motion.massScale, settings.damped ? 1 / motion.dt : 0, int(motion.stressAt),
+       settings.breaks, inMean()}, at, ofBodies.data());
+    if (settings.loads && ended == bodies::fine) {
+      scripts->loads();
+      ofBodies -= its.loadForce.numbers();
+    }
+    if (its.heldResidual.size() > 0) {
+      its.heldResidual.numbers() = ofBodies;
+      if (inMean()) its.heldResidual.numbers() += mapped(body.volume.lag);
+    }
+    ofBodies = ofBodies.cwiseProduct(mapped(body.free));
+    if (inMean()) mapped(body.volume.lag) = mapped(body.volume.lag).cwiseProduct(mapped(body.free));
+  }
+  void evaluateContact() {
+    const Timed timed(seconds(contacts));
+    if (!contact.jacobianFixed) { scripts->gaps();  contact.takeJacobian(); }
+    contact.evaluate(d);
+    residual = ofBodies;
+    if (contact.touches()) {
+      if (!contact.jacobianFixed) scripts->terms();
+      residual += contact.its.force.numbers();
+    }
+    residualNow = residual.norm();
+    if (residualNow != residualNow) ended = bodies::notANumber;
+  }
+
+  void direct() {
+    // The correction -A^-1 r at d and, with the history of iterations, the change of w.
+    const Timed timed(seconds(solution));
+    correction = -solved(residual);
+    if (!chained) {
+      trial = d;                                 // w, with A^-1 B^T t if B is fixed
+      if (contact.jacobianFixed && contact.its.force.numbers().lpNorm<Eigen::Infinity>() > 0)
+        trial += solved(contact.its.force.numbers());
+    }
+    else if (!contact.jacobianFixed) trial = d;
+    if (inMean()) missing = its.pressureStar.numbers() - mapped(body.volume.now);
+    if (chained) history.learn(trialMove, correction - correctionBefore,
+                               pressureMove + missing - missingBefore);
+    correctionBefore = trialMove = correction;
+    missingBefore = pressureMove = missing;
+    history.apply(correction, trialMove, pressureMove);
+    // held unknowns have no residual; otherwise their round-off would grow
+    trialMove = trialMove.cwiseProduct(mapped(body.free));
+  }
+  Vector solved(const Vector &force) {           // A^-1 force
+    Vector increment(force.size());
+    factor.solve(force.data(), increment.data());
+    return increment;
+  }
+
+  void lineSearch() {
+    // Goes from dBack along trialMove, halved until the residual allows it. Sets d and chained.
+    double scale = 1;
+    const bool fresh = renewed > 0 && iterations == renewedAt;   // A was factorised at dBack
+    const Eigen::Matrix<long, Eigen::Dynamic, 1> sticks = contact.its.sticks.numbers(),
+      changes = contact.its.statusChanges.numbers();
+    if (inMean()) pressureBack = mapped(body.volume.now);
+    chained = false;
+    residualBefore = residualNow;
+    for (int cut = 0; cut < 7 && !chained; cut++) {
+      // B and tractions of the iterate, not of the try
+      if (cut > 0 && !contact.jacobianFixed) returnTo(dBack, pressureBack);
+      const Vector tried = trial + scale * trialMove;
+      if (inMean()) {
+        mapped(body.volume.carried) = pressureBack + scale * pressureMove;
+        mapped(body.volume.dBase) = dBack;
+      }
+      project(tried);
+      if (ended == bodies::fine) {
+        evaluate();
+        chained = ended == bodies::fine && (residualNow < 1.2 * std::min(residualBefore, residualFirst)
+          || (iterations == 0 && cut == 0));
+      }
+      if (chained) {
+        if (contact.jacobianFixed) trial = tried;
+        break;
+      }
+      scale /= 2;
+      contact.its.sticks.numbers() = sticks;
+      contact.its.statusChanges.numbers() = changes;
+      // an old matrix that inverts elements is replaced, not followed in small steps
+      if (ended == bodies::inverted && cut > 0 && !fresh) break;
+    }
+    if (!chained) return;
+    if (iterations == 0) residualFirst = residualNow;   // residuals must not creep up
+    trialMove *= scale;
+    pressureMove *= scale;
+  }
+
+  void project(const Vector &w) {
+    // Contact on A: d = w - A^-1 B^T t(q(d)), from the tractions of the last evaluation. The error
+    // becomes part of the next residual: 1/500 of the last one is accurate enough. If the step may
+    // end with this iteration: 1e-10 of the contact force, as momentum has to be exact. The
+    // geometric contact stiffness c with rows T has no force at the last d.
+    const Timed timed(seconds(contacts));
+    const long ns = contact.ns();
+    const Vector place = contact.gapSlip(w);
+    Vector highest = contact.its.q0.numbers().cwiseMax(contact.its.q1.numbers()),
+      back = Vector::Zero(w.size());
+    if (highest.maxCoeff() <= 0) highest = place.head(ns);
+    const bool last = work() < 1e3 * settings.tolerance * motion.energyScale;
+    ended = bodies::fine;
+    bool more = highest.maxCoeff() > 0;
+    for (int pass = 0; pass < 20 && more; pass++) {
+      contact.update(highest, reach / (contact.jacobianFixed ? 5 : 1));
+      Vector force;
+      if (!solveContact(w, place, last, force)) { ended = bodies::diverged;  return; }
+      factor.respond(contact.unknowns, force.data(), back.data());
+      highest = place.head(ns) - contact.move(back).head(ns);
+      more = contact.penetrates(highest);
+    }
+    if (more) ended = bodies::diverged;
+    else setD(w - back);
+  }
+  bool solveContact(const Vector &w, const Vector &place, bool last, Vector &force) {
+    // Forces on the active unknowns for the trial state w; without those in w if B changes.
+    const Vector acting = contact.its.force.numbers()(contact.unknowns);
+    Vector tau = contact.ofActive(contact.its.tractions.numbers()), start = place,
+      ahead = (w - d)(contact.unknowns);
+    if (!contact.jacobianFixed) {                // w lacks the displacement A^-1 B^T t
+      const Vector moved = contact.comply(acting);
+      ahead += moved;
+      start += contact.move(contact.onUnknowns(moved));
+    }
+    const bool exact = tau.size() <= std::min(200L, 2L * long(contact.unknowns.size()) + 1);
+    // the prediction's tractions are less accurate
+    if (contact.jacobianFixed && iterations == 0 && !exact) tau = contact.ofActive(contact.last);
+    const double enough = exact ? 0
+      : last ? 1e-10 * contact.its.force.numbers().norm() : 2e-3 * residual.norm();
+    if (contact.solve(start, ahead, enough, tau, force) < 0) return false;
+    if (contact.jacobianFixed) contact.remember(tau); else force -= acting;
+    return true;
+  }
+
+  double work() const {                          // of the residual, relative to the frame [J/m; J]
+    return std::abs(residual.dot(d - motion.dt * its.frameMotion.numbers()));
+  }
+  void measure() {
+    // convergence from convergence, accepted at <= 1: from the work of the residual, linear in it, and
+    // the energy of the correction, quadratic. Both may vanish by chance, so the residual must not
+    // change the momentum of any body, either.
+    const Vector moved = d - dBack;
+    if (inMean()) residual += mapped(body.volume.lag);
+    lastResidual = work() / motion.energyScale;
+    convergence = std::max(lastResidual / settings.tolerance,
+      std::sqrt(std::abs(residual.dot(moved)) / (1e-2 * settings.tolerance * motion.energyScale)));
+    const double off = lostMomentum();
+    if (residualNow < residualBefore / 2 && off > motion.roundOff)
+      convergence = std::max(convergence, off * motion.dt / (settings.momentumShare * motion.momentumScale));
+    if (inMean()) residual -= mapped(body.volume.lag);
+  }
+  double lostMomentum() const {                  // largest resultant of the residual on a body [N]
+    Vector sum = Vector::Zero(translations.m);
+    for (size_t e = 0; e < translations.size; e++)
+      sum[translations.column[e]] += translations.value[e] * residual[translations.row[e]];
+    return sum.lpNorm<Eigen::Infinity>();
+  }
+  bool collapses() const {
+    // Whether a point loses four fifths of its volume in the step. An implicit step has more than
+    // one solution, and this one is no motion that it can follow: a smaller step is taken.
+    if (!settings.refusesCollapse) return false;
+    for (int q = 0; q < body.nq; q++) if (at.jacobian1[q] < 0.2 * its.jacobian0[q]) return true;
+    return false;
+  }
+  int accept() {
+    fewest = std::min(fewest, long(iterations));
+    excess += iterations - fewest;
+    return bodies::fine;
+  }
+
+  long cost() const {                            // of a factorisation, in iterations
+    return factor.renewalCost() > 0 ? factor.renewalCost() : settings.fallbackCost;
+  }
+  bool wearsOut(double rate) const {
+    // Whether to renew A, which then contracts to about a thirtieth.
+    const int age = iterations - renewedAt;
+    const double saved = rate < 0.97
+      ? -std::log(convergence) * (1 / std::log(rate) + 1 / std::log(30.)) : 1000;
+    return !chained || settings.newMatrix || (saved > cost() && age >= (renewed > 0 ? 8 : 4))
+      || age >= 40;
+  }
+  int renew() {
+    // Factorises A anew, at the previous iterate if the line search failed. Returns fine, or why
+    // the step fails.
+    const int failed = std::max<int>(ended, bodies::diverged);
+    if (!chained) {
+      returnTo(dBack, pressureBack);
+      if (ended != bodies::fine || (iterations - renewedAt == 1 && renewed > 0)) return failed;
+    }
+    if ((renewed >= 12 && !settings.newMatrix) || !factorise()) return failed;
+    renewed++;
+    renewedAt = iterations;
+    chained = false;
+    return bodies::fine;
+  }
+  bool factorise() {
+    // Assembles and factorises A at the last evaluation. If the geometric stiffness makes it
+    // indefinite, A takes the material stiffness alone; the residual stays exact.
+    contact.reset();
+    for (int pass = 0; pass < 2; pass++) {
+      FofA = ofPoints(at.Fs, body.sizeOfF());
+      SofA = ofPoints(at.Ss, body.sizeOfC());
+      pOfA = inMean() ? Vector(mapped(body.volume.now)) : Vector::Zero(1);
+      if (pass == 1) { SofA.setZero();  pOfA.setZero(); }
+      massScaleOfA = motion.massScale;
+      { const Timed timed(seconds(assembly));  assemble(); }
+      const Timed timed(seconds(factorisation));
+      its.counts[factorisations]++;
+      if (factor.factorise(contact.expected) != 0) continue;
+      if (inMean()) {                            // lag belonged to the previous A
+        residual += mapped(body.volume.lag);
+        mapped(body.volume.lag).setZero();
+      }
+      history.forget(d.size(), inMean() ? its.pressureStart.size() : 0);
+      fewest = 1000;
+      excess = 0;
+      return true;
+    }
+    massScaleOfA = -1;
+    return false;
+  }
+  void assemble() {
+    body.tangent(FofA.data(), SofA.data(), pOfA.data(), massScaleOfA, motion.stiffnessScale,
+                 settings.damped ? std::sqrt(massScaleOfA / 2) : 0);
+    factor.numbers(body);
+  }
+};
