@@ -37,7 +37,7 @@ class Anderson {
   void apply(const Vector &correction, Vector &move, Vector &pressure) const {
     // move -= moves gamma, gamma = argmin |correction - corrections gamma|; likewise `pressure`.
     if (newest < 0) return;
-    const Vector gamma = gram.partialPivLu().solve(corrections.transpose() * correction);
+    const Vector gamma = gram.inverse() * (corrections.transpose() * correction);
     move -= moves * gamma;
     if (pressures.rows() > 0) pressure -= pressures * gamma;
   }
