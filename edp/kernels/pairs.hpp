@@ -178,8 +178,7 @@ struct Surface {
                                            // (i nodes + a) facets + c; body of a facet
   std::vector<double> side, pointShape;    // sign of the normal; N_a at point p at a np + p
   std::vector<int> selfContact;            // (bodies) 1 if it may come into contact with itself
-  // nodal positions in the reference; centre, outward normal and radius of each facet there
-  std::vector<double> reference, middle, outward, facetRadius;
+  std::vector<double> reference;           // nodal positions in the reference
   std::vector<double> shape;               // N_a = shape(a, :) . monomials, by rows
 };
 
@@ -204,6 +203,8 @@ public:
       const auto [at, is_new] = first.insert({node(int(k / 2), 0, int(k % 2)), k});
       if (!is_new) { beside[k] = int(at->second / 2);  beside[at->second] = int(k / 2); }
     }
+    const std::vector<int> &own = surface.selfContact;
+    if (std::find(own.begin(), own.end(), 1) != own.end()) describeFacets();
   }
 
   long search(const double *x, double searchDistance) {
@@ -341,6 +342,8 @@ private:
   std::vector<Patch<A>> patchAtStart, step, middle, end;
   std::vector<double> startGap;
   std::vector<bool> startUnseen;
+  std::vector<Vector<A>> middleOf, outward;   // of facets in contact with their own body, as are
+  std::vector<double> radiusOf;               // their sizes (describeFacets())
   std::vector<Place> now;                  // in the middle configuration
   std::vector<Before> before;
   std::vector<ClosestPoint<A>> closestPoints;   // on the facets of the present candidate
@@ -405,26 +408,43 @@ private:
     return true;
   }
 
+  void describeFacets() {
+    // Centre, outward normal and 1.25 times the size of all facets in the reference.
+    const double *x = surface.reference.data();
+    for (int c = 0; c < surface.facets; c++) {
+      ClosestPoint<A> centre;
+      Patch<A> patch = {};
+      for (int l = 0; l < A - 1; l++) centre.r[l] = 1. / A;
+      for (int a = 0; a < surface.nodes; a++)
+        for (int j = 0; j < termsOf(A); j++)
+          patch[j] += surface.shape[a * termsOf(A) + j] * nodePlace(x, c, a);
+      evaluate<A>(patch, centre);
+      double radius = 0;
+      for (int a = 0; a < A; a++)
+        radius = std::max(radius, 2.5 * length(nodePlace(x, c, a) - centre.arm));
+      middleOf.push_back(centre.arm);
+      outward.push_back(normalOf(centre, surface.side[c]));
+      radiusOf.push_back(radius);
+    }
+  }
+
   int sightOf(int c, int e) const {
     // Relation of two facets of one body in the reference. 0: neighbours, no contact. 1: contact is
     // possible; no common node, and turned by more than 80 degrees or far apart. 2: they face each
     // other, even with a common node: m_c.w > 0, m_e.w < 0 and m_c.m_e < cos 80 degrees, w from the
     // centre of c to that of e.
-    const Surface &s = surface;
-    double ahead = 0, behind = 0, turned = 0, square = 0;
+    double ahead, behind, turned, square;
     bool shared = false;
     for (int a = 0; a < A; a++)
       for (int b = 0; b < A; b++) shared = shared || node(c, 0, a) == node(e, 0, b);
-    for (size_t i = 0; i < s.middle.size(); i += s.facets) {
-      const double w = s.middle[i + e] - s.middle[i + c];
-      ahead += s.outward[i + c] * w;
-      behind += s.outward[i + e] * w;
-      turned += s.outward[i + c] * s.outward[i + e];
-      square += w * w;
-    }
+    const Vector<A> w = middleOf[e] - middleOf[c];
+    ahead = dot(outward[c], w);
+    behind = dot(outward[e], w);
+    turned = dot(outward[c], outward[e]);
+    square = dot(w, w);
     const bool angled = turned < std::cos(80 * M_PI / 180);
     if (angled && std::min(ahead, -behind) > 1e-9 * std::sqrt(square)) return 2;
-    return !shared && (angled || std::sqrt(square) > s.facetRadius[c] + s.facetRadius[e]) ? 1 : 0;
+    return !shared && (angled || std::sqrt(square) > radiusOf[c] + radiusOf[e]) ? 1 : 0;
   }
 
   double gapOf(int k, const Place &place) const {
@@ -641,12 +661,11 @@ static void addPairs() {
   // kernelSurface makes `known` from a Surface; the others call its functions.
   ::add("kernelSurface", +[](Table shape, long points, long obstacles, long bodies, Ints unknown,
                             Ints body, Reals side, Reals pointShape, Ints selfContact,
-                            Reals reference, Reals middle, Reals outward, Reals facetRadius) {
+                            Reals reference) {
     const int facets = int(body.N()), nodes = int(shape.N());
     Surface s = {facets, nodes, int(points), facets * int(points), int(obstacles), int(bodies),
                  copied<int>(unknown), copied<int>(body), copied<double>(side),
-                 copied<double>(pointShape), copied<int>(selfContact), copied<double>(reference),
-                 copied<double>(middle), copied<double>(outward), copied<double>(facetRadius), {}};
+                 copied<double>(pointShape), copied<int>(selfContact), copied<double>(reference), {}};
     for (int a = 0; a < nodes; a++)
       for (int j = 0; j < shape.M(); j++) s.shape.push_back(shape(a, j));
     if (shape.M() == termsOf(2)) known.reset(new Pairs<2>(s)); else known.reset(new Pairs<3>(s));
