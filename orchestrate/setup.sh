@@ -57,6 +57,7 @@ install() {   # packages; 1 without root, sudo or apt-get
   apt install -y --no-install-recommends "${wanted[@]}"
 }
 if [ ${#missing[@]} -gt 0 ]; then install "${missing[@]}" || stop "cannot install without apt-get and root or sudo; as root run: apt-get install ${missing[*]}"; fi
+[ -d /usr/include/eigen3 ] || install libeigen3-dev || say "without Eigen (libeigen3-dev) the scripts run without compiled kernels, more slowly"
 
 # What the kernels are compiled with (orchestrate/ffimpact/freefem/kernels.py): nobody has to have it.
 installed() { dpkg -s "$1" >/dev/null 2>&1; }

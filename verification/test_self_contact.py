@@ -1,4 +1,4 @@
-"""The conserving gap between a body and its own outline (edp/core/contact/pair.idp), for a randomly
+"""The conserving gap between a body and its own outline (edp/kernels/pairs.hpp), for a randomly
 deformed hairpin with closed slot."""
 
 import pytest
@@ -8,19 +8,18 @@ CASES = [(2, 0.05, 0.02, 0), (1, 0.2, 0.02, 0.7), (2, 0.3, 0.05, 2.5)]
 
 
 @pytest.mark.few(2)
-@pytest.mark.parametrize("without", ["none", "kernels"])
 @pytest.mark.parametrize("degree, depth, noise, tilt", CASES)
-def test_rows_of_a_body_on_itself_conserve(measure, degree, depth, noise, tilt, without):
-    """Kernel and scripts satisfy B d = q1 - q0 in a random step, a rotation and in sliding; no row
+def test_rows_of_a_body_on_itself_conserve(measure, degree, depth, noise, tilt):
+    """The rows satisfy B d = q1 - q0 in a random step, a rotation and in sliding; no row
     of B has a resultant force or moment.
 
     Only points on the walls of the slot are inside the body; none is without deformation. A step
     begins with the penetrations at the end of the last step.
     """
-    found = measure("self-contact", degree=degree, depth=depth, noise=noise, tilt=tilt, without=without)
+    found = measure("self-contact", degree=degree, depth=depth, noise=noise, tilt=tilt)
+    if not found["built"]:
+        pytest.skip("no compiler here")
     assert found["randomInside"] > 10 and found["outside"] == 0 and found["undeformed"] < 0
     for name in ("random", "turn"):
         assert found[name + "Exact"] < ROUND_OFF and found[name + "Force"] < ROUND_OFF and found[name + "Moment"] < ROUND_OFF
     assert found["turnChange"] < ROUND_OFF and found["slideExact"] < ROUND_OFF and found["slideJump"] < ROUND_OFF
-    if without == "none" and found["built"]:
-        assert found["slotsOff"] == 0 and found["gapsOff"] < ROUND_OFF and found["rowsOff"] < 1e-9 and found["springsOff"] < 1e-9

@@ -52,8 +52,8 @@ struct Deformation { double *F0, *C0, *F1, *C1, *jacobian1, *Fs, *Ss; };
 struct Step { double massScale, rate;  int where;  bool breaks, carries; };
 
 // Arrays of volume.idp over elements as numbered there: p* = star; the pressures p as they are
-// carried into an iteration and now. Over unknowns: the increment dBase from which they were carried,
-// and the part `lag` of the residual (miss()).
+// carried into an iteration and now. Over unknowns: the increment dBase from which they were
+// carried, and the part `lag` of the residual (miss()).
 struct Volume {
   double *star = nullptr;
   std::vector<double> carried, now, dBase, lag;
@@ -226,6 +226,19 @@ public:
       damping[T::C * nq + q] +=
         laws::damp(material(q), symmetric<T>(C0, q), symmetric<T>(C1, q), dt, A);
       put<T>(A, q, damping);
+    });
+  }
+  void lawStresses(const double *C, double *S) const {   // (4) at C
+    each([&](auto stored, int q) {
+      typedef decltype(stored) T;
+      put<T>(material(q).law->stress(material(q), symmetric<T>(C, q)), q, S);
+    });
+  }
+  void corrections(const double *M, const double *H, double *e) const {   // gradientCorrection()
+    each([&](auto stored, int q) {
+      typedef decltype(stored) T;
+      e[q] = material(q).law->gradientCorrection(material(q), symmetric<T>(M, q),
+                                                 symmetric<T>(H, q));
     });
   }
   void ellipticities(const double *C, double *e) const {

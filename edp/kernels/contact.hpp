@@ -1,7 +1,7 @@
 // contact.hpp: contact in a step: gaps and tractions of all candidates, the active set (the
-// candidates near contact and the unknowns on which they act) with its compliance C = (A^-1)_uu, and
-// the contact problem on it (contact-solve.hpp). Arrays over ns candidates are stacked by component,
-// component c of candidate s at c ns + s; kinds = 1 + slips is their number (gap, tangential slip).
+// candidates near contact and the unknowns on which they act) with its compliance C = (A^-1)_uu,
+// and the contact problem on it (contact-solve.hpp). Arrays over ns candidates are stacked by
+// component, component c of candidate s at c ns + s; kinds = 1 + slips: gap, tangential slip.
 // Exports Contact.
 #pragma once
 #include "call.hpp"

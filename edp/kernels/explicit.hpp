@@ -1,6 +1,6 @@
-// explicit.hpp: contact in an explicit substep h by velocity Verlet, with the lumped mass M. Contact
-// is solved implicitly in the middle of a substep, so the stable h depends on neither the penalty
-// nor slip_velocity (core/step/explicit.idp has the equations of the bodies):
+// explicit.hpp: contact in an explicit substep h by velocity Verlet, with the lumped mass M. It is
+// solved implicitly in the middle of a substep, so the stable h depends on neither the penalty nor
+// slip_velocity (core/step/explicit.idp has the equations of the bodies):
 //   d = h v- - (h^2/2) M^-1 B^T tau,   v+ = v- - h M^-1 B^T tau = 2 d/h - v-                    (a)
 // The forces tau follow (10)-(13) in conserving form: t_N = (Phi(q1) - Phi(q0))/(q1 - q0), and
 // friction at the mean velocity S d/h. With (a) this is the problem of contact-solve.hpp with the
@@ -8,9 +8,10 @@
 #pragma once
 #include "contact.hpp"
 
-// Momentum changes only by -h B^T tau, as the inner forces of free bodies sum to zero. B annihilates
-// rotations about the middle of (a), so the angular momentum is exact, too. Energy: (v+ M v+ -
-// v- M v-)/2 = -(change of contact energy) - (friction work), exactly. The rest is the error of
+// Momentum changes only by -h B^T tau, as the inner forces of free bodies sum to zero. B
+// annihilates rotations about the middle of (a), so angular momentum is exact, too. Energy:
+// (v+ M v+ - v- M v-)/2 = -(change of contact energy) - (friction work), exactly. The rest is the
+// error of
 // Verlet's method, which is bounded up to h = 2/omega_max, because the method is symmetric in time.
 class ExplicitContact {
  public:
@@ -28,7 +29,7 @@ class ExplicitContact {
   long take(Eigen::Map<Vector> increment, const Vector &kicked, double h, const Callback &gaps) {
     // Replaces the increment h v- of a substep without contact forces by that with them; kicked:
     // v-. Returns 0, or 1 without convergence. A B that changes with the increment is evaluated at
-    // the latest one, first with the forces of the last substep. Each pass reduces the error about a
+    // the latest one, first with the forces of the last substep. Each pass reduces the error a
     // thousandfold; the rest changes no momentum, and the energy by a thousandth of Verlet's error.
     const Vector free = increment;
     const long ns = contact.ns();

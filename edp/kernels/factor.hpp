@@ -281,7 +281,7 @@ public:
   }
 
   template<class Size, class Entry> void entries(Size size, Entry entry) const {
-    // Calls size(number of entries), then entry(number, row, column, value), of both triangles of A.
+    // Calls size(number of entries), then entry(number, row, column, value), of both triangles.
     long all = 0;
     for (int j = 0; j < n; j++)
       for (int e = column[j]; e < column[j + 1]; e++) all += row[e] == j ? 1 : 2;

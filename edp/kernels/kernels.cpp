@@ -89,6 +89,8 @@ static void addBodies() {
     return long(bodyNow().forces(d, inertiaKnown, bodyForce,
       {massScale, rate, int(where), breaks, false}, deformation(), residual));
   });
+  add("kernelStress", +[](Reals C, Reals S) { body.lawStresses(C, S); });
+  add("kernelGradientCorrection", +[](Reals M, Reals H, Reals e) { body.corrections(M, H, e); });
   add("kernelEnergy", +[](Reals C, Reals W) { bodyNow().energies(C, W); });
   add("kernelDamp", +[](Reals C0, Reals C1, double dt) { bodyNow().damp(C0, C1, dt); });
   add("kernelSmallestStretch", +[](Reals C, Reals stretch) {
@@ -110,7 +112,11 @@ static void addFactor() {
   add("kernelTangentEntries", +[](Ints row, Ints column, Reals value) {
     // The entries of both triangles of A.
     factor.entries([&](long n) { row.resize(n);  column.resize(n);  value.resize(n); },
-                   [&](long e, int i, int j, double a) { row[e] = i;  column[e] = j;  value[e] = a; });
+                   [&](long e, int i, int j, double a) {
+      row[e] = i;
+      column[e] = j;
+      value[e] = a;
+    });
   });
 }
 
@@ -152,6 +158,13 @@ static void addStep() {
       energyScale, momentumScale, roundOff}, {gaps, terms, loads, search}, deformation());
     lastResidual = step.lastResidual;
     return ended;
+  });
+  add("kernelContactForces", +[](Reals d, double dt, long where) {
+    // Gap and slip, tractions and contact forces at d with the present rows.
+    touching.law.dt = dt;
+    touching.law.where = int(where);
+    touching.takeJacobian();
+    touching.evaluate(Kept<double>{&d}.numbers());
   });
   add("kernelForget", +[]() { step.forget(); });
   add("kernelState", +[](Reals state) {

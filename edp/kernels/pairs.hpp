@@ -665,7 +665,8 @@ static void addPairs() {
     const int facets = int(body.N()), nodes = int(shape.N());
     Surface s = {facets, nodes, int(points), facets * int(points), int(obstacles), int(bodies),
                  copied<int>(unknown), copied<int>(body), copied<double>(side),
-                 copied<double>(pointShape), copied<int>(selfContact), copied<double>(reference), {}};
+                 copied<double>(pointShape), copied<int>(selfContact),
+                 copied<double>(reference), {}};
     for (int a = 0; a < nodes; a++)
       for (int j = 0; j < shape.M(); j++) s.shape.push_back(shape(a, j));
     if (shape.M() == termsOf(2)) known.reset(new Pairs<2>(s)); else known.reset(new Pairs<3>(s));

@@ -1,8 +1,8 @@
 // step.hpp: the increment d of an implicit step of (2), by Newton's method with a frozen
 // factorisation A of the tangent of the bodies, massScale M + stiffnessScale K. An iteration
 // computes the correction -A^-1 r of the residual r, applies it to the trial state w (the motion
-// without contact forces), and solves contact and friction exactly for d = w - A^-1 B^T t(d). A line
-// search limits the correction; if convergence is poor, A is factorised anew. Exports ImplicitStep.
+// without contact forces), and solves contact and friction exactly for d = w - A^-1 B^T t(d). A
+// line search limits the correction; a poor A is factorised anew. Exports ImplicitStep.
 #pragma once
 #include <ctime>
 #include "anderson.hpp"
@@ -46,7 +46,8 @@ class ImplicitStep {
   ImplicitStep(bodies::Bodies &allBodies, Factor &factorOfA, contact::Contact &contactOfStep)
     : body(allBodies), factor(factorOfA), contact(contactOfStep) {}
 
-  int take(const Motion &stepMotion, const Scripts &stepScripts, const bodies::Deformation &arrays) {
+  int take(const Motion &stepMotion, const Scripts &stepScripts,
+           const bodies::Deformation &arrays) {
     // Finds d from the prediction in d. Returns fine, or the reason of the failure (bodies.hpp).
     begin(stepMotion, stepScripts, arrays);
     predict();
@@ -114,8 +115,9 @@ class ImplicitStep {
   void setD(const Vector &next) { its.d.numbers() = d = next; }
 
   int iterate() {
-    // Newton's iterations. An old matrix costs iterations, a new one about as much as `cost` of them. It is renewed when
-    // the excess over the best step since the last factorisation has reached this cost (ski rental).
+    // Newton's iterations. An old matrix costs iterations, a new one about as much as `cost` of
+    // them. It is renewed when the excess over the best step since the last factorisation has
+    // reached this cost (ski rental).
     if (massScaleOfA != motion.massScale || excess > cost() || settings.newMatrix)
       if (!factorise()) return bodies::diverged;
     residualNow = residualFirst = residual.norm();
@@ -264,8 +266,8 @@ class ImplicitStep {
       project(tried);
       if (ended == bodies::fine) {
         evaluate();
-        chained = ended == bodies::fine && (residualNow < 1.2 * std::min(residualBefore, residualFirst)
-          || (iterations == 0 && cut == 0));
+        const bool falls = residualNow < 1.2 * std::min(residualBefore, residualFirst);
+        chained = ended == bodies::fine && (falls || (iterations == 0 && cut == 0));
       }
       if (chained) {
         if (contact.jacobianFixed) trial = tried;
@@ -332,17 +334,19 @@ class ImplicitStep {
     return std::abs(residual.dot(d - motion.dt * its.frameMotion.numbers()));
   }
   void measure() {
-    // convergence from convergence, accepted at <= 1: from the work of the residual, linear in it, and
+    // `convergence`, accepted at <= 1: from the work of the residual, linear in it, and
     // the energy of the correction, quadratic. Both may vanish by chance, so the residual must not
     // change the momentum of any body, either.
     const Vector moved = d - dBack;
     if (inMean()) residual += mapped(body.volume.lag);
     lastResidual = work() / motion.energyScale;
+    const double scale = 1e-2 * settings.tolerance * motion.energyScale;
     convergence = std::max(lastResidual / settings.tolerance,
-      std::sqrt(std::abs(residual.dot(moved)) / (1e-2 * settings.tolerance * motion.energyScale)));
+                           std::sqrt(std::abs(residual.dot(moved)) / scale));
     const double off = lostMomentum();
     if (residualNow < residualBefore / 2 && off > motion.roundOff)
-      convergence = std::max(convergence, off * motion.dt / (settings.momentumShare * motion.momentumScale));
+      convergence = std::max(convergence,
+                             off * motion.dt / (settings.momentumShare * motion.momentumScale));
     if (inMean()) residual -= mapped(body.volume.lag);
   }
   double lostMomentum() const {                  // largest resultant of the residual on a body [N]

@@ -26,20 +26,19 @@ def write_modes(folder: Path) -> None:
     if not path.exists():
         return
     from scipy.linalg import eigh
-    from scipy.sparse import coo_array, tril
+    from scipy.sparse import coo_array
     from scipy.sparse.linalg import eigsh
 
     arrays, _ = read_arrays(path)
     count, rigid, shift = arrays["options"]
     free = arrays["free"] > 0
-    lower, mass = (
+    stiffness, mass = (
         coo_array(
             (arrays[name], (arrays[f"{name}Row"].astype(int), arrays[f"{name}Column"].astype(int))),
             shape=(len(free), len(free)),
         ).tocsc()[free][:, free]
         for name in ("stiffness", "mass")
     )
-    stiffness = lower + tril(lower, -1).T  # the scripts keep the lower triangle
     size, wanted = stiffness.shape[0], int(count + rigid)
     # The recorded stiffness is K + shift M.
     if 2 * wanted < size:
