@@ -66,7 +66,7 @@ public:
   std::vector<double> free;                // (ndof) 0 at unknowns held by supports
   std::vector<laws::Material> materials;   // consecutive points of the same material share one
   std::vector<int> materialOf;             // (nq) index of the material
-  double *damping = nullptr;               // dampingState of damping.idp: A, stacked, then the
+  double *damping = nullptr;               // dampingState of material.idp: A, stacked, then the
                                            // energy dissipated so far
   std::vector<double> weight;              // (nq) quadrature weights [m2, m3] of the WHOLE bodies
   // elements g: nodes node[firstNode[g] ... firstNode[g + 1] - 1], points from firstPoint[g], and

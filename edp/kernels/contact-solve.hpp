@@ -1,5 +1,5 @@
 // contact-solve.hpp: contact and friction of a Newton step on a frozen factorisation of the bodies,
-// as core/contact/solve.idp, for the active set: the forces tau of the active candidates with
+// for the active set: the forces tau of the active candidates with
 //   tau = t(x),  x = x_w - B C B^T tau,
 // t the laws (10)-(13), x gap and tangential slip, x_w those of the trial state without contact, B
 // the gap Jacobian, C the compliance of the active unknowns [m/N]. In explicit steps C is diagonal,
@@ -395,7 +395,8 @@ class Problem {
   void linearise() {
     // Linearises friction at the velocity w that fits force and velocity best: phi(w) + w/sigma =
     // t_T/(mu_f t_N) + v/sigma with the linear phi; sigma [m/s] is the velocity change that full
-    // friction causes in the step (lineariseFriction() of solve.idp).
+    // friction causes in the step (resolvent: Alart and Curnier 1991; de Saxce and Feng 1998).
+    // Linearised at v, Newton's method oscillates: an inexact v does not determine the force.
     const int k = B.kinds, slips = law.slips, blocks = B.points;
     if (sigma.size() == 0) {
       Vector full = Vector::Zero(x.size()), increment;

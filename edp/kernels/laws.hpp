@@ -100,7 +100,7 @@ struct Material {
   const Law *law;
   double lambda, mu, own[8];               // Lame's constants; further parameters of the law
   double eta, zeta;                        // viscosities [Pa s]
-  double relaxing, relaxTime;              // G [Pa], tau [s] of relaxation.idp
+  double relaxing, relaxTime;              // G [Pa], tau [s] of the Maxwell branch
   double bulk;                             // kappa [Pa]: part of lambda that acts on element means
                                            // of the volume (volume.idp)
   long traced;                             // 1: W is quadratic in C, the volume measure is tr E
@@ -272,7 +272,7 @@ struct Ogden : Conserving<Ogden> {
   }
   // A power of C as its interpolation polynomial in Newton's form through the eigenvalues l:
   // f(C) = f_0 N_0 + f_1 N_1 + f_2 N_2. Eigenvalues that are equal are moved apart by 1e-7 of their
-  // value (newtonBasis() and newtonCoefficients() of ogden.idp).
+  // value; the error is 1e-14 times the third derivative of the power. No eigenvectors are needed.
   struct Newton {
     Vector<3> l;
     Symmetric N[3];                        // I, C - l1 I, (C - l1 I)(C - l2 I)
@@ -344,7 +344,7 @@ struct Ogden : Conserving<Ogden> {
   }
   double ellipticity(const Material &m, const Symmetric &C, bool spatial) const {
     // A number with the sign of the smallest eigenvalue, over mu, in the principal planes (Knowles,
-    // Sternberg 1977; ogdenEllipticity() of ogden.idp): the least of W11, W22, A and
+    // Sternberg 1977): the least of W11, W22, A and
     // sqrt(W11 W22) + A - |W12 + B|, with Kirchhoff stresses t_i and l_i = L_i^2.
     const Vector<3> L = principal(C, spatial);
     const double ratio = (m.lambda + m.bulk) / m.mu, volume = ratio * std::log(determinant(C)) / 2;
@@ -386,14 +386,23 @@ inline double energy(const Material &m, const Symmetric &C) {
   return m.law->gradientCorrection(m, M, H) / 2 + contract(m.law->stress(m, M), H);
 }
 
-// G (1 - theta/2) [Pa], theta = 1 - exp(-dt/tau), of relaxation.idp; dt = 1/rate.
+// The Maxwell branch, a spring G in series with a dashpot G tau, in parallel with the law. Its
+// state A is the inverse of the viscous part of C, A = I at the start:
+//   W_m = G/2 [tr(C A) - 3 - ln det(C A)],   S_m = G (A - C^-1),   dA/dt = (C^-1 - A)/tau.
+// In a step, with K = (C0 + C1)/2, H = (C1 - C0)/2 and theta = 1 - exp(-dt/tau),
+//   A1 = A0 + theta (K^-1 - A0),   S_m = G (1 - theta/2)(A0 - K^-1) + correction along H,
+// so that S_m : H = W_m1 - W_m0 + D exactly, with the dissipation D = G/2 [f(A0) - f(A1)] >= 0,
+// f(A) = tr(K A) - ln det A, for steps of any size.
+// relaxedShare(): G (1 - theta/2) [Pa], dt = 1/rate.
 inline double relaxedShare(const Material &m, double rate) {
   return m.relaxing > 0 ? m.relaxing * (1 + std::exp(-1 / (rate * m.relaxTime))) / 2 : 0;
 }
 
 inline Symmetric viscousStress(const Material &m, const Symmetric &C0, const Symmetric &C1,
                                double rate) {
-  // S_v [Pa] of a step from C0 to C1, rate = 1/dt [1/s]: viscousStress() of damping.idp.
+  // S_v [Pa] of a step from C0 to C1, rate = 1/dt [1/s], with C = (C0 + C1)/2:
+  // S_v = eta C^-1 (dC/dt) C^-1 + zeta/2 tr(C^-1 dC/dt) C^-1. Its work is never negative, and a
+  // rigid rotation has none.
   const Symmetric H = 0.5 * (C1 - C0), B = inverse(0.5 * (C0 + C1));
   return 2 * rate * m.eta * timesTransposed(product(B, H),
       Matrix{B[0], B[3], B[5], B[3], B[1], B[4], B[5], B[4], B[2]})
@@ -403,7 +412,7 @@ inline Symmetric viscousStress(const Material &m, const Symmetric &C0, const Sym
 inline Symmetric dampingStress(const Material &m, const Symmetric &C0, const Symmetric &C1,
                                const Symmetric &A, double rate) {
   // S_v + S_m [Pa]: viscous stress and, with the state A at the start of the step, the stress of
-  // the relaxing branch (addRelaxing() of relaxation.idp).
+  // the Maxwell branch.
   const Symmetric C = 0.5 * (C0 + C1), H = 0.5 * (C1 - C0);
   Symmetric S = {};
   if (m.eta > 0 || m.zeta > 0) S = viscousStress(m, C0, C1, rate);
@@ -421,7 +430,7 @@ inline Vector<3> invariantsBeyond(const Symmetric &C, const Symmetric &A) {
           determinant(X)};
 }
 
-// G/2 [tr(s X) - ln det(I + s X)] [J/m3], I the invariants of X: addStored() of relaxation.idp.
+// G/2 [tr(s X) - ln det(I + s X)] [J/m3], I the invariants of X.
 inline double stored(const Material &m, const Vector<3> &I, double s) {
   double r = s * s * (I[1] + s * I[2]), p = s * I[0] + r, z = p / (2 + p);
   return m.relaxing / 2 * (p * z - 2 * atanhRest(z) - r);
@@ -430,7 +439,7 @@ inline double stored(const Material &m, const Vector<3> &I, double s) {
 inline double damp(const Material &m, const Symmetric &C0, const Symmetric &C1, double dt,
                    Symmetric &A) {
   // Advances the relaxation state A over a step from C0 to C1. Returns the energy [J/m3] that
-  // viscosity and relaxation dissipate in it, as takeDamping() of law.idp.
+  // viscosity and relaxation dissipate in it.
   const Symmetric K = 0.5 * (C0 + C1);
   double taken = 0;
   if (m.eta > 0 || m.zeta > 0)

@@ -1,4 +1,4 @@
-"""Kelvin-Voigt damping and a Maxwell branch (edp/core/law/damping.idp, relaxation.idp).
+"""Kelvin-Voigt damping and a Maxwell branch (edp/kernels/laws.hpp).
 
 Tested are exact decay, objectivity and the exact energy balance, in scripts and kernels.
 """

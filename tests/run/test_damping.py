@@ -1,4 +1,4 @@
-"""Kelvin-Voigt damping and a Maxwell branch (edp/core/law/damping.idp, relaxation.idp).
+"""Kelvin-Voigt damping and a Maxwell branch (edp/kernels/laws.hpp).
 
 Tested are exact decay, objectivity and the exact energy balance, in scripts and kernels.
 """
@@ -80,15 +80,13 @@ def test_loss_is_that_of_the_first_mode(nu):
 @pytest.mark.parametrize("damping", [{"viscosity": 20, "bulk_viscosity": 10}, {"relaxation_modulus": 2e6, "relaxation_time": 1e-3}], ids=["viscous", "relaxing"])
 def test_an_impact_with_friction_closes_its_balance(tmp_path, script, flags, damping):
     """`viscous_work` never falls, closes the balance to 1e-9, and during contact equals that of
-    contacts.csv, with and without kernels."""
+    contacts.csv."""
     given = {name: value for name, value in (IMPACT | damping | flags).items() if value is not None}
-    run, scripted = (disc(tmp_path / without, script, **given | {"tolerance": 1e-14}, without=without) for without in ("none", "kernels"))
+    run = disc(tmp_path / "none", script, **given | {"tolerance": 1e-14})
     work = run.history["viscous_work"]
     assert run.summary["energy_drift"] < 1e-9 and np.diff(work).min() >= 0 and work[-1] == run.summary["viscous_work"] > 1e-3 * run.summary["energy_initial"]
     assert "damping" not in run.summary["skipped"]
     assert run.summary["momentum_drift"] < 1e-9
-    for column in ("viscous_work", "normal_force", "kinetic", "elastic"):
-        assert run.history[column] == pytest.approx(scripted.history[column], rel=0, abs=1e-9 * max(abs(run.history[column]))), column
     rows = np.genfromtxt(tmp_path / "none/contacts.csv", delimiter=",", names=True)
     assert 0 < np.sum(rows["viscous_work"]) <= work[-1] * (1 + 1e-9)
 

@@ -661,7 +661,7 @@ def _discretisation(e: Evidence) -> Iterator[Sentence]:
             "which integrates the flight in time"
         )
     # At a constant strain rate steps of dt give the viscosity G dt (1/theta - 1/2) of
-    # relaxation.idp in place of G tau.
+    # kernels/laws.hpp in place of G tau.
     excess = 0.0
     for body in e.bodies:
         if body["relaxation_modulus"] > 0:
