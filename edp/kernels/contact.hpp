@@ -76,7 +76,8 @@ class Contact {
       for (int c = 0; c < kinds(); c++) {
         const long r = c * ns() + s;
         its.tractions[r] = f.t[c];
-        for (int e = first[r]; e < first[r + 1]; e++) its.force[column[e]] += value[e] * f.t[c];
+        for (int e = first[r]; e < first[r + 1]; e++)
+          its.force[column[e]] += value[e] * f.t[c];   // (15): sum over points, or pairs
       }
     }
   }
