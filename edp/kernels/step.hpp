@@ -17,11 +17,11 @@ struct Settings {
   long fallbackCost = 2;                         // of a factorisation, in iterations
 };
 // Numbers of a step, as setIntegrator() of integrators.idp sets them; scales of energy [J/m; J] and
-// momentum; reach of the contact search [m]; residual force [N/m; N] that is round-off.
+// momentum; search distance of contact [m]; residual force [N/m; N] that is round-off.
 struct Motion {
   double dt, massScale, stiffnessScale;
   long stressAt, where;
-  double reach, energyScale, momentumScale, roundOff;
+  double searchDistance, energyScale, momentumScale, roundOff;
 };
 // What scripts do in a step: gaps: B, q0 and gapSlipStart at d; terms: geometric contact stiffness
 // under the tractions; loads: loadForce at d; search: 1 if d moves beyond the last contact search,
@@ -93,7 +93,8 @@ class ImplicitStep {
   int iterations = 0, renewed = 0, renewedAt = 0;
   // trial belongs to d with this A, and correctionBefore to the previous trial state
   bool chained = false;
-  double residualNow = 0, residualBefore = 0, residualFirst = 0, convergence = 0, reach = 0;
+  double residualNow = 0, residualBefore = 0, residualFirst = 0, convergence = 0,
+    searchDistance = 0;
   // d; w; -A^-1 r, now and before; change of w; r of the bodies, with contact
   Vector d, dBack, trial, correction, correctionBefore, trialMove, ofBodies, residual;
   // p* - p of the elements, its change in w, p at the last iterate (volume.idp)
@@ -160,9 +161,9 @@ class ImplicitStep {
     chained = false;
     if (!inMean()) missing = missingBefore = pressureMove = pressureBack = Vector();
     // a changing B is set up in every iteration: few candidates
-    reach = contact.jacobianFixed ? motion.dt * its.v.numbers().lpNorm<Eigen::Infinity>()
-      : motion.reach / 5;
-    if (settings.everyCandidate) reach = 1e30;
+    searchDistance = contact.jacobianFixed ? motion.dt * its.v.numbers().lpNorm<Eigen::Infinity>()
+      : motion.searchDistance / 5;
+    if (settings.everyCandidate) searchDistance = 1e30;
   }
 
   void predict() {
@@ -300,7 +301,7 @@ class ImplicitStep {
     ended = bodies::fine;
     bool more = highest.maxCoeff() > 0;
     for (int pass = 0; pass < 20 && more; pass++) {
-      contact.update(highest, reach / (contact.jacobianFixed ? 5 : 1));
+      contact.update(highest, searchDistance / (contact.jacobianFixed ? 5 : 1));
       Vector force;
       if (!solveContact(w, place, last, force)) { ended = bodies::diverged;  return; }
       factor.respond(contact.unknowns, force.data(), back.data());
