@@ -100,9 +100,9 @@ def own(request, tmp_path_factory):
     """The mesh that the scripts make without Python, over its radius, and its requested sizes."""
     radius, bulk, contact, arc, symmetry = request.param
     folder, core = tmp_path_factory.mktemp("own"), parameters.ROOT / "edp/core"
-    rooms = "".join(f'include "{core}/{room}.idp"\n' for room in ("law/laws", "input/parameters", "input/mesh-file", "input/outline", "input/sizes"))
+    rooms = "".join(f'include "{core}/input/{room}.idp"\n' for room in ("flags", "mesh-file", "outline", "sizes"))
     (folder / "own.edp").write_text(
-        f'verbosity = 0;\nload "lapack"\nstring script = "own";\n{rooms}contactArc = {arc!r};\ninclude "{core}/input/meshes.idp"\n'
+        f'string script = "own";\n{rooms}contactArc = {arc!r};\ninclude "{core}/input/disc.idp"\n'
         f'ofstream out("{folder}/own.msh");\nout.precision(17);\nout << Th.nv << " " << Th.nt << " " << Th.nbe << endl;\n'
         'for (int i = 0; i < Th.nv; i++) out << Th(i).x / radius << " " << Th(i).y / radius << " 0" << endl;\n'
         'for (int t = 0; t < Th.nt; t++) out << Th[t][0] + 1 << " " << Th[t][1] + 1 << " " << Th[t][2] + 1 << " 0" << endl;\n'

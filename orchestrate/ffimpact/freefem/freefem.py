@@ -162,6 +162,9 @@ def _find(variables: tuple[tuple[str, str], ...]) -> FreeFem:
     if not command:
         raise NotInstalled(f"{wanted} not found; {HOW}")
     environment |= _threads(environment.get("FFIMPACT_THREADS", "1"))
+    # The folder in which includes inside includes are sought, also where its path has a semicolon.
+    known = environment.get("FF_INCLUDEPATH", "")
+    environment["FF_INCLUDEPATH"] = f"{ROOT / 'edp'};./edp" + (f";{known}" if known else "")
     environment = _blas_kernels() | environment | quick_clock(environment)
     description = _probe(command, environment)
     if not description and "FF_LOADPATH" not in environment:
