@@ -1,4 +1,4 @@
-// kernels.cpp: the FreeFEM plugin that edp/kernels.idp loads. It registers all kernels under their
+// kernels.cpp: the FreeFEM plugin that kernels.idp loads. It registers all kernels under their
 // names in the scripts. A process computes one scene, so its bodies and the factorisation of their
 // tangent are static objects.
 #include <cholmod.h>   // first: without SuiteSparse's headers the build ends at once
