@@ -5,7 +5,7 @@
 // iterations and steps, as long as A lasts. Mixing w instead of d keeps every iterate consistent
 // with the contact law. Exports Anderson.
 #pragma once
-#include <eigen3/Eigen/Dense>
+#include "tensors.hpp"
 
 class Anderson {
  public:

@@ -19,7 +19,7 @@ struct Triplets {
   const double *value;
 };
 
-using laws::Matrix;
+using laws::Tensor;
 using laws::Symmetric;
 
 // The stored components of F and C. Component k of F is F_iJ, i = row(k), J = column(k), made of
@@ -295,13 +295,13 @@ private:
   int nodesOf(size_t g) const { return firstNode[g + 1] - firstNode[g]; }
 
   // F, or the symmetric C, S or A, of point q.
-  template<class T> Matrix whole(const double *stacked, int q) const {
-    Matrix F = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    for (int k = 0; k < T::F; k++) F[3 * T::row(k) + T::column(k)] = stacked[k * nq + q];
+  template<class T> Tensor whole(const double *stacked, int q) const {
+    Tensor F = Tensor::Identity();
+    for (int k = 0; k < T::F; k++) F(T::row(k), T::column(k)) = stacked[k * nq + q];
     return F;
   }
   template<class T> Symmetric symmetric(const double *stacked, int q) const {
-    Symmetric A = {};
+    Symmetric A = Symmetric::Zero();
     for (int k = 0; k < T::C; k++) A[T::symmetric(k)] = stacked[k * nq + q];
     return A;
   }
@@ -378,18 +378,18 @@ private:
         at.F1[k * nq + q] = after;
         at.Fs[k * nq + q] = step.where == stepEnd ? after : before + 0.5 * dF[k];
       }
-      at.jacobian1[q] = laws::determinant(whole<T>(at.F1, q));
+      at.jacobian1[q] = whole<T>(at.F1, q).determinant();
     }
   }
 
-  template<class T> void pulled(int q, int n, const double *N, const Matrix &F,
+  template<class T> void pulled(int q, int n, const double *N, const Tensor &F,
                                 const Symmetric &S, double *its) const {
     // its += G^T (w F S): forces on the n nodes, with shapes N, of the stress S at point q.
-    const Matrix P = weight[q] * laws::product(F, S);
+    const Tensor P = weight[q] * F * laws::full(S);   // (3): P = F S
     for (int a = 0; a < n; a++, N += T::derivatives) {
       for (int i = 0; i < T::D; i++)
-        for (int J = 0; J < T::D; J++) its[a * T::D + i] += N[J] * P[3 * i + J];
-      if (T::H) its[a * T::D] += N[T::D] * P[8];
+        for (int J = 0; J < T::D; J++) its[a * T::D + i] += N[J] * P(i, J);
+      if (T::H) its[a * T::D] += N[T::D] * P(2, 2);
     }
   }
 
@@ -505,7 +505,7 @@ private:
     slopeKnown = !cell.empty();
   }
 
-  template<class T> void slopes(int q, const Matrix &F, const Symmetric &S, double p,
+  template<class T> void slopes(int q, const Tensor &F, const Symmetric &S, double p,
                                 double scale, double rate, double A[][T::F]) const {
     // A = scale w dP_iJ/dF_kL, dP_iJ/dF_kL = delta_ik S_JL + F_iI F_kK D_IJKL, as addModuli() of
     // assembly.idp.
@@ -513,15 +513,14 @@ private:
                                              rate);
     double G[6][T::F];                     // F_kK D_IJKL
     for (int a = 0; a < 6; a++) for (int l = 0; l < T::F; l++) {
-      const double *f = &F[3 * T::row(l)], *D = moduli.D[a];
-      const int *KL = laws::sym[T::column(l)];
-      G[a][l] = f[0] * D[KL[0]] + f[1] * D[KL[1]] + f[2] * D[KL[2]];
+      const int k = T::row(l), *KL = laws::position[T::column(l)];
+      const double *D = moduli.D[a];
+      G[a][l] = F(k, 0) * D[KL[0]] + F(k, 1) * D[KL[1]] + F(k, 2) * D[KL[2]];
     }
     for (int k = 0; k < T::F; k++) for (int l = 0; l < T::F; l++) {
-      const double *f = &F[3 * T::row(k)];
-      const int *IJ = laws::sym[T::column(k)];
-      double sum = f[0] * G[IJ[0]][l] + f[1] * G[IJ[1]][l] + f[2] * G[IJ[2]][l];
-      if (T::row(k) == T::row(l)) sum += S[IJ[T::column(l)]];
+      const int i = T::row(k), *IJ = laws::position[T::column(k)];
+      double sum = F(i, 0) * G[IJ[0]][l] + F(i, 1) * G[IJ[1]][l] + F(i, 2) * G[IJ[2]][l];
+      if (i == T::row(l)) sum += S[IJ[T::column(l)]];
       A[k][l] = scale * weight[q] * sum;
     }
   }
@@ -535,7 +534,7 @@ private:
     double *its = &g0[size_t(firstNode[g]) * D], theta = 0;
     std::fill(its, its + n * D, 0.);
     for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++) {
-      const Matrix f = whole<T>(F, q);
+      const Tensor f = whole<T>(F, q);
       const Symmetric C = laws::rightCauchyGreen(f);
       const double j = laws::volume(m, C);
       theta += weight[q] * j / elementWeight[g];

@@ -8,7 +8,7 @@
 #include <new>
 #include <utility>
 #include <vector>
-#include <eigen3/Eigen/Dense>
+#include "tensors.hpp"
 #include "ff++.hpp"
 
 // Ends the program with exit code 14 and one line on stderr. For a library that has run out of

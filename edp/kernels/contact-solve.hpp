@@ -7,7 +7,7 @@
 // and the force c x. Exports Problem.
 #pragma once
 #include <umfpack.h>
-#include <eigen3/Eigen/Dense>
+#include "tensors.hpp"
 #include <memory>
 #include <vector>
 #include "call.hpp"

@@ -6,90 +6,20 @@
 #include <cstring>
 #include <map>
 #include <string>
-#include "vectors.hpp"
+#include "tensors.hpp"
 
 namespace laws {
 
-using namespace vectors;
-typedef Vector<9> Matrix;                  // F, P: component (i, J) at 3 i + J
-typedef Vector<6> Symmetric;               // C, S: components 11, 22, 33, 12, 23, 13
+using namespace tensors;
 
-const int sym[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}},   // position of (I, J) in a Symmetric
-  rowOf[6] = {0, 1, 2, 0, 1, 0}, columnOf[6] = {0, 1, 2, 1, 2, 2};
-const Symmetric identity = {1, 1, 1, 0, 0, 0};
-
-inline double determinant(const Matrix &F) {
-  return F[0] * (F[4] * F[8] - F[5] * F[7]) + F[1] * (F[5] * F[6] - F[3] * F[8])
-    + F[2] * (F[3] * F[7] - F[4] * F[6]);
-}
-inline double determinant(const Symmetric &A) {
-  return A[0] * (A[1] * A[2] - A[4] * A[4]) + A[3] * (A[4] * A[5] - A[3] * A[2])
-    + A[5] * (A[3] * A[4] - A[1] * A[5]);
-}
-inline Symmetric cofactor(const Symmetric &A) {   // det A A^-1
-  return {A[1] * A[2] - A[4] * A[4], A[0] * A[2] - A[5] * A[5], A[0] * A[1] - A[3] * A[3],
-          A[4] * A[5] - A[3] * A[2], A[3] * A[5] - A[0] * A[4], A[3] * A[4] - A[1] * A[5]};
-}
-inline Symmetric inverse(const Symmetric &A) { return 1 / determinant(A) * cofactor(A); }
-inline double trace(const Symmetric &A) { return A[0] + A[1] + A[2]; }
-inline double contract(const Symmetric &A, const Symmetric &B) {   // A:B
-  return A[0] * B[0] + A[1] * B[1] + A[2] * B[2]
-    + 2 * (A[3] * B[3] + A[4] * B[4] + A[5] * B[5]);
-}
-inline Matrix product(const Symmetric &A, const Symmetric &B) {   // A B
-  Matrix X;
-  for (int J = 0; J < 3; J++) for (int L = 0; L < 3; L++)
-    X[3 * J + L] = A[sym[J][0]] * B[sym[0][L]] + A[sym[J][1]] * B[sym[1][L]]
-      + A[sym[J][2]] * B[sym[2][L]];
-  return X;
-}
-inline Matrix product(const Matrix &F, const Symmetric &S) {   // (3): P = F S
-  Matrix P;
-  for (int i = 0; i < 9; i += 3) for (int J = 0; J < 3; J++)
-    P[i + J] = F[i] * S[sym[0][J]] + F[i + 1] * S[sym[1][J]] + F[i + 2] * S[sym[2][J]];
-  return P;
-}
-inline Symmetric timesTransposed(const Matrix &A, const Matrix &B) {   // A B^T, if symmetric
-  Symmetric S;
-  for (int k = 0; k < 6; k++) {
-    const int i = 3 * rowOf[k], j = 3 * columnOf[k];
-    S[k] = A[i] * B[j] + A[i + 1] * B[j + 1] + A[i + 2] * B[j + 2];
-  }
-  return S;
-}
-inline Symmetric rightCauchyGreen(const Matrix &F) {   // C = F^T F
-  Symmetric C;
-  for (int k = 0; k < 6; k++) {
-    const int J = rowOf[k], L = columnOf[k];
-    C[k] = F[J] * F[L] + F[3 + J] * F[3 + L] + F[6 + J] * F[6 + L];
-  }
-  return C;
-}
-
-inline Vector<3> principal(const Symmetric &C, bool spatial) {
-  // Squared principal stretches, as principalStretches() of tensors.idp. In space: largest, middle,
-  // smallest. In the plane: the larger and the smaller in the plane, then C_33.
-  if (!spatial) {
-    const double q = (C[0] + C[1]) / 2,
-      p = std::sqrt((C[0] - C[1]) * (C[0] - C[1]) / 4 + C[3] * C[3]);
-    return {q + p, q - p, C[2]};
-  }
-  const double q = trace(C) / 3;
-  const Symmetric B = C - q * identity;
-  const double p = std::sqrt(contract(B, B) / 6),
-    ratio = determinant(B) / std::max(1e-300, 2 * p * p * p),
-    phi = std::acos(std::max(-1., std::min(1., ratio))) / 3;
-  return {q + 2 * p * std::cos(phi), q + 2 * p * std::cos(phi - 2 * M_PI / 3),
-          q + 2 * p * std::cos(phi - 4 * M_PI / 3)};
-}
-
-// Material moduli D_IJKL = 2 dS_IJ/dC_KL, with (IJ, KL) numbered as in Symmetric.
+// Material moduli D_IJKL = 2 dS_IJ/dC_KL at D[position[I][J]][position[K][L]].
 struct Moduli {
   double D[6][6] = {};
   void add(const Symmetric &A, const Symmetric &B, double l, double m) {
     // D_IJKL += l A_IJ B_KL + m (A_IK B_JL + A_IL B_JK)
     for (int a = 0; a < 6; a++) for (int b = 0; b < 6; b++) {
-      const int *I = sym[rowOf[a]], *J = sym[columnOf[a]], K = rowOf[b], L = columnOf[b];
+      const int *I = position[rowOf[a]], *J = position[columnOf[a]], K = rowOf[b],
+        L = columnOf[b];
       D[a][b] += l * A[a] * B[b] + m * (A[I[K]] * B[J[L]] + A[I[L]] * B[J[K]]);
     }
   }
@@ -283,8 +213,7 @@ struct Ogden : Conserving<Ogden> {
       else if (std::abs(l[2] - l[1]) < h * l[1]) l[2] = (1 - h) * l[1];
       N[0] = identity;
       N[1] = C - l[0] * identity;
-      const Matrix X = product(N[1], C - l[1] * identity);
-      for (int k = 0; k < 6; k++) N[2][k] = X[3 * rowOf[k] + columnOf[k]];
+      N[2] = symmetric(full(N[1]) * full(C - l[1] * identity));
     }
     void coefficients(double *f, int stride) const {
       // Replaces the values f(l1), f(l2), f(l3) at f[0], f[stride], f[2 stride] by f_0, f_1, f_2.
@@ -404,8 +333,7 @@ inline Symmetric viscousStress(const Material &m, const Symmetric &C0, const Sym
   // S_v = eta C^-1 (dC/dt) C^-1 + zeta/2 tr(C^-1 dC/dt) C^-1. Its work is never negative, and a
   // rigid rotation has none.
   const Symmetric H = 0.5 * (C1 - C0), B = inverse(0.5 * (C0 + C1));
-  return 2 * rate * m.eta * timesTransposed(product(B, H),
-      Matrix{B[0], B[3], B[5], B[3], B[1], B[4], B[5], B[4], B[2]})
+  return 2 * rate * m.eta * symmetric(full(B) * full(H) * full(B))
     + rate * m.zeta * contract(B, H) * B;
 }
 
@@ -414,7 +342,7 @@ inline Symmetric dampingStress(const Material &m, const Symmetric &C0, const Sym
   // S_v + S_m [Pa]: viscous stress and, with the state A at the start of the step, the stress of
   // the Maxwell branch.
   const Symmetric C = 0.5 * (C0 + C1), H = 0.5 * (C1 - C0);
-  Symmetric S = {};
+  Symmetric S = Symmetric::Zero();
   if (m.eta > 0 || m.zeta > 0) S = viscousStress(m, C0, C1, rate);
   if (m.relaxing > 0) S += relaxedShare(m, rate) * (A - inverse(C))
     + Logarithm{0, m.relaxing}.gradientCorrection(C, H) / (2 * contract(H, H) + 1e-300) * H;
@@ -423,11 +351,10 @@ inline Symmetric dampingStress(const Material &m, const Symmetric &C0, const Sym
 
 inline Vector<3> invariantsBeyond(const Symmetric &C, const Symmetric &A) {
   // Invariants of X = C A - I: tr X, [(tr X)^2 - tr X^2]/2, det X.
-  Matrix X = product(C, A);
-  for (int k = 0; k < 9; k += 4) X[k] -= 1;
-  return {X[0] + X[4] + X[8],
-          X[0] * X[4] - X[1] * X[3] + X[4] * X[8] - X[5] * X[7] + X[8] * X[0] - X[6] * X[2],
-          determinant(X)};
+  const Tensor X = full(C) * full(A) - Tensor::Identity();
+  const double minors = X.topLeftCorner<2, 2>().determinant()
+    + X.bottomRightCorner<2, 2>().determinant() + X(0, 0) * X(2, 2) - X(0, 2) * X(2, 0);
+  return {X.trace(), minors, X.determinant()};
 }
 
 // G/2 [tr(s X) - ln det(I + s X)] [J/m3], I the invariants of X.
@@ -501,13 +428,13 @@ inline Moduli moduli(const Material &m, const Symmetric &C, double p, double sca
   return D;
 }
 
-inline double cauchy(const Material &m, const Matrix &F, double p, Symmetric &sigma) {
+inline double cauchy(const Material &m, const Tensor &F, double p, Symmetric &sigma) {
   // sigma = F S F^T / det F [Pa], S with the element pressure p. Returns the von Mises stress [Pa].
   const Symmetric C = rightCauchyGreen(F);
-  const double J = determinant(F);
+  const double J = F.determinant();
   Symmetric S = m.law->stress(m, C);
   if (m.bulk > 0) S += p * volumeDirection(m, C, J);
-  sigma = 1 / J * timesTransposed(product(F, S), F);
+  sigma = 1 / J * symmetric(F * full(S) * F.transpose());
   double mises = 0;
   for (int k = 0; k < 3; k++)
     mises += std::pow(sigma[k] - sigma[(k + 1) % 3], 2) / 2 + 3 * sigma[3 + k] * sigma[3 + k];

@@ -9,44 +9,45 @@
 #include <utility>
 #include <vector>
 #include "call.hpp"
-#include "vectors.hpp"
+#include "tensors.hpp"
 
 namespace pairs {
 
-using namespace vectors;
+using namespace tensors;
 
 // Monomials 1, r, r^2 on an edge and 1, r, s, r^2, r s, s^2 on a face, and their derivatives.
 constexpr int termsOf(int A) { return A == 2 ? 3 : 6; }
-inline void monomials(const Vector<1> &r, Vector<3> &p, Vector<3> *slope) {
-  p = {1, r[0], r[0] * r[0]};
-  slope[0] = {0, 1, 2 * r[0]};
+template<int A> using Terms = Vector<termsOf(A)>;
+template<int A> using Slopes = Eigen::Matrix<double, termsOf(A), A - 1>;
+inline void monomials(const Vector<1> &r, Terms<2> &p, Slopes<2> &slope) {
+  p << 1, r[0], r[0] * r[0];
+  slope << 0, 1, 2 * r[0];
 }
-inline void monomials(const Vector<2> &r, Vector<6> &p, Vector<6> *slope) {
-  p = {1, r[0], r[1], r[0] * r[0], r[0] * r[1], r[1] * r[1]};
-  slope[0] = {0, 1, 0, 2 * r[0], r[1], 0};
-  slope[1] = {0, 0, 1, 0, r[0], 2 * r[1]};
+inline void monomials(const Vector<2> &r, Terms<3> &p, Slopes<3> &slope) {
+  p << 1, r[0], r[1], r[0] * r[0], r[0] * r[1], r[1] * r[1];
+  slope.col(0) << 0, 1, 0, 2 * r[0], r[1], 0;
+  slope.col(1) << 0, 0, 1, 0, r[0], 2 * r[1];
 }
 
 // The closest point y of a facet to a point x: its parameters r, the gap vector arm = y - x, and
 // the tangents y_,l there.
 template<int A> struct ClosestPoint {
   Vector<A - 1> r;
-  Vector<A> arm, tangent[A - 1];
+  Vector<A> arm;
+  Eigen::Matrix<double, A, A - 1> tangents;
 };
 
-// Coefficients of the monomials in y - x for a facet and a point, or in its increment in a step.
-template<int A> using Patch = Vector<termsOf(A), Vector<A>>;
+// Coefficients (A, terms) of the monomials in y - x for a facet and a point, or in its increment in
+// a step.
+template<int A> using Patch = Eigen::Matrix<double, A, termsOf(A)>;
 
 template<int A> void evaluate(const Patch<A> &patch, ClosestPoint<A> &closestPoint) {
   // Gap vector and tangents at the parameters r of the closest point.
-  Vector<termsOf(A)> p, slope[A - 1];
+  Terms<A> p;
+  Slopes<A> slope;
   monomials(closestPoint.r, p, slope);
-  closestPoint.arm = {};
-  for (int k = 0; k < termsOf(A); k++) closestPoint.arm += p[k] * patch[k];
-  for (int l = 0; l < A - 1; l++) {
-    closestPoint.tangent[l] = {};
-    for (int k = 0; k < termsOf(A); k++) closestPoint.tangent[l] += slope[l][k] * patch[k];
-  }
+  closestPoint.arm = patch * p;
+  closestPoint.tangents = patch * slope;
 }
 
 inline double clip(double a) { return std::min(1., std::max(0., a)); }
@@ -66,10 +67,10 @@ inline void closest(const Patch<2> &patch, ClosestPoint<2> &closestPoint) {
   // Closest point of an edge: Newton's method for (y - x).y' = 0 with r in [0, 1], from the
   // projection onto the chord. The slope is at least a quarter of the squared chord, so that the
   // distance decreases.
-  const Vector<2> &a = patch[0], &b = patch[1], &c = patch[2], chord = b + c;
-  const double c0 = dot(a, b), c1 = 2 * dot(a, c) + dot(b, b), c2 = 3 * dot(b, c),
-    c3 = 2 * dot(c, c), square = dot(chord, chord);
-  double r = clip(-dot(a, chord) / square);
+  const Vector<2> a = patch.col(0), b = patch.col(1), c = patch.col(2), chord = b + c;
+  const double c0 = a.dot(b), c1 = 2 * a.dot(c) + b.dot(b), c2 = 3 * b.dot(c),
+    c3 = 2 * c.dot(c), square = chord.dot(chord);
+  double r = clip(-a.dot(chord) / square);
   Convergence steps;
   for (int it = 0; it < 40 && steps.going(); it++) {
     const double f = c0 + r * (c1 + r * (c2 + r * c3)), slope = c1 + r * (2 * c2 + r * 3 * c3),
@@ -81,42 +82,37 @@ inline void closest(const Patch<2> &patch, ClosestPoint<2> &closestPoint) {
   evaluate<2>(patch, closestPoint);
 }
 
-inline Vector<2> stepOnFace(const Vector<2> &r, double gr, double gs, double hrr, double hrs,
-                            double hss) {
+inline Vector<2> stepOnFace(const Vector<2> &r, const Vector<2> &g, const Eigen::Matrix2d &H) {
   // The point r + p of the triangle that minimises g.p + p.H p / 2: the free minimum or, if that is
   // outside, the best of the minima on the three edges.
-  const auto model = [&](const Vector<2> &R) {
-    const double pr = R[0] - r[0], ps = R[1] - r[1];
-    return 0.5 * (pr * (hrr * pr + 2 * gr) + ps * (hss * ps + 2 * gs) + 2 * hrs * pr * ps);
-  };
-  const double det = hrr * hss - hrs * hrs,
-    along = gr - gs + (hrr - hrs) * (1 - r[0]) + (hss - hrs) * r[1];
-  const double S = clip(along / (hrr - 2 * hrs + hss));
-  const Vector<2> inside = {r[0] + (gs * hrs - gr * hss) / det,
-                            r[1] + (gr * hrs - gs * hrr) / det};
-  if (inside[0] >= 0 && inside[1] >= 0 && inside[0] + inside[1] <= 1) return inside;
-  const Vector<2> bottom = {clip(r[0] + (hrs * r[1] - gr) / hrr), 0},
-    left = {0, clip(r[1] + (hrs * r[0] - gs) / hss)}, slant = {1 - S, S};
+  const auto model = [&](const Vector<2> &R) { return (R - r).dot(0.5 * H * (R - r) + g); };
+  const Vector<2> inside = r - H.inverse() * g;
+  if (inside.minCoeff() >= 0 && inside.sum() <= 1) return inside;
+  const double along = g[0] - g[1] + (H(0, 0) - H(0, 1)) * (1 - r[0]) + (H(1, 1) - H(0, 1)) * r[1],
+    S = clip(along / (H(0, 0) - 2 * H(0, 1) + H(1, 1)));
+  const Vector<2> bottom(clip(r[0] + (H(0, 1) * r[1] - g[0]) / H(0, 0)), 0),
+    left(0, clip(r[1] + (H(0, 1) * r[0] - g[1]) / H(1, 1))), slant(1 - S, S);
   const Vector<2> &better = model(left) < model(bottom) ? left : bottom;
   return model(slant) < model(better) ? slant : better;
 }
 
 inline void closest(const Patch<3> &patch, ClosestPoint<3> &closestPoint) {
   // Closest point of a face: Newton's method on the triangle, from its centroid.
-  closestPoint.r = {1. / 3, 1. / 3};
+  closestPoint.r.setConstant(1. / 3);
   Convergence steps;
   for (int it = 0; it < 20 && steps.going(); it++) {
     evaluate<3>(patch, closestPoint);
-    const Vector<3> &y = closestPoint.arm, &yr = closestPoint.tangent[0],
-      &ys = closestPoint.tangent[1];
-    double hrr = dot(yr, yr), hrs = dot(yr, ys), hss = dot(ys, ys);
-    const double krr = 2 * dot(y, patch[3]), krs = dot(y, patch[4]), kss = 2 * dot(y, patch[5]);
+    const Vector<3> &y = closestPoint.arm;
+    const Vector<2> g = closestPoint.tangents.transpose() * y;
+    Eigen::Matrix2d H = closestPoint.tangents.transpose() * closestPoint.tangents, curved = H;
+    curved(0, 0) += 2 * y.dot(patch.col(3));
+    curved(0, 1) = curved(1, 0) = H(0, 1) + y.dot(patch.col(4));
+    curved(1, 1) += 2 * y.dot(patch.col(5));
     // The curvature terms are added if the matrix stays positive definite. Beyond the centre of
     // curvature the tangent terms alone keep the distance decreasing.
-    if ((hrr + krr) * (hss + kss) - (hrs + krs) * (hrs + krs) > 0.1 * (hrr * hss - hrs * hrs)
-        && hrr + krr + hss + kss > 0) { hrr += krr;  hrs += krs;  hss += kss; }
-    const Vector<2> next = stepOnFace(closestPoint.r, dot(y, yr), dot(y, ys), hrr, hrs, hss);
-    steps.moved(farthest(next, closestPoint.r));
+    if (curved.determinant() > 0.1 * H.determinant() && curved.trace() > 0) H = curved;
+    const Vector<2> next = stepOnFace(closestPoint.r, g, H);
+    steps.moved((next - closestPoint.r).lpNorm<Eigen::Infinity>());
     closestPoint.r = next;
   }
   evaluate<3>(patch, closestPoint);
@@ -130,7 +126,7 @@ inline bool onBoundary(Vector<1> &r) {
   return true;
 }
 inline bool onBoundary(Vector<2> &r) {
-  for (double &x : r.a) if (x <= 1e-12) x = 0;
+  for (int l = 0; l < 2; l++) if (r[l] <= 1e-12) r[l] = 0;
   const bool slant = 1 - r[0] - r[1] <= 1e-12;
   if (slant) r[0] = 1 - r[1];
   return slant || r[0] == 0 || r[1] == 0;
@@ -138,38 +134,43 @@ inline bool onBoundary(Vector<2> &r) {
 
 // Outward unit normal of a facet. An edge has the body to its left; `side` is the sign of a face.
 inline Vector<2> normalOf(const ClosestPoint<2> &closestPoint, double) {
-  const Vector<2> &t = closestPoint.tangent[0];
-  return 1 / std::max(1e-300, length(t)) * Vector<2>{t[1], -t[0]};
+  const Vector<2> &t = closestPoint.tangents;
+  return Vector<2>(t[1], -t[0]).normalized();
 }
 inline Vector<3> normalOf(const ClosestPoint<3> &closestPoint, double side) {
-  const Vector<3> m = cross(closestPoint.tangent[0], closestPoint.tangent[1]);
-  return side / std::max(1e-300, length(m)) * m;
+  return side * closestPoint.tangents.col(0).cross(closestPoint.tangents.col(1)).normalized();
 }
 
-inline void tangents(const Vector<2> &n, Vector<2> *t) { t[0] = {n[1], -n[0]}; }
-inline void tangents(const Vector<3> &n, Vector<3> *t) {
-  // Unit tangents, perpendicular to n and to each other, as tangentFrames() of shapes.idp.
+// Unit tangents (A, A - 1), perpendicular to n and to each other, as tangentFrames() of shapes.idp.
+inline Vector<2> tangentsOf(const Vector<2> &n) { return {n[1], -n[0]}; }
+inline Eigen::Matrix<double, 3, 2> tangentsOf(const Vector<3> &n) {
   const double h = std::hypot(n[0], n[1]), x = std::sqrt(std::max(0., 1 - n[0] * n[0]));
-  t[0] = h > 0.1 ? Vector<3>{n[1] / h, -n[0] / h, 0}
-    : Vector<3>{x, -n[0] * n[1] / std::max(0.5, x), -n[0] * n[2] / std::max(0.5, x)};
-  t[1] = cross(t[0], n);
+  Eigen::Matrix<double, 3, 2> t;
+  if (h > 0.1) t.col(0) << n[1] / h, -n[0] / h, 0;
+  else t.col(0) << x, -n[0] * n[1] / std::max(0.5, x), -n[0] * n[2] / std::max(0.5, x);
+  t.col(1) = t.col(0).cross(n);
+  return t;
 }
 
-// The vectors c_l in the slip t.rho + c_l.(N_a,l delta y_a) along t. They subtract the rotation of
-// the facet, which turns the gap vector g n (closest.idp). m: normal of the facet.
-inline void turning(const ClosestPoint<2> &closestPoint, const Vector<2> &, const Vector<2> &m,
-                    const Vector<2> &, double g, Vector<2> *c) {
-  c[0] = -g / length(closestPoint.tangent[0]) * m;
+// The vectors c_l (columns) in the slip t.rho + c_l.(N_a,l delta y_a) along t. They subtract the
+// rotation of the facet, which turns the gap vector g n (closest.idp). m: normal of the facet.
+inline Vector<2> turning(const ClosestPoint<2> &closestPoint, const Vector<2> &,
+                         const Vector<2> &m, const Vector<2> &, double g) {
+  return -g / closestPoint.tangents.norm() * m;
 }
-inline void turning(const ClosestPoint<3> &closestPoint, const Vector<3> &n, const Vector<3> &m,
-                    const Vector<3> &t, double g, Vector<3> *c) {
+inline Eigen::Matrix<double, 3, 2> turning(const ClosestPoint<3> &closestPoint, const Vector<3> &n,
+                                           const Vector<3> &m, const Vector<3> &t, double g) {
   // c_l = y^l x tau with the dual tangents y^l.
-  const Vector<3> &yr = closestPoint.tangent[0], &ys = closestPoint.tangent[1],
-    about = cross(n, t), tau = g * (about - 0.5 * dot(m, about) * m);
-  const double rr = dot(yr, yr), rs = dot(yr, ys), ss = dot(ys, ys), det = rr * ss - rs * rs;
-  c[0] = cross(ss / det * yr - rs / det * ys, tau);
-  c[1] = cross(rr / det * ys - rs / det * yr, tau);
+  const Vector<3> about = n.cross(t), tau = g * (about - 0.5 * m.dot(about) * m);
+  const auto &y = closestPoint.tangents;
+  const Eigen::Matrix2d metric = y.transpose() * y;
+  const Eigen::Matrix<double, 3, 2> dual = y * metric.inverse();
+  Eigen::Matrix<double, 3, 2> c;
+  c << dual.col(0).cross(tau), dual.col(1).cross(tau);
+  return c;
 }
+
+typedef Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> Shape;   // at most 6 x 6
 
 // The surface of the bodies, set once; arrays as in pair.idp.
 struct Surface {
@@ -179,7 +180,7 @@ struct Surface {
   std::vector<double> side, pointShape;    // sign of the normal; N_a at point p at a np + p
   std::vector<int> selfContact;            // (bodies) 1 if it may come into contact with itself
   std::vector<double> reference;           // nodal positions in the reference
-  std::vector<double> shape;               // N_a = shape(a, :) . monomials, by rows
+  Shape shape;                             // N_a = shape(a, :) . monomials
 };
 
 // Triplets of B (normal) and S (slip), with 2 A nodes entries for each candidate.
@@ -212,12 +213,11 @@ public:
     // at the nodal positions x, and these facets. Returns their number.
     const Surface &s = surface;
     this->searchDistance = searchDistance;
-    low.assign(s.facets, {});
-    high.assign(s.facets, {});
     std::vector<std::pair<long, int>> hits;   // candidate, facet
-    for (int c = 0; c < s.facets; c++) box(x, c);
+    boxes.clear();
+    for (int c = 0; c < s.facets; c++) boxes.push_back(boxOf(x, c));
     for (int c = 0; c < s.facets; c++) for (int e = c + 1; e < s.facets; e++)
-      if (overlap(c, e)
+      if (boxes[c].intersects(boxes[e])
           && (s.body[c] != s.body[e] || (s.selfContact[s.body[c]] && sightOf(c, e) > 0))) {
         join(x, c, e, hits);
         join(x, e, c, hits);
@@ -251,7 +251,7 @@ public:
       const Place place = project(patchAtStart, int(k));
       if (A == 3 && place.gap > searchDistance) continue;   // the box search finds more
       for (int e = first[k]; e < first[k + 1]; e++)
-        if (A == 2 || length(closestPoints[e - first[k]].arm)
+        if (A == 2 || closestPoints[e - first[k]].arm.norm()
             <= std::abs(place.gap) + 2 * searchDistance) {
           facets.push_back(facet[e]);
           kept.push_back(patchAtStart[e]);
@@ -262,7 +262,7 @@ public:
       startUnseen.push_back(place.unseen);
     }
     candidate.swap(candidates);  first.swap(firsts);  facet.swap(facets);  patchAtStart.swap(kept);
-    before.assign(candidate.size(), {-1, 0, 0, {}});
+    before.assign(candidate.size(), {-1, 0, 0, Vector<A>::Zero()});
     return long(candidate.size());
   }
 
@@ -300,7 +300,7 @@ public:
       const double geometric = std::min(turned(k, t[candidate[k]]), limit[candidate[k]]);
       if (geometric > 0) { at.push_back(k);  c.push_back(geometric); }
       before[k] = {facet[now[k].pick], now[k].closestPoint.r[0],
-                   length(now[k].closestPoint.tangent[0]), now[k].n};
+                   now[k].closestPoint.tangents.col(0).norm(), now[k].n};
     }
     const int terms = int(at.size());
     stiffness.resize(terms);  termOf.resize(2 * blocks * terms);
@@ -310,7 +310,7 @@ public:
       const double slip[2] = {place.n[1], -place.n[0]};
       stiffness[i] = c[i];
       each(at[i], place,
-           [&](int block, int unknowns, int component, double N, const double *) {
+           [&](int block, int unknowns, int component, double N, const Vector<A - 1> &) {
         const int at = 2 * blocks * i + block;
         termOf[at] = i;
         unknown[at] = unknowns;
@@ -333,7 +333,8 @@ private:
   Surface surface;
   std::vector<int> beside;                 // (2 facets) neighbours of an edge at its ends; -1: none
   double searchDistance = 0, roundOff = 0; // [m]; roundOff of the positions
-  std::vector<Vector<A>> low, high;        // (facets) boxes, enlarged by searchDistance / 2
+  typedef Eigen::AlignedBox<double, A> Box;
+  std::vector<Box> boxes;                  // (facets) enlarged by searchDistance / 2
   std::vector<long> candidate;             // (n) numbers of the candidates
   std::vector<int> first, facet;            // candidate k has the facets facet[first[k]] to
                                            // facet[first[k + 1] - 1]
@@ -359,7 +360,7 @@ private:
     return y;
   }
   Vector<A> pointPlace(const double *x, int p) const {
-    Vector<A> y = {};
+    Vector<A> y = Vector<A>::Zero();
     for (int a = 0; a < surface.nodes; a++)
       y += surface.pointShape[a * surface.np + p] * nodePlace(x, p / surface.points, a);
     return y;
@@ -367,45 +368,30 @@ private:
 
   template<class Function> void shapes(const Vector<A - 1> &r, Function f) const {
     // Calls f(a, N_a, N_a,l) for each node a of a facet, with its shape function at r.
-    Vector<termsOf(A)> power, slope[A - 1];
+    Terms<A> power;
+    Slopes<A> slope;
     monomials(r, power, slope);
     for (int a = 0; a < surface.nodes; a++) {
-      const double *shape = &surface.shape[a * termsOf(A)];
-      double N = 0, turn[A - 1] = {};
-      for (int j = 0; j < termsOf(A); j++) N += shape[j] * power[j];
-      for (int l = 0; l < A - 1; l++)
-        for (int j = 0; j < termsOf(A); j++) turn[l] += shape[j] * slope[l][j];
-      f(a, N, turn);
+      const Terms<A> ofNode = shapeOf(a);
+      f(a, ofNode.dot(power), Vector<A - 1>(slope.transpose() * ofNode));
     }
   }
 
-  void box(const double *x, int c) {
+  Eigen::Matrix<double, 1, termsOf(A)> shapeOf(int a) const { return surface.shape.row(a); }
+
+  Box boxOf(const double *x, int c) const {
     // Box of facet c at the nodal positions x. A curved edge, y = chord + r (r - 1) C, lies within
     // |C|/4 of its chord; a curved face in the hull of its corners and of 2 m - (a + b)/2 for each
     // edge ab with the mid-node m (Bezier points).
-    const int nodes = surface.nodes;
-    for (int i = 0; i < A; i++) {
-      const auto y = [&](int a) { return x[node(c, i, a)]; };
-      double &l = low[c][i], &h = high[c][i];
-      l = h = y(0);
-      for (int a = 1; a < A; a++) { l = std::min(l, y(a));  h = std::max(h, y(a)); }
-      const double bend = A == 2 && nodes == 3
-        ? std::abs(2 * (y(0) + y(1)) - 4 * y(2)) / 4 : 0;
-      for (int a = 3; a < nodes; a++) {
-        const double control = 2 * y(a) - 0.5 * (y((a + 1) % 3) + y((a + 2) % 3));
-        l = std::min(l, control);
-        h = std::max(h, control);
-      }
-      l -= bend + searchDistance / 2;
-      h += bend + searchDistance / 2;
-    }
-  }
-
-  bool overlap(int c, int e) const {
-    // Whether the boxes of facets c and e overlap.
-    for (int i = 0; i < A; i++)
-      if (low[c][i] > high[e][i] || high[c][i] < low[e][i]) return false;
-    return true;
+    const auto y = [&](int a) { return nodePlace(x, c, a); };
+    Vector<A> margin = Vector<A>::Constant(searchDistance / 2);
+    Box box;
+    for (int a = 0; a < A; a++) box.extend(y(a));
+    if (A == 2 && surface.nodes == 3)
+      margin += (2 * (y(0) + y(1)) - 4 * y(2)).cwiseAbs() / 4;
+    for (int a = 3; a < surface.nodes; a++)
+      box.extend(Vector<A>(2 * y(a) - 0.5 * (y((a + 1) % 3) + y((a + 2) % 3))));
+    return Box(box.min() - margin, box.max() + margin);
   }
 
   void describeFacets() {
@@ -413,15 +399,13 @@ private:
     const double *x = surface.reference.data();
     for (int c = 0; c < surface.facets; c++) {
       ClosestPoint<A> centre;
-      Patch<A> patch = {};
-      for (int l = 0; l < A - 1; l++) centre.r[l] = 1. / A;
-      for (int a = 0; a < surface.nodes; a++)
-        for (int j = 0; j < termsOf(A); j++)
-          patch[j] += surface.shape[a * termsOf(A) + j] * nodePlace(x, c, a);
+      Patch<A> patch = Patch<A>::Zero();
+      centre.r.setConstant(1. / A);
+      for (int a = 0; a < surface.nodes; a++) patch += nodePlace(x, c, a) * shapeOf(a);
       evaluate<A>(patch, centre);
       double radius = 0;
       for (int a = 0; a < A; a++)
-        radius = std::max(radius, 2.5 * length(nodePlace(x, c, a) - centre.arm));
+        radius = std::max(radius, 2.5 * (nodePlace(x, c, a) - centre.arm).norm());
       middleOf.push_back(centre.arm);
       outward.push_back(normalOf(centre, surface.side[c]));
       radiusOf.push_back(radius);
@@ -433,18 +417,14 @@ private:
     // possible; no common node, and turned by more than 80 degrees or far apart. 2: they face each
     // other, even with a common node: m_c.w > 0, m_e.w < 0 and m_c.m_e < cos 80 degrees, w from the
     // centre of c to that of e.
-    double ahead, behind, turned, square;
     bool shared = false;
     for (int a = 0; a < A; a++)
       for (int b = 0; b < A; b++) shared = shared || node(c, 0, a) == node(e, 0, b);
     const Vector<A> w = middleOf[e] - middleOf[c];
-    ahead = dot(outward[c], w);
-    behind = dot(outward[e], w);
-    turned = dot(outward[c], outward[e]);
-    square = dot(w, w);
-    const bool angled = turned < std::cos(80 * M_PI / 180);
-    if (angled && std::min(ahead, -behind) > 1e-9 * std::sqrt(square)) return 2;
-    return !shared && (angled || std::sqrt(square) > radiusOf[c] + radiusOf[e]) ? 1 : 0;
+    const double ahead = outward[c].dot(w), behind = outward[e].dot(w), distance = w.norm();
+    const bool angled = outward[c].dot(outward[e]) < std::cos(80 * M_PI / 180);
+    if (angled && std::min(ahead, -behind) > 1e-9 * distance) return 2;
+    return !shared && (angled || distance > radiusOf[c] + radiusOf[e]) ? 1 : 0;
   }
 
   double gapOf(int k, const Place &place) const {
@@ -456,10 +436,10 @@ private:
     if (place.gap >= 0 || candidate[k] / s.np < s.obstacles + s.bodies - 1) return place.gap;
     if (-place.gap <= searchDistance && sightOf(p / s.points, c) == 2) return place.gap;
     Vector<A> apart = pointPlace(s.reference.data(), p);
-    shapes(place.closestPoint.r, [&](int a, double N, const double *) {
+    shapes(place.closestPoint.r, [&](int a, double N, const Vector<A - 1> &) {
       apart -= N * nodePlace(s.reference.data(), c, a);
     });
-    return -place.gap <= std::min(searchDistance, 0.1 * length(apart)) ? place.gap : -place.gap;
+    return -place.gap <= std::min(searchDistance, 0.1 * apart.norm()) ? place.gap : -place.gap;
   }
 
   void join(const double *x, int own, int other,
@@ -470,13 +450,10 @@ private:
     const Surface &s = surface;
     const int counterBody = s.obstacles + (s.body[other] == s.body[own] ? s.bodies - 1
       : s.body[other] - (s.body[other] > s.body[own] ? 1 : 0));
+    const Vector<A> margin = Vector<A>::Constant(searchDistance / 2);
+    const Box reach(boxes[other].min() - margin, boxes[other].max() + margin);
     for (int p = own * s.points; p < (own + 1) * s.points; p++) {
-      const Vector<A> y = pointPlace(x, p);
-      bool near = true;
-      for (int i = 0; i < A; i++)
-        near = near && y[i] >= low[other][i] - searchDistance / 2
-          && y[i] <= high[other][i] + searchDistance / 2;
-      if (!near) continue;
+      if (!reach.contains(pointPlace(x, p))) continue;
       hits.push_back({long(counterBody) * s.np + p, other});
       for (size_t k = 2 * other; A == 2 && k < size_t(2 * other + 2); k++)
         if (beside[k] >= 0 && (s.body[other] != s.body[own] || sightOf(own, beside[k]) > 0))
@@ -487,15 +464,13 @@ private:
   void patches(const double *w, std::vector<Patch<A>> &all) const {
     // Coefficients of y - x for every entry of `facet`, at nodal positions w; or of its increment,
     // for nodal displacements w.
-    all.assign(facet.size(), Patch<A>{});
+    all.assign(facet.size(), Patch<A>::Zero());
     for (size_t k = 0; k < candidate.size(); k++) {
       const Vector<A> point = pointPlace(w, int(candidate[k] % surface.np));
       for (int e = first[k]; e < first[k + 1]; e++) {
-        for (int a = 0; a < surface.nodes; a++) {
-          const Vector<A> y = nodePlace(w, facet[e], a);
-          for (int j = 0; j < termsOf(A); j++) all[e][j] += surface.shape[a * termsOf(A) + j] * y;
-        }
-        all[e][0] -= point;
+        for (int a = 0; a < surface.nodes; a++)
+          all[e] += nodePlace(w, facet[e], a) * shapeOf(a);
+        all[e].col(0) -= point;
       }
     }
   }
@@ -508,8 +483,8 @@ private:
     closestPoints.resize(m);
     for (int e = 0; e < m; e++) {
       closest(patch[first[k] + e], closestPoints[e]);
-      const double off = dot(closestPoints[e].arm, closestPoints[e].arm)
-        - nearer * dot(closestPoints[pick].arm, closestPoints[pick].arm);
+      const double off = closestPoints[e].arm.squaredNorm()
+        - nearer * closestPoints[pick].arm.squaredNorm();
       if (off < 0 || (A == 2 && off == 0)) pick = e;   // (9): min d(x1, x2) over the facets
     }
     Vector<A - 1> r = closestPoints[pick].r;
@@ -527,7 +502,7 @@ private:
     place.closestPoint.r = r;
     evaluate<A>(patch[place.pick], place.closestPoint);
     place.m = place.n = normalOf(place.closestPoint, surface.side[facet[place.pick]]);
-    place.gap = -dot(place.closestPoint.arm, place.n);
+    place.gap = -place.closestPoint.arm.dot(place.n);
     place.unseen = false;
     if (edge) onEdge(place, k, closestPoints[pick].arm);
     // Beyond the search distance the side is not known; there is no contact.
@@ -538,11 +513,11 @@ private:
   void markShared(const std::vector<Patch<A>> &patch, int k, int c, const Vector<A - 1> &r) {
     // Sets `tied` for the facets of candidate k that share the vertex or edge of facet c on which r
     // lies, and moves their closest points exactly there.
-    Vector<A> weight = {1};                // barycentric coordinates of r
-    for (int l = 1; l < A; l++) { weight[l] = r[l - 1];  weight[0] -= r[l - 1]; }
+    Vector<A> weight;                      // barycentric coordinates of r
+    weight << 1 - r.sum(), r;
     tied.assign(closestPoints.size(), false);
     for (int e = first[k]; e < first[k + 1]; e++) {
-      Vector<A> there = {};
+      Vector<A> there = Vector<A>::Zero();
       int missing = 0;
       for (int a = 0; a < A; a++) if (weight[a] > 1e-12) {
         missing++;
@@ -552,7 +527,7 @@ private:
       if (missing > 0) continue;
       ClosestPoint<A> &closestPoint = closestPoints[e - first[k]];
       tied[e - first[k]] = true;
-      for (int l = 1; l < A; l++) closestPoint.r[l - 1] = there[l];
+      closestPoint.r = there.template tail<A - 1>();
       evaluate<A>(patch[e], closestPoint);
     }
   }
@@ -561,7 +536,7 @@ private:
     // Gap and normal at a vertex or edge: n along x - y, outward by the mean normal of the tied
     // facets. With a single facet the candidate is unseen if x is more than 45 degrees off its
     // normal.
-    Vector<A> mean = {};
+    Vector<A> mean = Vector<A>::Zero();
     int count = 0;
     for (int e = first[k]; e < first[k + 1]; e++) {
       if (tied[e - first[k]]) {
@@ -569,10 +544,10 @@ private:
         count++;
       }
     }
-    mean *= 1 / std::max(1e-300, length(mean));
-    const double distance = length(arm), side = -dot(arm, mean);
+    mean.normalize();
+    const double distance = arm.norm(), side = -arm.dot(mean);
     place.gap = side < 0 ? -distance : distance;
-    place.n = distance <= roundOff ? mean : -1 / place.gap * arm;
+    place.n = distance <= roundOff ? mean : Vector<A>(-1 / place.gap * arm);
     place.unseen = count == 1 && std::abs(side) < std::sqrt(0.5) * distance && distance > roundOff;
   }
 
@@ -581,8 +556,8 @@ private:
     // is the factor in rho: N_a at the contact point, -N_a on the facet. N_a,l is 0 at the point.
     const Surface &s = surface;
     const int p = int(candidate[k] % s.np), c = facet[place.pick], blocks = A * s.nodes;
-    const double none[A - 1] = {};
-    shapes(place.closestPoint.r, [&](int a, double N, const double *turn) {
+    const Vector<A - 1> none = Vector<A - 1>::Zero();
+    shapes(place.closestPoint.r, [&](int a, double N, const Vector<A - 1> &turn) {
       for (int i = 0; i < A; i++) {
         entry(i * s.nodes + a, node(p / s.points, i, a), i, s.pointShape[a * s.np + p], none);
         entry(blocks + i * s.nodes + a, node(c, i, a), i, -N, turn);
@@ -598,36 +573,34 @@ private:
     // By the discrete-gradient correction kappa, B d is minus the `change` of the gap in the step.
     const Place &p = now[k];
     const long entries = 2 * A * surface.nodes * n;
-    Vector<A> t[A - 1], f[A], c[A][A - 1]; // rows f.rho + c_l.(N_a,l delta y_a): B, then each S_j
+    typedef Eigen::Matrix<double, A, A - 1> Frame;
+    const Frame t = tangentsOf(p.n);
+    Vector<A> f[A];                        // rows f.rho + c_l.(N_a,l delta y_a): B, then each S_j
+    Frame c[A];                            // c_l: columns
     Vector<A - 1> s;
     ClosestPoint<A> motion;
     motion.r = p.closestPoint.r;
     evaluate<A>(step[p.pick], motion);     // arm: -rho, tangents: N_a,l delta y_a, of d
-    tangents(p.n, t);
-    const double a = -dot(p.n, motion.arm);
-    double largest = std::abs(a), square = a * a;
     for (int j = 0; j < A - 1; j++) {
-      f[j + 1] = t[j];
-      turning(p.closestPoint, p.n, p.m, t[j], p.gap, c[j + 1]);
-      s[j] = -dot(t[j], motion.arm);
-      for (int l = 0; l < A - 1; l++) s[j] += dot(c[j + 1][l], motion.tangent[l]);
-      largest = std::max(largest, std::abs(s[j]));
-      square += s[j] * s[j];
+      f[j + 1] = t.col(j);
+      c[j + 1] = turning(p.closestPoint, p.n, p.m, f[j + 1], p.gap);
+      s[j] = c[j + 1].cwiseProduct(motion.tangents).sum() - f[j + 1].dot(motion.arm);
     }
-    const double kappa = largest <= 10 * roundOff ? 0 : (change - a) / square;
+    const double a = -p.n.dot(motion.arm),
+      largest = std::max(std::abs(a), s.template lpNorm<Eigen::Infinity>()),
+      kappa = largest <= 10 * roundOff ? 0 : (change - a) / (a * a + s.squaredNorm());
     f[0] = -(1 + kappa * a) * p.n;
-    for (int l = 0; l < A - 1; l++) c[0][l] = {};
+    c[0].setZero();
     for (int j = 0; j < A - 1; j++) {
       f[0] -= kappa * s[j] * f[j + 1];
-      for (int l = 0; l < A - 1; l++) c[0][l] -= kappa * s[j] * c[j + 1][l];
+      c[0] -= kappa * s[j] * c[j + 1];
     }
-    each(k, p, [&](int block, int unknown, int i, double N, const double *turn) {
+    each(k, p, [&](int block, int unknown, int i, double N, const Vector<A - 1> &turn) {
       const long at = k * 2L * A * surface.nodes + block;
       rows.row[at] = candidate[k];
       rows.unknown[at] = unknown;
       for (int j = 0; j < A; j++) {
-        double value = f[j][i] * N;
-        for (int l = 0; l < A - 1; l++) value += c[j][l][i] * turn[l];
+        const double value = f[j][i] * N + c[j].row(i) * turn;
         (j == 0 ? rows.normal[at] : rows.slip[(j - 1) * entries + at]) = seen ? value : 0;
       }
     });
@@ -651,7 +624,7 @@ private:
     const double increment = same ? 0 : (increments > 0 ? 1 - was.r : was.r) * was.length,
       theta = increments * (was.n[1] * p.n[0] - was.n[0] * p.n[1]);
     return theta > 1e-8 ? t * theta / (2 * (increment
-      + (increments > 0 ? r : 1 - r) * length(p.closestPoint.tangent[0]) - p.gap * theta)) : 0;
+      + (increments > 0 ? r : 1 - r) * p.closestPoint.tangents.col(0).norm() - p.gap * theta)) : 0;
   }
 };
 
@@ -666,9 +639,8 @@ static void addPairs() {
     Surface s = {facets, nodes, int(points), facets * int(points), int(obstacles), int(bodies),
                  copied<int>(unknown), copied<int>(body), copied<double>(side),
                  copied<double>(pointShape), copied<int>(selfContact),
-                 copied<double>(reference), {}};
-    for (int a = 0; a < nodes; a++)
-      for (int j = 0; j < shape.M(); j++) s.shape.push_back(shape(a, j));
+                 copied<double>(reference), Shape(nodes, shape.M())};
+    for (int a = 0; a < nodes; a++) for (int j = 0; j < shape.M(); j++) s.shape(a, j) = shape(a, j);
     if (shape.M() == termsOf(2)) known.reset(new Pairs<2>(s)); else known.reset(new Pairs<3>(s));
   });
   ::add("kernelSearchPairs", +[](Reals x, double searchDistance) {

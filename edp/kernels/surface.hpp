@@ -10,43 +10,12 @@
 #include <map>
 #include <numeric>
 #include <vector>
+#include "tensors.hpp"
 
 namespace surface {
 
-typedef std::array<double, 3> Point;
-inline Point operator-(const Point &a, const Point &b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-inline Point operator+(const Point &a, const Point &b) {
-  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-inline Point operator*(double s, const Point &a) { return {s * a[0], s * a[1], s * a[2]}; }
-inline double dot(const Point &a, const Point &b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-inline double size(const Point &a) { return std::sqrt(dot(a, a)); }
-inline Point cross(const Point &a, const Point &b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-struct Box {
-  Point low = {1e300, 1e300, 1e300}, high = {-1e300, -1e300, -1e300};
-  void take(const Point &p) {
-    for (int i = 0; i < 3; i++) {
-      low[i] = std::min(low[i], p[i]);
-      high[i] = std::max(high[i], p[i]);
-    }
-  }
-  double distance2(const Point &p) const {
-    // squared distance of p from the box
-    double sum = 0;
-    for (int i = 0; i < 3; i++) {
-      const double away = std::max({0., low[i] - p[i], p[i] - high[i]});
-      sum += away * away;
-    }
-    return sum;
-  }
-};
+typedef Eigen::Vector3d Point;
+typedef Eigen::AlignedBox3d Box;
 
 class Surface {
  public:
@@ -57,19 +26,18 @@ class Surface {
   void finish() {
     // Computes the normals and the tree; call after vertices and triangles are set.
     faceNormal.resize(triangle.size());
-    vertexNormal.assign(vertex.size(), Point{0, 0, 0});
+    vertexNormal.assign(vertex.size(), Point::Zero());
     for (size_t t = 0; t < triangle.size(); t++) {
       const auto &v = triangle[t];
-      const Point n = cross(vertex[v[1]] - vertex[v[0]], vertex[v[2]] - vertex[v[0]]);
-      faceNormal[t] = (1 / size(n)) * n;
+      const Point &first = vertex[v[0]];
+      faceNormal[t] = (vertex[v[1]] - first).cross(vertex[v[2]] - first).normalized();
       for (int j = 0; j < 3; j++) {
         const Point a = vertex[v[(j + 1) % 3]] - vertex[v[j]],
           b = vertex[v[(j + 2) % 3]] - vertex[v[j]];
-        const double angle =
-          std::acos(std::max(-1., std::min(1., dot(a, b) / (size(a) * size(b)))));
-        vertexNormal[v[j]] = vertexNormal[v[j]] + angle * faceNormal[t];
-        edgeNormal[edge(v[j], v[(j + 1) % 3])] =
-          edgeNormal[edge(v[j], v[(j + 1) % 3])] + faceNormal[t];
+        const double angle = std::atan2(a.cross(b).norm(), a.dot(b));
+        vertexNormal[v[j]] += angle * faceNormal[t];
+        edgeNormal.insert({edge(v[j], v[(j + 1) % 3]), Point::Zero()}).first->second +=
+          faceNormal[t];
       }
     }
     order.resize(triangle.size());
@@ -81,13 +49,12 @@ class Surface {
   double gap(const Point &p, Point &n) const {
     // Signed distance of p from the surface, negative inside [m]; n: its unit outward normal.
     double best = 1e300;
-    Point closestPoint = {0, 0, 0}, normal = {0, 0, 1};
+    Point closestPoint = Point::Zero(), normal = Point::UnitZ();
     bool inside = false;
     look(0, p, best, closestPoint, normal, inside);
     const Point away = p - closestPoint;
-    const double distance = size(away), side = dot(away, normal) < 0 ? -1 : 1;
-    const double scale = size(normal);
-    n = inside || distance == 0 ? (1 / scale) * normal : (side / distance) * away;
+    const double distance = away.norm(), side = away.dot(normal) < 0 ? -1 : 1;
+    n = inside || distance == 0 ? normal.normalized() : Point(side / distance * away);
     return side * distance - rounding;   // (7): n.(x_B - x_R) = -v_N
   }
 
@@ -101,24 +68,28 @@ class Surface {
 
   static std::pair<int, int> edge(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
+  double distance2(int at, const Point &p) const {   // of p from the box of a node, squared
+    return nodes[at].box.squaredExteriorDistance(p);
+  }
+
   int build(int from, int to) {
     // Makes the node of these triangles and its children: they are halved at the median of the
     // triangle centres along the axis of their largest extent. Returns its number.
     const int at = int(nodes.size()), few = 4;
     nodes.push_back({Box(), from, to, -1, -1});
     Box box, middles;
-    auto middle = [&](int t) {
-      return (1. / 3) * (vertex[triangle[t][0]] + vertex[triangle[t][1]] + vertex[triangle[t][2]]);
+    auto middle = [&](int t) -> Point {
+      return (vertex[triangle[t][0]] + vertex[triangle[t][1]] + vertex[triangle[t][2]]) / 3;
     };
     for (int k = from; k < to; k++) {
-      for (int j : triangle[order[k]]) box.take(vertex[j]);
-      middles.take(middle(order[k]));
+      for (int j : triangle[order[k]]) box.extend(vertex[j]);
+      middles.extend(middle(order[k]));
     }
     nodes[at].box = box;
     if (to - from <= few) return at;
-    const Point extent = middles.high - middles.low;
-    const int axis = int(std::max_element(extent.begin(), extent.end()) - extent.begin()),
-      half = (from + to) / 2;
+    const int half = (from + to) / 2;
+    int axis;
+    middles.sizes().maxCoeff(&axis);
     std::nth_element(order.begin() + from, order.begin() + half, order.begin() + to,
                      [&](int a, int b) { return middle(a)[axis] < middle(b)[axis]; });
     const int left = build(from, half), right = build(half, to);
@@ -137,9 +108,9 @@ class Surface {
       return;
     }
     int near = node.left, far = node.right;
-    if (nodes[far].box.distance2(p) < nodes[near].box.distance2(p)) std::swap(near, far);
-    if (nodes[near].box.distance2(p) < best) look(near, p, best, closestPoint, normal, inside);
-    if (nodes[far].box.distance2(p) < best) look(far, p, best, closestPoint, normal, inside);
+    if (distance2(far, p) < distance2(near, p)) std::swap(near, far);
+    for (int child : {near, far})
+      if (distance2(child, p) < best) look(child, p, best, closestPoint, normal, inside);
   }
 
   void closest(int t, const Point &p, double &best, Point &closestPoint, Point &normal,
@@ -150,12 +121,12 @@ class Surface {
     const auto &v = triangle[t];
     const Point a = vertex[v[0]], b = vertex[v[1]], c = vertex[v[2]], ab = b - a, ac = c - a,
       ap = p - a, bp = p - b, cp = p - c;
-    const double d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp),
-      d5 = dot(ab, cp), d6 = dot(ac, cp);
+    const double d1 = ab.dot(ap), d2 = ac.dot(ap), d3 = ab.dot(bp), d4 = ac.dot(bp),
+      d5 = ab.dot(cp), d6 = ac.dot(cp);
     const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
     auto take = [&](const Point &q, const Point &n, bool face) {
       const Point r = p - q;
-      const double d = dot(r, r);
+      const double d = r.dot(r);
       if (d < best) { best = d;  closestPoint = q;  normal = n;  inside = face; }
     };
     if (d1 <= 0 && d2 <= 0) return take(a, vertexNormal[v[0]], false);
@@ -183,7 +154,7 @@ inline void addSurface() {
     const long points = long(numbers[1]), faces = long(numbers[2]);
     obstacle.rounding = numbers[0];
     for (long i = 0; i < points; i++)
-      obstacle.vertex.push_back({numbers[3 + 3 * i], numbers[4 + 3 * i], numbers[5 + 3 * i]});
+      obstacle.vertex.emplace_back(numbers[3 + 3 * i], numbers[4 + 3 * i], numbers[5 + 3 * i]);
     for (long i = 0, at = 3 + 3 * points; i < faces; i++, at += 3)
       obstacle.triangle.push_back({int(numbers[at]), int(numbers[at + 1]), int(numbers[at + 2])});
     obstacle.finish();
@@ -194,7 +165,7 @@ inline void addSurface() {
     const long m = g.N();
     for (long i = 0; i < m; i++) {
       Point normal;
-      g[i] = obstacle.gap({X[i], X[m + i], X[2 * m + i]}, normal);
+      g[i] = obstacle.gap(Point(X[i], X[m + i], X[2 * m + i]), normal);
       for (int c = 0; c < 3; c++) n[c * m + i] = normal[c];
     }
   });

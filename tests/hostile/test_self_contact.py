@@ -32,15 +32,6 @@ from tests.support.self_contact import (
 
 
 @pytest.mark.robustness
-def test_with_and_without_kernels_it_is_the_same(tmp_path):
-    """The scripts agree with the compiled kernel until round-off grows."""
-    one, other = (ran(tmp_path, SCENE | {"body": [PIN], "end_time": 1.5e-3, "without": without}, without).history for without in ("none", "kernels"))
-    assert len(one["t"]) == len(other["t"]) and one["contact"].max() > 0
-    for column in ("momentum_y", "elastic", "contact"):
-        assert one[column] == pytest.approx(other[column], rel=1e-6, abs=1e-6 * abs(one[column]).max())
-
-
-@pytest.mark.robustness
 def test_a_ring_is_squeezed_flat(tmp_path):
     """A plane compresses a thin ring until less than a sixth of the hole is left.
 

@@ -15,8 +15,12 @@ RUNS = {"disc-oblique": STEADY, "disc-rolling": STEADY | dict(end_time=0.02), "b
 @pytest.mark.few(1)
 @pytest.mark.parametrize("name", RUNS)
 def test_histories_are_those_of_the_scripts(tmp_path, name):
-    """If the coefficient of friction does not depend on speed, whole runs agree to 1e-9 of the
-    largest value, and energy is conserved."""
+    """If the coefficient of friction does not depend on speed, whole runs agree to 3e-7 of the
+    largest value, and energy is conserved.
+
+    Both stop where the relative work of the residual is below the tolerance. The error of a
+    displacement is then below the square root of the tolerance.
+    """
     one, other = (run.run(scene.load(name), COARSE | RUNS[name] | {"without": without}, tmp_path / without, estimate=False) for without in ("none", "kernels"))
     if not one.summary["kernels"]:
         pytest.skip("no compiler here")
@@ -24,4 +28,4 @@ def test_histories_are_those_of_the_scripts(tmp_path, name):
     for column in set(one.history) - {"newton_iterations", "balance"}:
         # A sum over bodies may be 0.
         largest = max(np.abs(values).max() for also, values in other.history.items() if also.startswith(column))
-        np.testing.assert_allclose(one.history[column], other.history[column], rtol=0, atol=1e-9 * largest, err_msg=column)
+        np.testing.assert_allclose(one.history[column], other.history[column], rtol=0, atol=COARSE["tolerance"]**0.5 * largest, err_msg=column)
