@@ -38,18 +38,18 @@ template<int dimensions, int revolves> struct Stored {
   }
 };
 
-// How an evaluation ended, as stepEnded of residual.idp.
+// How an evaluation ended, as stepStatus of residual.idp.
 enum { fine = 0, diverged = 1, inverted = 2, notANumber = 3 };
 enum { stepMean = 0, stepMiddle = 1, stepEnd = 2 };   // where in the step, as in normal.idp
 
-const int most = 10, mostPoints = 8;       // nodes of an element (quadratic tetrahedron); points
+const int mostNodes = 10, mostPoints = 8;  // of an element; 10 nodes: quadratic tetrahedron
 
 // Arrays of integrators.idp: forces() reads F0, C0 and fills the others.
 struct Deformation { double *F0, *C0, *F1, *C1, *jacobian1, *Fs, *Ss; };
 
 // rate: 1/dt, 0 if no body is damped. breaks: det F <= 0 ends the step. carries: element pressures
 // are carried from iterate to iterate, and the residual is the condensed one (volume.idp).
-struct Step { double massScale, rate;  int where;  bool breaks, carries; };
+struct Step { double massScale, rate;  int lawInstant;  bool breaks, carries; };
 
 // Arrays of volume.idp over elements as numbered there: p* = star; the pressures p as they are
 // carried into an iteration and now. Over unknowns: the increment dBase from which they were
@@ -199,7 +199,7 @@ public:
 
   void energies(const double *C, double *W) const {
     // W (nq) [J/m3]: energy of the law, of relaxation and of the volume term at C.
-    each([&](auto stored, int q) {
+    atPoints([&](auto stored, int q) {
       typedef decltype(stored) T;
       const laws::Material &m = material(q);
       const Symmetric c = symmetric<T>(C, q);
@@ -220,7 +220,7 @@ public:
   }
   void damp(const double *C0, const double *C1, double dt) {
     // Advances `damping` over a step from C0 to C1.
-    each([&](auto stored, int q) {
+    atPoints([&](auto stored, int q) {
       typedef decltype(stored) T;
       Symmetric A = symmetric<T>(damping, q);
       damping[T::C * nq + q] +=
@@ -229,26 +229,26 @@ public:
     });
   }
   void lawStresses(const double *C, double *S) const {   // (4) at C
-    each([&](auto stored, int q) {
+    atPoints([&](auto stored, int q) {
       typedef decltype(stored) T;
       put<T>(material(q).law->stress(material(q), symmetric<T>(C, q)), q, S);
     });
   }
   void corrections(const double *M, const double *H, double *e) const {   // gradientCorrection()
-    each([&](auto stored, int q) {
+    atPoints([&](auto stored, int q) {
       typedef decltype(stored) T;
       e[q] = material(q).law->gradientCorrection(material(q), symmetric<T>(M, q),
                                                  symmetric<T>(H, q));
     });
   }
   void ellipticities(const double *C, double *e) const {
-    each([&](auto stored, int q) {
+    atPoints([&](auto stored, int q) {
       e[q] = material(q).law->ellipticity(material(q), symmetric<decltype(stored)>(C, q), D == 3);
     });
   }
   void smallestStretches(const double *C, double *stretch) const {
     // Smallest principal stretch; in plane strain the smaller one in the plane.
-    each([&](auto stored, int q) {
+    atPoints([&](auto stored, int q) {
       const laws::Vector<3> L = laws::principal(symmetric<decltype(stored)>(C, q), D == 3);
       stretch[q] = std::sqrt(std::max(0., D == 3 ? L[2] : H == 1 ? std::min(L[1], L[2]) : L[1]));
     });
@@ -258,7 +258,7 @@ public:
     std::vector<double> p(nq, 0.);
     for (size_t g = 0; g < cell.size(); g++)
       for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++) p[q] = pressure[cell[g]];
-    each([&](auto stored, int q) {
+    atPoints([&](auto stored, int q) {
       Symmetric s;
       mises[q] = laws::cauchy(material(q), whole<decltype(stored)>(F, q), p[q], s);
       for (int k = 0; k < 6; k++) sigma[k * nq + q] = s[k];
@@ -288,7 +288,7 @@ private:
     if (D == 3) f(Stored<3, 0>()); else if (H == 1) f(Stored<2, 1>()); else f(Stored<2, 0>());
   }
   // Calls f(stored, q) for every point q.
-  template<class Function> void each(Function f) const {
+  template<class Function> void atPoints(Function f) const {
     dispatch([&](auto stored) { for (int q = 0; q < nq; q++) f(stored, q); });
   }
 
@@ -363,33 +363,33 @@ private:
     // At the points of element g: F1 = F0 + G d, Fs at the middle or end of the step, det F1.
     const int n = nodesOf(g), D = T::D;
     const double *N = &shape[firstShape[g]];
-    double its[most * D];
+    double increments[mostNodes * D];
     for (int a = 0; a < n; a++)
-      for (int i = 0; i < D; i++) its[a * D + i] = nodal[node[firstNode[g] + a] * D + i];
+      for (int i = 0; i < D; i++) increments[a * D + i] = nodal[node[firstNode[g] + a] * D + i];
     for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++) {
       double dF[T::F] = {};
       for (int a = 0; a < n; a++, N += T::derivatives) {
         for (int i = 0; i < D; i++)
-          for (int J = 0; J < D; J++) dF[i * D + J] += N[J] * its[a * D + i];
-        if (T::H) dF[D * D] += N[D] * its[a * D];
+          for (int J = 0; J < D; J++) dF[i * D + J] += N[J] * increments[a * D + i];
+        if (T::H) dF[D * D] += N[D] * increments[a * D];
       }
       for (int k = 0; k < T::F; k++) {
         const double before = at.F0[k * nq + q], after = before + dF[k];
         at.F1[k * nq + q] = after;
-        at.Fs[k * nq + q] = step.where == stepEnd ? after : before + 0.5 * dF[k];
+        at.Fs[k * nq + q] = step.lawInstant == stepEnd ? after : before + 0.5 * dF[k];
       }
       at.jacobian1[q] = whole<T>(at.F1, q).determinant();
     }
   }
 
   template<class T> void pulled(int q, int n, const double *N, const Tensor &F,
-                                const Symmetric &S, double *its) const {
-    // its += G^T (w F S): forces on the n nodes, with shapes N, of the stress S at point q.
+                                const Symmetric &S, double *force) const {
+    // force += G^T (w F S): forces on the n nodes, with shapes N, of the stress S at point q.
     const Tensor P = weight[q] * F * laws::full(S);   // (3): P = F S
     for (int a = 0; a < n; a++, N += T::derivatives) {
       for (int i = 0; i < T::D; i++)
-        for (int J = 0; J < T::D; J++) its[a * T::D + i] += N[J] * P(i, J);
-      if (T::H) its[a * T::D] += N[T::D] * P(2, 2);
+        for (int J = 0; J < T::D; J++) force[a * T::D + i] += N[J] * P(i, J);
+      if (T::H) force[a * T::D] += N[T::D] * P(2, 2);
     }
   }
 
@@ -397,14 +397,14 @@ private:
     // At the points of element g: C1, Ss; and the forces G^T (w Fs Ss) of the element.
     const int n = nodesOf(g);
     const double *N = &shape[firstShape[g]];
-    double *its = &own[size_t(firstNode[g]) * D];
+    double *force = &own[size_t(firstNode[g]) * D];
     Pressed pressed;
     if (!cell.empty()) press<T>(g, step, at, pressed);
     for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++, N += n * T::derivatives) {
       const laws::Material &m = material(q);
       const Symmetric C0 = symmetric<T>(at.C0, q),
-        C1 = laws::rightCauchyGreen(whole<T>(step.where == stepMiddle ? at.Fs : at.F1, q));
-      Symmetric S = step.where == stepMean ? m.law->algorithmicStress(m, C0, C1)
+        C1 = laws::rightCauchyGreen(whole<T>(step.lawInstant == stepMiddle ? at.Fs : at.F1, q));
+      Symmetric S = step.lawInstant == stepMean ? m.law->algorithmicStress(m, C0, C1)
         : m.law->stress(m, C1);
       if (step.rate > 0) {
         const Symmetric A = m.relaxing > 0 ? symmetric<T>(damping, q) : laws::identity;
@@ -413,25 +413,26 @@ private:
       if (!cell.empty()) S += pressed.p * pressed.T[q - firstPoint[g]];
       put<T>(C1, q, at.C1);
       put<T>(S, q, at.Ss);
-      pulled<T>(q, n, N, whole<T>(at.Fs, q), S, its);
+      pulled<T>(q, n, N, whole<T>(at.Fs, q), S, force);
     }
-    if (step.carries) miss<T>(g, at, pressed, its);
+    if (step.carries) miss<T>(g, at, pressed, force);
   }
 
   // Volume term of an element (volume.idp): pressure p, p* - p, and T = 2 dj/dC at its points.
-  struct Pressed { double p, left;  Symmetric T[mostPoints]; };
-  template<class T> void press(size_t g, const Step &step, const Deformation &at, Pressed &its) {
+  struct Pressed { double p, rest;  Symmetric T[mostPoints]; };
+  template<class T> void press(size_t g, const Step &step, const Deformation &at,
+                               Pressed &pressed) {
     // p* from the mean volume measures theta0, theta1 at both ends of the step; p is p*, or, if it
     // is carried, carried + slope g0.(d - dBase). Incompressible: p* = p + kappa/2 (theta1 - 1).
     const laws::Material &m = material(firstPoint[g]);
     double theta0 = 0, theta1 = 0;
     for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++) {
       const Symmetric C1 =
-        laws::rightCauchyGreen(whole<T>(step.where == stepMiddle ? at.Fs : at.F1, q));
+        laws::rightCauchyGreen(whole<T>(step.lawInstant == stepMiddle ? at.Fs : at.F1, q));
       const double w = weight[q] / elementWeight[g], j = laws::volume(m, C1);
-      Symmetric &to = its.T[q - firstPoint[g]];
+      Symmetric &to = pressed.T[q - firstPoint[g]];
       theta1 += w * j;
-      if (step.where == stepMean) {
+      if (step.lawInstant == stepMean) {
         const Symmetric C0 = symmetric<T>(at.C0, q);
         const double j0 = laws::volume(m, C0);
         to = laws::volumeDirection(m, C0, C1, j0 + j);
@@ -439,17 +440,17 @@ private:
       }
       else to = laws::volumeDirection(m, C1, j);
     }
-    double star = step.where == stepMean ? laws::pressure(m, theta0, theta1)
+    double star = step.lawInstant == stepMean ? laws::pressure(m, theta0, theta1)
       : laws::pressure(m, theta1);
-    its.p = star;
+    pressed.p = star;
     if (step.carries) {
-      its.p = volume.carried[cell[g]];
-      if (slopeKnown) its.p += slope[g] * alongG0(g);
+      pressed.p = volume.carried[cell[g]];
+      if (slopeKnown) pressed.p += slope[g] * alongG0(g);
     }
-    if (m.held) star = its.p + m.bulk / 2 * (theta1 - 1);
-    its.left = star - its.p;
+    if (m.incompressible) star = pressed.p + m.bulk / 2 * (theta1 - 1);
+    pressed.rest = star - pressed.p;
     volume.star[cell[g]] = star;
-    volume.now[cell[g]] = its.p;
+    volume.now[cell[g]] = pressed.p;
   }
   double alongG0(size_t g) const {   // g0.(d - dBase) of element g
     double sum = 0;
@@ -459,17 +460,17 @@ private:
   }
 
   template<class T> void miss(size_t g, const Deformation &at, const Pressed &pressed,
-                              double *its) {
-    // Forces of p* - p: its += g0 (p* - p), if g0 is known, else g (p* - p). The lag of the element
-    // is the remainder, (g - g0)(p* - p).
+                              double *force) {
+    // Forces of p* - p: force += g0 (p* - p), if g0 is known, else g (p* - p). The lag of the
+    // element is the remainder, (g - g0)(p* - p).
     const int n = nodesOf(g);
     const double *N = &shape[firstShape[g]];
-    double all[most * T::D] = {};
+    double all[mostNodes * T::D] = {};
     for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++, N += n * T::derivatives)
-      pulled<T>(q, n, N, whole<T>(at.Fs, q), pressed.left * pressed.T[q - firstPoint[g]], all);
+      pulled<T>(q, n, N, whole<T>(at.Fs, q), pressed.rest * pressed.T[q - firstPoint[g]], all);
     for (int i = 0; i < n * D; i++) {
-      const double along = slopeKnown ? pressed.left * g0[size_t(firstNode[g]) * D + i] : all[i];
-      its[i] += along;
+      const double along = slopeKnown ? pressed.rest * g0[size_t(firstNode[g]) * D + i] : all[i];
+      force[i] += along;
       ownLagging[size_t(firstNode[g]) * D + i] = all[i] - along;
     }
   }
@@ -531,14 +532,14 @@ private:
     if (n == 0) return;
     const laws::Material &m = material(firstPoint[g]);
     const double *N = &shape[firstShape[g]];
-    double *its = &g0[size_t(firstNode[g]) * D], theta = 0;
-    std::fill(its, its + n * D, 0.);
+    double *ownG0 = &g0[size_t(firstNode[g]) * D], theta = 0;
+    std::fill(ownG0, ownG0 + n * D, 0.);
     for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++) {
       const Tensor f = whole<T>(F, q);
       const Symmetric C = laws::rightCauchyGreen(f);
       const double j = laws::volume(m, C);
       theta += weight[q] * j / elementWeight[g];
-      pulled<T>(q, n, N, f, laws::volumeDirection(m, C, j), its);
+      pulled<T>(q, n, N, f, laws::volumeDirection(m, C, j), ownG0);
       N += n * T::derivatives;
     }
     slope[g] = scale * laws::pressureSlope(m, theta) / elementWeight[g];
@@ -547,7 +548,8 @@ private:
       for (int b = 0; b <= a; b++, to++)
         for (int i = 0; i < D; i++)
           for (int k = 0; k < D; k++)
-            block[size_t(*to) * D * D + i * D + k] += slope[g] * its[a * D + i] * its[b * D + k];
+            block[size_t(*to) * D * D + i * D + k] +=
+              slope[g] * ownG0[a * D + i] * ownG0[b * D + k];
   }
 };
 

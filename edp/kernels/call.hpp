@@ -36,11 +36,11 @@ template <class T, class R> std::vector<T> copied(const KN<R> &array) {
 // reallocate the numbers of an array, so the array is kept and not a pointer to its numbers.
 template <class R> struct Kept {
   typedef Eigen::Matrix<R, Eigen::Dynamic, 1> Numbers;
-  KN<R> *of = nullptr;
-  operator R *() const { return of ? static_cast<R *>(*of) : nullptr; }
-  R &operator[](long i) const { return (*of)[i]; }
-  long size() const { return of->N(); }
-  Eigen::Map<Numbers> numbers() const { return {static_cast<R *>(*of), of->N()}; }
+  KN<R> *array = nullptr;
+  operator R *() const { return array ? static_cast<R *>(*array) : nullptr; }
+  R &operator[](long i) const { return (*array)[i]; }
+  long size() const { return array->N(); }
+  Eigen::Map<Numbers> numbers() const { return {static_cast<R *>(*array), array->N()}; }
 };
 
 // Writes values to `numbers`, or reads them from there in the same order.
@@ -49,22 +49,25 @@ struct Archive {
   size_t at = 0;
   bool reads = false;
   double next() { return numbers[at++]; }
-  template <class R> void one(R &x) { if (reads) x = R(next()); else numbers.push_back(double(x)); }
-  void operator()(int &x) { one(x); }
-  void operator()(long &x) { one(x); }
-  void operator()(double &x) { one(x); }
+  template <class R> void number(R &x) {
+    if (reads) x = R(next());
+    else numbers.push_back(double(x));
+  }
+  void operator()(int &x) { number(x); }
+  void operator()(long &x) { number(x); }
+  void operator()(double &x) { number(x); }
   void operator()(std::vector<int> &v) {
     long n = v.size();
-    one(n);
+    number(n);
     v.resize(n);
-    for (int &x : v) one(x);
+    for (int &x : v) number(x);
   }
   template <int columns> void operator()(Eigen::Matrix<double, Eigen::Dynamic, columns> &A) {
     long rows = A.rows(), size = A.cols();
-    one(rows);
-    one(size);
+    number(rows);
+    number(size);
     A.resize(rows, size);
-    for (long k = 0; k < A.size(); k++) one(A.data()[k]);
+    for (long k = 0; k < A.size(); k++) number(A.data()[k]);
   }
 };
 
@@ -81,17 +84,17 @@ struct Callback {
 
 // Converts a FreeFEM argument to a parameter of type P. FreeFEM passes a value as itself and a
 // reference as a pointer.
-template <class P> struct Given {
+template <class P> struct Argument {
   typedef P Type;
-  static P of(Expression e, Stack s) { return GetAny<Type>((*e)(s)); }
+  static P value(Expression e, Stack s) { return GetAny<Type>((*e)(s)); }
 };
-template <class P> struct Given<P &> {
+template <class P> struct Argument<P &> {
   typedef P *Type;
-  static P &of(Expression e, Stack s) { return *GetAny<Type>((*e)(s)); }
+  static P &value(Expression e, Stack s) { return *GetAny<Type>((*e)(s)); }
 };
-template <> struct Given<Callback> {
+template <> struct Argument<Callback> {
   typedef long Type;
-  static Callback of(Expression e, Stack s) { return {e, s}; }
+  static Callback value(Expression e, Stack s) { return {e, s}; }
 };
 
 // One call in a script: evaluates the argument expressions, then f.
@@ -101,11 +104,11 @@ template <class F, class... A> struct Called : E_F0mps {
   explicit Called(F g) : f(g) {}
   template <size_t... i>
   long call(long (*)(A...), Stack s, std::index_sequence<i...>) const {
-    return f(Given<A>::of(argument[i], s)...);
+    return f(Argument<A>::value(argument[i], s)...);
   }
   template <size_t... i>
   long call(void (*)(A...), Stack s, std::index_sequence<i...>) const {
-    f(Given<A>::of(argument[i], s)...);
+    f(Argument<A>::value(argument[i], s)...);
     return 0;
   }
   AnyType operator()(Stack s) const {
@@ -130,7 +133,7 @@ template <class R, class... A> struct Call : OneOperator {
   typedef R (*F)(A...);
   F f;
   explicit Call(F g)
-    : OneOperator(atype<long>(), Types{atype<typename Given<A>::Type>()...}), f(g) {}
+    : OneOperator(atype<long>(), Types{atype<typename Argument<A>::Type>()...}), f(g) {}
   E_F0 *code(const basicAC_F0 &arguments) const {
     auto *called = new Called<F, A...>(f);
     for (size_t i = 0; i < sizeof...(A); i++) called->argument[i] = t[i]->CastTo(arguments[i]);

@@ -1,6 +1,6 @@
 // contact-law.hpp: forces on one contact point in a step and their derivatives: the normal force
 // (10) and, with friction, the tangential force (11)-(13). Scripted in core/contact/normal.idp,
-// friction.idp and tractions.idp, which define the symbols. Exports Law, Point and Forces.
+// friction.idp and candidate-forces.idp, which define the symbols. Exports Law, Point and Forces.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,7 @@ struct Forces { double t[3], slope[3][3]; };    // (t_N, -t_T) and d/d(penetrati
 struct Law {
   double exponent = 1, slipVelocity = 1, bridge = 0.01, dt = 1;
   bool jumps = false;
-  int slips = 0, where = stepMean, regularization = linear;
+  int slips = 0, lawInstant = stepMean, regularization = linear;
 
   void normal(double vN0, double vN1, double k, double &t, double &stiff) const {
     // (10): t = k v_N^m where v_N > 0, and stiff = dt/dvN1, for penetrations vN0, vN1 at the start
@@ -28,7 +28,7 @@ struct Law {
     // normal.idp), by a series where the penetration hardly changes.
     const double m = exponent, middle = (vN0 + vN1) / 2;
     t = stiff = 0;
-    if (where == stepMean) {
+    if (lawInstant == stepMean) {
       if (!(vN0 > 0 || vN1 > 0)) return;
       const bool stays = std::min(vN0, vN1) > 0, moves = std::abs(vN1 - vN0) > 0.02 * (vN0 + vN1);
       const double turn = (vN1 - vN0) / (vN0 + vN1), turn2 = turn * turn;
@@ -43,11 +43,11 @@ struct Law {
       else if (!stays || moves) stiff = ((vN1 > 0 ? k * std::pow(vN1, m) : 0) - t) / (vN1 - vN0);
       else stiff = k * m / 2 * std::pow(middle, m - 1) * (1 + (m - 1) / 3 * turn);
     }
-    if (where == stepMiddle && middle > 0) {
+    if (lawInstant == stepMiddle && middle > 0) {
       t = k * std::pow(middle, m);
       stiff = k * m / 2 * std::pow(middle, m - 1);
     }
-    if (where == stepEnd && vN1 > 0) {
+    if (lawInstant == stepEnd && vN1 > 0) {
       t = k * std::pow(vN1, m);   // (10): t_N = k v_N^m where v_N > 0
       stiff = k * m * std::pow(vN1, m - 1);
     }
@@ -116,10 +116,10 @@ struct Law {
     if (slips == 0) return;
     double v[2], muPhi[2], slope[2][2];
     for (int i = 0; i < slips; i++) v[i] = x[1 + i] / dt;
-    const double *where = linearisedAt ? linearisedAt : v;
-    muPhiVector(where, a, muPhi, slope);
+    const double *lawInstant = linearisedAt ? linearisedAt : v;
+    muPhiVector(lawInstant, a, muPhi, slope);
     for (int i = 0; i < slips; i++) for (int j = 0; j < slips && linearisedAt; j++)
-      muPhi[i] += slope[i][j] * (v[j] - where[j]);
+      muPhi[i] += slope[i][j] * (v[j] - lawInstant[j]);
     for (int i = 0; i < slips; i++) {
       f.t[1 + i] = muPhi[i] * f.t[0];            // (12): -t_T = mu_f phi(v_T) abs(t_N)
       f.slope[1 + i][0] = muPhi[i] * f.slope[0][0];

@@ -52,18 +52,18 @@ bool invert(int n, Numbers &A,
 inline bool isDiagonal(const Vector &A, int n) { return n > 1 && A.size() == n; }
 inline void symmetric(const Vector &A, const Vector &x, Vector &y) {
   // y = A x with a symmetric A, full or diagonal.
-  const double one = 1, zero = 0;
+  const double alpha = 1, beta = 0;
   const int n = x.size(), step = 1;
   if (isDiagonal(A, n)) { y = A.cwiseProduct(x);  return; }
   y.resize(n);
-  if (n > 0) dsymv_("L", &n, &one, A.data(), &n, x.data(), &step, &zero, y.data(), &step);
+  if (n > 0) dsymv_("L", &n, &alpha, A.data(), &n, x.data(), &step, &beta, y.data(), &step);
 }
 inline void symmetric(const Eigen::VectorXf &A, const Vector &x, Vector &y) {
   // The same in single precision.
-  const float one = 1, zero = 0;
+  const float alpha = 1, beta = 0;
   const int n = x.size(), step = 1;
   Eigen::VectorXf from = x.cast<float>(), to(n);
-  if (n > 0) ssymv_("L", &n, &one, A.data(), &n, from.data(), &step, &zero, to.data(), &step);
+  if (n > 0) ssymv_("L", &n, &alpha, A.data(), &n, from.data(), &step, &beta, to.data(), &step);
   y = to.cast<double>();
 }
 
@@ -311,13 +311,13 @@ class Problem {
     // matrix near convergence and for the start of the next solve; after `agreeingFrom` matrices,
     // and without friction, it is plain Newton with a line search. inversesOfStep counts the
     // matrices of the step with friction. Returns the number of iterations, -1 on failure.
-    const int rubs = law.slips > 0;
+    const int hasFriction = law.slips > 0;
     newton.made = newton.fits(B);
     place();
     evaluate(nullptr);
     double biggest = 0, roundOff = 0, errorBefore = newton.made ? 1e300 : 0;
     roundOff = largest(x);
-    const double close = 1e-13 + (rubs ? 1e-15 * roundOff / (law.dt * law.slipVelocity) : 0);
+    const double close = 1e-13 + (hasFriction ? 1e-15 * roundOff / (law.dt * law.slipVelocity) : 0);
     sigma.resize(0);
     inverses = 0;
     for (int it = 0; inverses < 60 && inversesOfStep <= mostInverses; it++) {
@@ -326,10 +326,10 @@ class Problem {
       bool done = error <= close * scale || scale == 0 || unbalance.norm() <= enough;
       if (!done) {
         if (!(error <= 1e6 * biggest)) return -1;   // divergence or nan
-        const bool searches = !rubs || inverses >= agreeingFrom;
-        if (!rubs || error > (it == 0 ? 0.1 : 1e-3) * scale || error > 0.3 * errorBefore) {
+        const bool searches = !hasFriction || inverses >= agreeingFrom;
+        if (!hasFriction || error > (it == 0 ? 0.1 : 1e-3) * scale || error > 0.3 * errorBefore) {
           inverses++;
-          if (rubs) inversesOfStep++;
+          if (hasFriction) inversesOfStep++;
           if (!searches) linearise();
           stiffen();
           newton.make(B, slopes, S);
@@ -339,7 +339,7 @@ class Problem {
         if (!advance(searches)) { if (error <= 1e-9 * scale) done = true;  else return -1; }
       }
       if (done) {
-        if (takeSides() == 0) { B.push(tau, force);  return it; }
+        if (updateStatuses() == 0) { B.push(tau, force);  return it; }
         errorBefore = 0;
       }
     }
@@ -459,7 +459,7 @@ class Problem {
     return true;
   }
 
-  int takeSides() {
+  int updateStatuses() {
     // Changes the stick or slip status of points whose velocity contradicts it. Returns the number
     // of changes. A point that exceeds mostStatusChanges keeps slipping.
     const int k = B.kinds;

@@ -1,4 +1,4 @@
-// contact.hpp: contact in a step: gaps and tractions of all candidates, the active set (the
+// contact.hpp: contact in a step: gaps and forces of all candidates, the active set (the
 // candidates near contact and the unknowns on which they act) with its compliance C = (A^-1)_uu,
 // and the contact problem on it (contact-solve.hpp). Arrays over ns candidates are stacked by
 // component, component c of candidate s at c ns + s; kinds = 1 + slips: gap, tangential slip.
@@ -14,41 +14,41 @@ namespace contact {
 // penetrations q0 at the start of the step, gapSlipStart (gap and slip for the increment 0) and the
 // geometric contact stiffness: terms of the given stiffness, whose rows are triplets.
 struct Arrays {
-  Kept<double> q0, q1, gapSlip, gapSlipStart, tractions, force, k, muStatic, muDynamic;
+  Kept<double> q0, q1, gapSlip, gapSlipStart, candidateForces, force, k, muStatic, muDynamic;
   Kept<long> sticks, statusChanges, row, column, termOf, termUnknown;
   Kept<double> value, termValue, termStiffness;
 };
 
 class Contact {
  public:
-  Arrays its;
+  Arrays script;
   Problem problem;
   Law &law = problem.law;
   bool jacobianFixed = false;                    // B never changes
   Vector diagonal;                               // explicit steps: A^-1 is diagonal, else empty
   Indices candidates, unknowns, expected;        // of the active set; `expected`: ordered last in A
-  Vector last;                                   // tractions of the last solve, all rows
+  Vector last;                                   // candidateForces of the last solve
   long inversesOfStep = 0, mostInverses = 1000000000;
 
   Contact(Factor &factorOfA, int &numberOfUnknowns) : factor(factorOfA), ndof(numberOfUnknowns) {}
 
-  long ns() const { return its.q0.size(); }
+  long ns() const { return script.q0.size(); }
   int kinds() const { return 1 + law.slips; }
 
   void takeJacobian() {
     // Sorts the triplets of B by rows; row r has the entries first[r] to first[r + 1] - 1.
-    const long rows = kinds() * ns(), entries = its.row.size();
+    const long rows = kinds() * ns(), entries = script.row.size();
     Indices next;
     first.assign(rows + 1, 0);
     column.resize(entries);
     value.resize(entries);
-    for (long e = 0; e < entries; e++) first[its.row[e] + 1]++;
+    for (long e = 0; e < entries; e++) first[script.row[e] + 1]++;
     for (long r = 0; r < rows; r++) first[r + 1] += first[r];
     next = first;
     for (long e = 0; e < entries; e++) {
-      const int at = next[its.row[e]]++;
-      column[at] = int(its.column[e]);
-      value[at] = its.value[e];
+      const int at = next[script.row[e]]++;
+      column[at] = int(script.column[e]);
+      value[at] = script.value[e];
     }
     rowsChanged = true;
     if (last.size() != rows) last = Vector::Zero(rows);
@@ -60,30 +60,30 @@ class Contact {
       for (int e = first[r]; e < first[r + 1]; e++) moved[r] += value[e] * increment[column[e]];
     return moved;
   }
-  Vector gapSlip(const Vector &d) const { return move(d) + its.gapSlipStart.numbers(); }
+  Vector gapSlip(const Vector &d) const { return move(d) + script.gapSlipStart.numbers(); }
 
   void evaluate(const Vector &d) {
-    // gapSlip, q1, tractions (10)-(13) and force = B^T tractions (15) at the increment d.
-    its.gapSlip.numbers() = gapSlip(d);
-    its.q1.numbers() = its.gapSlip.numbers().head(ns());
-    its.tractions.numbers().setZero();
-    its.force.numbers().setZero();
-    for (long s = 0; s < ns(); s++) if (its.q0[s] > 0 || its.q1[s] > 0) {
+    // gapSlip, q1, candidateForces t (10)-(13) and force = B^T t (15) at the increment d.
+    script.gapSlip.numbers() = gapSlip(d);
+    script.q1.numbers() = script.gapSlip.numbers().head(ns());
+    script.candidateForces.numbers().setZero();
+    script.force.numbers().setZero();
+    for (long s = 0; s < ns(); s++) if (script.q0[s] > 0 || script.q1[s] > 0) {
       double x[3];
       Forces f;
-      for (int c = 0; c < kinds(); c++) x[c] = its.gapSlip[c * ns() + s];
+      for (int c = 0; c < kinds(); c++) x[c] = script.gapSlip[c * ns() + s];
       law.at(point(s), x, nullptr, f);
       for (int c = 0; c < kinds(); c++) {
         const long r = c * ns() + s;
-        its.tractions[r] = f.t[c];
+        script.candidateForces[r] = f.t[c];
         for (int e = first[r]; e < first[r + 1]; e++)
-          its.force[column[e]] += value[e] * f.t[c];   // (15): sum over points, or pairs
+          script.force[column[e]] += value[e] * f.t[c];   // (15): sum over points, or pairs
       }
     }
   }
   bool touches() const {
     // Whether a candidate penetrates at the start or at the end of the step.
-    return ns() > 0 && std::max(its.q0.numbers().maxCoeff(), its.q1.numbers().maxCoeff()) > 0;
+    return ns() > 0 && std::max(script.q0.numbers().maxCoeff(), script.q1.numbers().maxCoeff()) > 0;
   }
 
   void empty() {
@@ -95,7 +95,7 @@ class Contact {
   void reset() {
     // Empties the active set and C, for a new A. `expected`: the unknowns of the active candidates
     // or, if rows change, all that were in the active set.
-    known = 0;
+    computed = 0;
     if (jacobianFixed || diagonal.size() > 0) {
       index.assign(ndof, -1);
       unknowns.clear();
@@ -122,7 +122,7 @@ class Contact {
       candidates.push_back(int(s));
     }
     takeUnknowns();
-    if (known != unknowns.size()) extendCompliance();
+    if (computed != unknowns.size()) extendCompliance();
     fillRows();
   }
   bool penetrates(const Vector &q) const {
@@ -132,9 +132,10 @@ class Contact {
   }
 
   Vector ofActive(const Vector &rows) const {    // the active ones of values over all rows
-    Vector its(kinds() * candidates.size());
-    for (int c = 0, i = 0; c < kinds(); c++) for (int s : candidates) its[i++] = rows[c * ns() + s];
-    return its;
+    Vector values(kinds() * candidates.size());
+    int i = 0;
+    for (int c = 0; c < kinds(); c++) for (int s : candidates) values[i++] = rows[c * ns() + s];
+    return values;
   }
   Vector onUnknowns(const Vector &values) const {   // values of the active unknowns, else 0
     Vector all = Vector::Zero(ndof);
@@ -164,7 +165,7 @@ class Contact {
     p.tau = Vector::Zero(p.start.size());
     for (int i = 0; i < n; i++) {
       p.point.push_back(point(candidates[i]));
-      p.turned.push_back(int(its.statusChanges[candidates[i]]));
+      p.turned.push_back(int(script.statusChanges[candidates[i]]));
       for (int c = 0; c < kinds; c++) {
         p.start[kinds * i + c] = start[c * ns() + candidates[i]];
         p.tau[kinds * i + c] = tau[c * n + i];
@@ -175,21 +176,21 @@ class Contact {
     for (int i = 0; i < n; i++) {
       for (int c = 0; c < kinds; c++) tau[c * n + i] = p.tau[kinds * i + c];
       if (law.slips == 0) continue;
-      its.sticks[candidates[i]] = p.point[i].sticks;
-      its.statusChanges[candidates[i]] = p.turned[i];
+      script.sticks[candidates[i]] = p.point[i].sticks;
+      script.statusChanges[candidates[i]] = p.turned[i];
     }
     force = p.force;
     return iterations;
   }
   void chooseStatus(const Vector &motion) {
     // Status of candidates without load, from their tangential velocities under a motion [m/s], as
-    // chooseSides() of tractions.idp; no status has changed yet.
+    // chooseStatuses() of candidate-forces.idp; no status has changed yet.
     const Vector moved = move(motion);
-    its.statusChanges.numbers().setZero();
+    script.statusChanges.numbers().setZero();
     for (long s = 0; s < ns(); s++) if (!(last[s] > 0)) {
       const double speed = law.slips == 1 ? std::abs(moved[ns() + s])
         : std::hypot(moved[ns() + s], moved[2 * ns() + s]);
-      its.sticks[s] = speed < law.slipVelocity;
+      script.sticks[s] = speed < law.slipVelocity;
     }
   }
   void remember(const Vector &tau) {             // `last` of the active rows
@@ -206,7 +207,7 @@ class Contact {
     for (int s : candidates) active[s] = 1;
     index.assign(ndof, -1);
     for (size_t j = 0; j < unknowns.size(); j++) index[unknowns[j]] = int(j);
-    known = 0;
+    computed = 0;
     extendCompliance();
     if (jacobianFixed && !candidates.empty()) fillRows();
   }
@@ -219,12 +220,13 @@ class Contact {
   bool rowsChanged = true;                       // since the active rows were filled
   std::vector<char> active;                      // (ns) 1: in the active set
   Indices index;                                 // (ndof) position in `unknowns`, or -1
-  size_t known = 0;                              // number of unknowns in C
+  size_t computed = 0;                           // number of unknowns in C
   long setsMade = 0, solvedSet = -1;             // active sets so far; the last one solved
   Vector C;                                      // full, or the diagonal
 
   Point point(long s) const {
-    return {its.q0[s], its.k[s], its.muStatic[s], its.muDynamic[s], its.sticks[s] == 1};
+    return {script.q0[s], script.k[s], script.muStatic[s], script.muDynamic[s],
+            script.sticks[s] == 1};
   }
   void takeUnknowns() {
     // Adds the unknowns on which the active rows and the geometric terms act.
@@ -236,12 +238,12 @@ class Contact {
     };
     for (int s : candidates) for (long r = s; r < kinds() * ns(); r += ns())
       for (int e = first[r]; e < first[r + 1]; e++) take(column[e], value[e]);
-    for (long e = 0; e < its.termUnknown.size(); e++)
-      take(int(its.termUnknown[e]), its.termValue[e]);
+    for (long e = 0; e < script.termUnknown.size(); e++)
+      take(int(script.termUnknown[e]), script.termValue[e]);
   }
   void extendCompliance() {
     // Adds the rows and columns of new unknowns to C.
-    const size_t n = unknowns.size(), before = known;
+    const size_t n = unknowns.size(), before = computed;
     if (diagonal.size() > 0) C = diagonal(unknowns);
     else {
       const Vector old = C;
@@ -250,7 +252,7 @@ class Contact {
         C.segment(j * n, before) = old.segment(j * before, before);
       if (n > 0) factor.compliance(unknowns, before, C.data());
     }
-    known = n;
+    computed = n;
     problem.comply(C);
   }
   void fillRows() {
@@ -263,13 +265,13 @@ class Contact {
           if (value[e] != 0) B.entry(index[column[e]], c, value[e]);
       B.endPoint();
     }
-    for (long t = 0; t < its.termStiffness.size(); t++) {
-      for (long e = 0; e < its.termOf.size(); e++)
-        if (its.termOf[e] == t && its.termValue[e] != 0)
-          B.entry(index[its.termUnknown[e]], 0, its.termValue[e]);
+    for (long t = 0; t < script.termStiffness.size(); t++) {
+      for (long e = 0; e < script.termOf.size(); e++)
+        if (script.termOf[e] == t && script.termValue[e] != 0)
+          B.entry(index[script.termUnknown[e]], 0, script.termValue[e]);
       B.endPoint();
     }
-    B.end(its.termStiffness.numbers());
+    B.end(script.termStiffness.numbers());
     rowsChanged = false;
   }
 };

@@ -23,7 +23,7 @@ class ExplicitContact {
     contact.diagonal = compliance;
     contact.beginStep();
     contact.reset();
-    if (contact.jacobianFixed) contact.update(contact.its.q0.numbers(), distance);
+    if (contact.jacobianFixed) contact.update(contact.script.q0.numbers(), distance);
   }
 
   long take(Eigen::Map<Vector> increment, const Vector &kicked, double h, const Callback &gaps) {
@@ -35,10 +35,10 @@ class ExplicitContact {
     const long ns = contact.ns();
     double change = 1;
     contact.law.dt = h;
-    contact.law.where = contact::stepMean;
-    Vector back = contact.diagonal.cwiseProduct(contact.its.force.numbers());
+    contact.law.lawInstant = contact::stepMean;
+    Vector back = contact.diagonal.cwiseProduct(contact.script.force.numbers());
     if (!contact.jacobianFixed) increment -= back;
-    contact.its.force.numbers().setZero();
+    contact.script.force.numbers().setZero();
     for (int pass = 0; pass < 10 && change > 1e-8 * increment.lpNorm<Eigen::Infinity>(); pass++) {
       const Vector before = increment;
       if (!contact.jacobianFixed) { gaps();  contact.takeJacobian(); }
@@ -48,14 +48,14 @@ class ExplicitContact {
         start += contact.move(back);
         contact.empty();
       }
-      contact.its.q1.numbers() = start.head(ns);
+      contact.script.q1.numbers() = start.head(ns);
       if (!contact.touches()) return part(increment, free, start);
       if (!solve(start, kicked, back)) return 1;
       increment = free - back;
-      contact.last = contact.its.tractions.numbers();
+      contact.last = contact.script.candidateForces.numbers();
       change = contact.jacobianFixed ? 0 : (before - increment).lpNorm<Eigen::Infinity>();
     }
-    contact.its.q1.numbers() = contact.its.gapSlip.numbers().head(ns);
+    contact.script.q1.numbers() = contact.script.gapSlip.numbers().head(ns);
     return 0;
   }
 
@@ -64,9 +64,9 @@ class ExplicitContact {
 
   long part(Eigen::Map<Vector> &increment, const Vector &free, const Vector &start) {
     increment = free;
-    contact.its.gapSlip.numbers() = start;
-    contact.its.force.numbers().setZero();
-    contact.its.tractions.numbers().setZero();
+    contact.script.gapSlip.numbers() = start;
+    contact.script.force.numbers().setZero();
+    contact.script.candidateForces.numbers().setZero();
     contact.last.setZero();
     return 0;
   }
@@ -77,9 +77,9 @@ class ExplicitContact {
     const long ns = contact.ns();
     Vector q = start.head(ns);
     bool more = true;
-    contact.its.tractions.numbers().setZero();
-    contact.its.force.numbers().setZero();
-    contact.update(contact.its.q0.numbers(), 0);
+    contact.script.candidateForces.numbers().setZero();
+    contact.script.force.numbers().setZero();
+    contact.update(contact.script.q0.numbers(), 0);
     for (int pass = 0; pass < 20 && more; pass++) {
       Vector force;
       contact.update(q, 0);
@@ -90,11 +90,11 @@ class ExplicitContact {
       if (contact.solve(start, still, 1e-8 * tau.norm(), tau, force) < 0) return false;
       const int n = int(contact.candidates.size());
       for (int i = 0; i < tau.size(); i++)
-        contact.its.tractions[contact.candidates[i % n] + i / n * ns] = tau[i];
-      contact.its.force.numbers() = contact.onUnknowns(force);
-      back = contact.diagonal.cwiseProduct(contact.its.force.numbers());
+        contact.script.candidateForces[contact.candidates[i % n] + i / n * ns] = tau[i];
+      contact.script.force.numbers() = contact.onUnknowns(force);
+      back = contact.diagonal.cwiseProduct(contact.script.force.numbers());
       const Vector end = start - contact.move(back);
-      contact.its.gapSlip.numbers() = end;
+      contact.script.gapSlip.numbers() = end;
       q = end.head(ns);
       more = contact.penetrates(q);
     }

@@ -30,21 +30,21 @@ void p##trsm_(const char *, const char *, const char *, const char *, const int 
 } \
 inline void times(int rows, int columns, int width, const Number *A, const Number *B, \
                   int height, Number *C, int heightOfC) { \
-  const Number one = 1, zero = 0; \
-  p##gemm_("N", "T", &rows, &columns, &width, &one, A, &height, B, &height, &zero, C, \
+  const Number alpha = 1, beta = 0; \
+  p##gemm_("N", "T", &rows, &columns, &width, &alpha, A, &height, B, &height, &beta, C, \
            &heightOfC); \
 } \
 inline void square(int columns, int width, const Number *A, int height, Number *C, \
                    int heightOfC) { \
-  const Number one = 1, zero = 0; \
-  p##syrk_("L", "N", &columns, &width, &one, A, &height, &zero, C, &heightOfC); \
+  const Number alpha = 1, beta = 0; \
+  p##syrk_("L", "N", &columns, &width, &alpha, A, &height, &beta, C, &heightOfC); \
 } \
 inline void cholesky(int width, Number *A, int height) { \
   int info;  p##potrf_("L", &width, A, &height, &info); \
 } \
 inline void divide(int rows, int width, const Number *L, Number *A, int height) { \
-  const Number one = 1; \
-  p##trsm_("R", "L", "T", "N", &rows, &width, &one, L, &height, A, &height); \
+  const Number alpha = 1; \
+  p##trsm_("R", "L", "T", "N", &rows, &width, &alpha, L, &height, A, &height); \
 }
 BLAS(double, d)
 BLAS(float, s)
@@ -252,8 +252,8 @@ public:
     solve(right.data(), x);
   }
 
-  void compliance(const std::vector<int> &u, size_t known, double *C) {
-    // C = (A^-1)_uu by columns; the first `known` rows and columns are already set. The leading
+  void compliance(const std::vector<int> &u, size_t computed, double *C) {
+    // C = (A^-1)_uu by columns; the first `computed` rows and columns are already set. The leading
     // unknowns of u that are all in w take S^-1; the others need solutions with A.
     const int m = int(last.size());
     const size_t k = u.size();
@@ -262,16 +262,16 @@ public:
     for (int j = 0; j < m; j++) at[last[j]] = j;
     size_t inside = 0;
     while (inside < k && at[u[inside]] >= 0) inside++;
-    if (inverse.empty() && inside > known) {
+    if (inverse.empty() && inside > computed) {
       inverse = tail;                      // dpotri turns the lower triangle of L into that of S^-1
       dpotri_("L", &m, inverse.data(), &m, &info);
     }
-    for (size_t j = known; j < inside; j++)
+    for (size_t j = computed; j < inside; j++)
       for (size_t i = 0; i <= j; i++)
         C[j * k + i] = C[i * k + j] =
           inverse[size_t(std::min(at[u[i]], at[u[j]])) * m + std::max(at[u[i]], at[u[j]])];
     if (L->is_super) mark(u);
-    for (size_t j = std::max(known, inside); j < k; j += lanes) {
+    for (size_t j = std::max(computed, inside); j < k; j += lanes) {
       const size_t end = std::min(j + lanes, k);
       columns(u, j, end);
       for (size_t b = j; b < end; b++)
@@ -420,9 +420,9 @@ private:
     increments.assign(u.size() * lanes, 0.);
     if (!L->is_super) {
       for (size_t b = from; b < to; b++) {
-        const double one = 1;
+        const double unit = 1;
         z.resize(n);
-        respond({u[b]}, &one, z.data());
+        respond({u[b]}, &unit, z.data());
         for (size_t i = 0; i < u.size(); i++) increments[i * lanes + b - from] = z[u[i]];
       }
       return;

@@ -46,22 +46,22 @@ static void addBodies() {
   add("kernelComponent", +[](long i, long dimensions, Sparse pick) {
     body.component(int(i), int(dimensions), entries(pick));
   });
-  add("kernelKnows", +[](std::string &name) { return long(laws::known(name) != nullptr); });
+  add("kernelKnows", +[](std::string &name) { return long(laws::find(name) != nullptr); });
   add("kernelLawNumber", +[](long number, std::string &name) {
     // The number of a law in lawOfPoint.
     law.resize(std::max(law.size(), size_t(number + 1)));
-    law[number] = laws::known(name);
+    law[number] = laws::find(name);
   });
   add("kernelMaterial", +[](Reals lambda, Reals mu, Reals own, Reals eta, Reals zeta,
                            Reals relaxing, Reals relaxTime, Reals bulk, Reals dampingState,
-                           Ints lawOfPoint, Ints traced, Ints held, Reals weight) {
+                           Ints lawOfPoint, Ints volumeByTrace, Ints incompressible, Reals weight) {
     // Arrays over the nq quadrature points; `own` has 8 stacked components.
     const long nq = weight.N();
     body.weight = copied<double>(weight);
     arrays.damping = {&dampingState};
     for (long q = 0; q < nq; q++) {
       laws::Material m = {law[lawOfPoint[q]], lambda[q], mu[q], {}, eta[q], zeta[q], relaxing[q],
-                          relaxTime[q], bulk[q], traced[q], held[q]};
+                          relaxTime[q], bulk[q], volumeByTrace[q], incompressible[q]};
       for (int k = 0; k < 8; k++) m.own[k] = own[k * nq + q];
       body.addPoint(m);
     }
@@ -85,9 +85,9 @@ static void addBodies() {
     body.elements(copied<int>(elementOfPoint));
   });
   add("kernelForces", +[](Reals d, Reals inertiaKnown, Reals bodyForce, double massScale,
-                         double rate, long where, bool breaks, Reals residual) {
+                         double rate, long lawInstant, bool breaks, Reals residual) {
     return long(bodyNow().forces(d, inertiaKnown, bodyForce,
-      {massScale, rate, int(where), breaks, false}, deformation(), residual));
+      {massScale, rate, int(lawInstant), breaks, false}, deformation(), residual));
   });
   add("kernelStress", +[](Reals C, Reals S) { body.lawStresses(C, S); });
   add("kernelGradientCorrection", +[](Reals M, Reals H, Reals e) { body.corrections(M, H, e); });
@@ -123,46 +123,47 @@ static void addFactor() {
 static void addStep() {
   // Kernels of contact.hpp, step.hpp and explicit.hpp. The first three are called once.
   add("kernelContactArrays", +[](bool jacobianFixed, Reals q0, Reals q1, Reals gapSlip,
-                                Reals gapSlipStart, Reals tractions, Reals force, Reals k,
+                                Reals gapSlipStart, Reals candidateForces, Reals force, Reals k,
                                 Reals muStatic, Reals muDynamic, Ints sticks, Ints statusChanges,
                                 Ints row, Ints column, Reals value, Ints termOf, Ints termUnknown,
                                 Reals termValue, Reals termStiffness) {
     touching.jacobianFixed = jacobianFixed;
-    touching.its = {{&q0}, {&q1}, {&gapSlip}, {&gapSlipStart}, {&tractions}, {&force}, {&k},
-                    {&muStatic}, {&muDynamic}, {&sticks}, {&statusChanges}, {&row}, {&column},
-                    {&termOf}, {&termUnknown}, {&value}, {&termValue}, {&termStiffness}};
+    touching.script = {
+      {&q0}, {&q1}, {&gapSlip}, {&gapSlipStart}, {&candidateForces}, {&force}, {&k}, {&muStatic},
+      {&muDynamic}, {&sticks}, {&statusChanges}, {&row}, {&column}, {&termOf}, {&termUnknown},
+      {&value}, {&termValue}, {&termStiffness}};
     touching.takeJacobian();
   });
   add("kernelStepArrays", +[](Reals d, Reals v, Reals inertiaKnown, Reals bodyForce,
                              Reals loadForce, Reals frameMotion, Reals heldResidual,
                              Reals jacobian0, Reals pressureStart, Reals pressureStar,
                              Reals seconds, Ints counts, Sparse translations) {
-    step.its = {{&d}, {&v}, {&inertiaKnown}, {&bodyForce}, {&loadForce}, {&frameMotion},
-                {&heldResidual}, {&jacobian0}, {&pressureStart}, {&pressureStar}, {&seconds},
-                {&counts}};
+    step.script = {{&d}, {&v}, {&inertiaKnown}, {&bodyForce}, {&loadForce}, {&frameMotion},
+                   {&heldResidual}, {&jacobian0}, {&pressureStart}, {&pressureStar}, {&seconds},
+                   {&counts}};
     step.translations = entries(translations);
   });
   add("kernelSettings", +[](double tolerance, double momentumShare, bool breaks,
-                           bool refusesCollapse, bool newMatrix, bool everyCandidate, bool damped,
+                           bool refusesCollapse, bool newMatrix, bool allCandidates, bool damped,
                            bool loads, long fallbackCost) {
-    step.settings = {tolerance, momentumShare, breaks, refusesCollapse, newMatrix, everyCandidate,
+    step.settings = {tolerance, momentumShare, breaks, refusesCollapse, newMatrix, allCandidates,
                      damped, loads, fallbackCost};
   });
-  add("kernelStep", +[](double dt, double massScale, double stiffnessScale, long stressAt,
-                       long where, double reach, double energyScale, double momentumScale,
+  add("kernelStep", +[](double dt, double massScale, double stiffnessScale, long stressInstant,
+                       long lawInstant, double reach, double energyScale, double momentumScale,
                        double roundOff, long mostInverses, double &lastResidual, Callback gaps,
                        Callback terms, Callback loads, Callback search) {
     bodyNow();
     touching.mostInverses = mostInverses;
-    const long ended = step.take({dt, massScale, stiffnessScale, stressAt, where, reach,
+    const long ended = step.take({dt, massScale, stiffnessScale, stressInstant, lawInstant, reach,
       energyScale, momentumScale, roundOff}, {gaps, terms, loads, search}, deformation());
     lastResidual = step.lastResidual;
     return ended;
   });
-  add("kernelContactForces", +[](Reals d, double dt, long where) {
-    // Gap and slip, tractions and contact forces at d with the present rows.
+  add("kernelContactForces", +[](Reals d, double dt, long lawInstant) {
+    // Gap and slip, forces of candidates and contact force at d with the present rows.
     touching.law.dt = dt;
-    touching.law.where = int(where);
+    touching.law.lawInstant = int(lawInstant);
     touching.takeJacobian();
     touching.evaluate(Kept<double>{&d}.numbers());
   });
@@ -180,7 +181,7 @@ static void addStep() {
     archive.reads = true;
     step.archive(archive);
     bodyNow();
-    if (step.known()) step.restore();
+    if (step.isFactorised()) step.restore();
   });
   add("kernelSubsteps", +[](Reals compliance, double distance) {
     substep.begin(Kept<double>{&compliance}.numbers(), distance);

@@ -1,7 +1,7 @@
 // laws.hpp: the constitutive laws of edp/core/law at one quadrature point: energy, stress, moduli
 // and ellipticity, with damping, relaxation and the volume term. All tensors have three dimensions;
 // in plane strain F_33 = C_33 = 1. Stresses and moduli in Pa. A new law is a struct derived from
-// Conserving and one line in known(); the scripts of the same names define the symbols.
+// Conserving and one line in find(); the scripts of the same names define the symbols.
 #pragma once
 #include <cstring>
 #include <map>
@@ -33,8 +33,8 @@ struct Material {
   double relaxing, relaxTime;              // G [Pa], tau [s] of the Maxwell branch
   double bulk;                             // kappa [Pa]: part of lambda that acts on element means
                                            // of the volume (volume.idp)
-  long traced;                             // 1: W is quadratic in C, the volume measure is tr E
-  long held;                               // 1: incompressible, J = 1 (material.idp)
+  long volumeByTrace;                      // 1: W is quadratic in C, the volume measure is tr E
+  long incompressible;                               // 1: incompressible, J = 1 (material.idp)
   bool operator==(const Material &m) const { return std::memcmp(this, &m, sizeof m) == 0; }
 };
 
@@ -59,7 +59,7 @@ template<class Own> struct Conserving : Law {
                               const Symmetric &C1) const {
     const Own &own = static_cast<const Own &>(*this);
     const Symmetric M = 0.5 * (C0 + C1), H = 0.5 * (C1 - C0), S = own.Own::stress(m, M);
-    return m.traced ? S
+    return m.volumeByTrace ? S
       : S + own.Own::gradientCorrection(m, M, H) / (2 * contract(H, H) + 1e-300) * H;
   }
 };
@@ -190,14 +190,14 @@ struct MooneyRivlin : Conserving<MooneyRivlin> {
 // Ogden with up to three terms; `own` holds an exponent a and its share s of mu for each term.
 // With c = 2 s mu/a: W = sum c/a (L1^a + L2^a + L3^a - 3) - m ln J + lambda/2 (ln J)^2, m = sum c.
 struct Ogden : Conserving<Ogden> {
-  template<class Function> static void each(const Material &m, Function f) {
+  template<class Function> static void forTerms(const Material &m, Function f) {
     // f(c, a/2) for each term
     for (int k = 0; k < 6; k += 2)
       if (m.own[k] != 0) f(2 * m.own[k + 1] * m.mu / m.own[k], m.own[k] / 2);
   }
   static Logarithm rest(const Material &m) {
     Logarithm volumeTerm = {m.lambda, 0};
-    each(m, [&](double c, double) { volumeTerm.m += c; });
+    forTerms(m, [&](double c, double) { volumeTerm.m += c; });
     return volumeTerm;
   }
   // A power of C as its interpolation polynomial in Newton's form through the eigenvalues l:
@@ -226,7 +226,7 @@ struct Ogden : Conserving<Ogden> {
   static Symmetric powers(const Material &m, const Symmetric &C) {   // sum c C^(a/2 - 1)
     const Newton newton(C);
     double f[3] = {};
-    each(m, [&](double c, double p) {
+    forTerms(m, [&](double c, double p) {
       for (int i = 0; i < 3; i++) f[i] += c * std::pow(newton.l[i], p - 1);
     });
     newton.coefficients(f, 1);
@@ -235,7 +235,7 @@ struct Ogden : Conserving<Ogden> {
   static double energy(const Material &m, const Symmetric &C) {   // sum c/a (L1^a + L2^a + L3^a)
     const Vector<3> l = principal(C, C[4] != 0 || C[5] != 0);
     double W = 0;
-    each(m, [&](double c, double p) {
+    forTerms(m, [&](double c, double p) {
       W += c / (2 * p) * (std::pow(l[0], p) + std::pow(l[1], p) + std::pow(l[2], p));
     });
     return W;
@@ -261,7 +261,7 @@ struct Ogden : Conserving<Ogden> {
     // Newton's form of both arguments.
     const Newton newton(C);
     double g[3][3] = {};
-    each(m, [&](double c, double p) {
+    forTerms(m, [&](double c, double p) {
       for (int i = 0; i < 3; i++) for (int j = 0; j < 3; j++)
         g[i][j] += c * dividedDifference(newton.l[i], newton.l[j], p - 1);
     });
@@ -282,7 +282,7 @@ struct Ogden : Conserving<Ogden> {
       const double l1 = std::max(L[(n + 1) % 3], L[(n + 2) % 3]),
         l2 = std::min(L[(n + 1) % 3], L[(n + 2) % 3]);
       double t1 = volume, t2 = volume, s1 = ratio, s2 = ratio, A = 0;
-      each(m, [&](double c, double p) {
+      forTerms(m, [&](double c, double p) {
         const double x1 = c / m.mu * std::pow(l1, p), x2 = c / m.mu * std::pow(l2, p);
         A += c / m.mu * dividedDifference(l1, l2, p);
         t1 += x1 - c / m.mu;  s1 += 2 * p * x1;
@@ -297,7 +297,7 @@ struct Ogden : Conserving<Ogden> {
   }
 };
 
-inline const Law *known(const std::string &name) {
+inline const Law *find(const std::string &name) {
   // The compiled law with this name in laws.idp; null if it is not compiled.
   static const Svk svk;
   static const NeoHookean neoHookean;
@@ -383,31 +383,31 @@ inline double damp(const Material &m, const Symmetric &C0, const Symmetric &C1, 
 // The volume measure j = J or tr E and its derivative T = 2 dj/dC (volume.idp). The second
 // volumeDirection() is T of a step, T : (C1 - C0)/2 = j1 - j0; sumJ = J0 + J1.
 inline double volume(const Material &m, const Symmetric &C) {
-  return m.traced ? trace(C - identity) / 2 : std::sqrt(determinant(C));
+  return m.volumeByTrace ? trace(C - identity) / 2 : std::sqrt(determinant(C));
 }
 inline Symmetric volumeDirection(const Material &m, const Symmetric &C, double J) {
-  return m.traced ? identity : 1 / J * cofactor(C);
+  return m.volumeByTrace ? identity : 1 / J * cofactor(C);
 }
 inline Symmetric volumeDirection(const Material &m, const Symmetric &C0, const Symmetric &C1,
                                  double sumJ) {
-  return m.traced ? identity
+  return m.volumeByTrace ? identity
     : 2 / sumJ * (cofactor(0.5 * (C0 + C1)) + 1. / 3 * cofactor(0.5 * (C1 - C0)));
 }
 
 // Functions of theta, the mean of j over an element: the energy U [J/m3], p = U' [Pa], U'' [Pa];
 // last p of a step, (U1 - U0)/(theta1 - theta0).
 inline double volumeEnergy(const Material &m, double theta) {
-  double e = m.traced ? theta : std::log(theta);
+  double e = m.volumeByTrace ? theta : std::log(theta);
   return m.bulk / 2 * e * e;
 }
 inline double pressure(const Material &m, double theta) {
-  return m.bulk * (m.traced ? theta : std::log(theta) / theta);
+  return m.bulk * (m.volumeByTrace ? theta : std::log(theta) / theta);
 }
 inline double pressureSlope(const Material &m, double theta) {
-  return m.bulk * (m.traced ? 1 : (1 - std::log(theta)) / (theta * theta));
+  return m.bulk * (m.volumeByTrace ? 1 : (1 - std::log(theta)) / (theta * theta));
 }
 inline double pressure(const Material &m, double theta0, double theta1) {
-  if (m.traced) return m.bulk * (theta0 + theta1) / 2;
+  if (m.volumeByTrace) return m.bulk * (theta0 + theta1) / 2;
   double x = (theta1 - theta0) / (theta1 + theta0);
   return m.bulk * std::log(theta0 * theta1) * (1 + (x == 0 ? 0 : atanhRest(x) / x))
     / (theta0 + theta1);
@@ -419,7 +419,8 @@ inline Moduli moduli(const Material &m, const Symmetric &C, double p, double sca
   Moduli D;
   m.law->addModuli(m, C, D);
   double l = 0, n = 0;
-  if (p != 0 && !m.traced) n = -(l = p * std::sqrt(determinant(C)));   // p J (C^-1 C^-1 - ...)
+  if (p != 0 && !m.volumeByTrace)
+    n = -(l = p * std::sqrt(determinant(C)));   // p J (C^-1 C^-1 - ...)
   if (rate > 0) {
     l += rate / scale * m.zeta;
     n += rate / scale * m.eta + relaxedShare(m, rate);

@@ -91,8 +91,8 @@ inline Vector<2> stepOnFace(const Vector<2> &r, const Vector<2> &g, const Eigen:
   const double along = g[0] - g[1] + (H(0, 0) - H(0, 1)) * (1 - r[0]) + (H(1, 1) - H(0, 1)) * r[1],
     S = clip(along / (H(0, 0) - 2 * H(0, 1) + H(1, 1)));
   const Vector<2> bottom(clip(r[0] + (H(0, 1) * r[1] - g[0]) / H(0, 0)), 0),
-    left(0, clip(r[1] + (H(0, 1) * r[0] - g[1]) / H(1, 1))), slant(1 - S, S);
-  const Vector<2> &better = model(left) < model(bottom) ? left : bottom;
+    leftSide(0, clip(r[1] + (H(0, 1) * r[0] - g[1]) / H(1, 1))), slant(1 - S, S);
+  const Vector<2> &better = model(leftSide) < model(bottom) ? leftSide : bottom;
   return model(slant) < model(better) ? slant : better;
 }
 
@@ -309,7 +309,7 @@ public:
       const Place &place = now[at[i]];
       const double slip[2] = {place.n[1], -place.n[0]};
       stiffness[i] = c[i];
-      each(at[i], place,
+      entriesOf(at[i], place,
            [&](int block, int unknowns, int component, double N, const Vector<A - 1> &) {
         const int at = 2 * blocks * i + block;
         termOf[at] = i;
@@ -551,7 +551,7 @@ private:
     place.unseen = count == 1 && std::abs(side) < std::sqrt(0.5) * distance && distance > roundOff;
   }
 
-  template<class Function> void each(int k, const Place &place, Function entry) const {
+  template<class Function> void entriesOf(int k, const Place &place, Function entry) const {
     // Calls entry(block, unknown, component, N, N_a,l) for every entry of a row of candidate k. N
     // is the factor in rho: N_a at the contact point, -N_a on the facet. N_a,l is 0 at the point.
     const Surface &s = surface;
@@ -595,7 +595,7 @@ private:
       f[0] -= kappa * s[j] * f[j + 1];
       c[0] -= kappa * s[j] * c[j + 1];
     }
-    each(k, p, [&](int block, int unknown, int i, double N, const Vector<A - 1> &turn) {
+    entriesOf(k, p, [&](int block, int unknown, int i, double N, const Vector<A - 1> &turn) {
       const long at = k * 2L * A * surface.nodes + block;
       rows.row[at] = candidate[k];
       rows.unknown[at] = unknown;
@@ -628,10 +628,10 @@ private:
   }
 };
 
-static std::unique_ptr<AnyPairs> known;    // the pairs of the scene
+static std::unique_ptr<AnyPairs> ofScene;
 
 static void addPairs() {
-  // kernelSurface makes `known` from a Surface; the others call its functions.
+  // kernelSurface makes `ofScene` from a Surface; the others call its functions.
   ::add("kernelSurface", +[](Table shape, long points, long obstacles, long bodies, Ints unknown,
                             Ints body, Reals side, Reals pointShape, Ints selfContact,
                             Reals reference) {
@@ -641,19 +641,20 @@ static void addPairs() {
                  copied<double>(pointShape), copied<int>(selfContact),
                  copied<double>(reference), Shape(nodes, shape.M())};
     for (int a = 0; a < nodes; a++) for (int j = 0; j < shape.M(); j++) s.shape(a, j) = shape(a, j);
-    if (shape.M() == termsOf(2)) known.reset(new Pairs<2>(s)); else known.reset(new Pairs<3>(s));
+    if (shape.M() == termsOf(2)) ofScene.reset(new Pairs<2>(s));
+    else ofScene.reset(new Pairs<3>(s));
   });
   ::add("kernelSearchPairs", +[](Reals x, double searchDistance) {
-    return known->search(x, searchDistance);
+    return ofScene->search(x, searchDistance);
   });
-  ::add("kernelPairStart", +[](Reals x) { return known->start(x, x.N()); });
+  ::add("kernelPairStart", +[](Reals x) { return ofScene->start(x, x.N()); });
   ::add("kernelPairGaps", +[](Reals d, Reals q0, Reals q1, Ints row, Ints unknown, Reals normal,
                              Reals slip) {
-    known->gaps(d, q0, q1, {row, unknown, normal, slip});
+    ofScene->gaps(d, q0, q1, {row, unknown, normal, slip});
   });
   ::add("kernelPairGeometricTerms", +[](Reals t, Reals free, Reals limit, Ints termOf,
                                        Ints unknown, Reals value, Reals stiffness) {
-    return known->geometricTerms(t, free, limit, termOf, unknown, value, stiffness);
+    return ofScene->geometricTerms(t, free, limit, termOf, unknown, value, stiffness);
   });
 }
 

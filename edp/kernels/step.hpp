@@ -12,7 +12,7 @@
 // Numbers that do not change in a run. `newMatrix`: factorise in every iteration.
 struct Settings {
   double tolerance = 1e-8, momentumShare = 1e-10;   // of energy (10^-8: default), of momentum
-  bool breaks = true, refusesCollapse = true, newMatrix = false, everyCandidate = false,
+  bool breaks = true, refusesCollapse = true, newMatrix = false, allCandidates = false,
     damped = false, loads = false;
   long fallbackCost = 2;                         // of a factorisation, in iterations
 };
@@ -20,11 +20,11 @@ struct Settings {
 // momentum; search distance of contact [m]; residual force [N/m; N] that is round-off.
 struct Motion {
   double dt, massScale, stiffnessScale;
-  long stressAt, where;
+  long stressInstant, lawInstant;
   double searchDistance, energyScale, momentumScale, roundOff;
 };
 // What scripts do in a step: gaps: B, q0 and gapSlipStart at d; terms: geometric contact stiffness
-// under the tractions; loads: loadForce at d; search: 1 if d moves beyond the last contact search,
+// under the forces; loads: loadForce at d; search: 1 if d moves beyond the last contact search,
 // which is then made anew.
 struct Scripts { Callback gaps, terms, loads, search; };
 
@@ -38,7 +38,7 @@ struct StepArrays {
 class ImplicitStep {
  public:
   using Vector = Eigen::VectorXd;
-  StepArrays its;
+  StepArrays script;
   Settings settings;
   bodies::Triplets translations = {};            // (ndof x 3 bodies)
   double lastResidual = 0;                       // work of the residual over energyScale
@@ -52,8 +52,8 @@ class ImplicitStep {
     begin(stepMotion, stepScripts, arrays);
     predict();
     const int failed = ended != bodies::fine ? ended : iterate();
-    its.counts[iterationsMade] = iterations;
-    its.counts[inverses] = contact.inversesOfStep;
+    script.counts[iterationsMade] = iterations;
+    script.counts[inverses] = contact.inversesOfStep;
     return failed;
   }
 
@@ -61,7 +61,7 @@ class ImplicitStep {
     massScaleOfA = -1;
     contact.reset();
   }
-  bool known() const { return massScaleOfA >= 0; }
+  bool isFactorised() const { return massScaleOfA >= 0; }
   template<class Archive> void archive(Archive &archive) {
     // The state that lasts from step to step.
     archive(massScaleOfA);  archive(motion.stiffnessScale);  archive(FofA);  archive(SofA);
@@ -108,12 +108,12 @@ class ImplicitStep {
   };
   enum { assembly, factorisation, solution, contacts };   // entries of `seconds`
   enum { iterationsMade, evaluations, factorisations, inverses };   // entries of `counts`
-  double &seconds(int phase) { return its.seconds[phase]; }
+  double &seconds(int phase) { return script.seconds[phase]; }
 
   bool inMean() const { return !body.cell.empty(); }
   Eigen::Map<const Vector> ofPoints(const double *values, long n) const { return {values, n}; }
   Eigen::Map<Vector> mapped(std::vector<double> &v) const { return {v.data(), long(v.size())}; }
-  void setD(const Vector &next) { its.d.numbers() = d = next; }
+  void setD(const Vector &next) { script.d.numbers() = d = next; }
 
   int iterate() {
     // Newton's iterations. An old matrix costs iterations, a new one about as much as `cost` of
@@ -152,23 +152,24 @@ class ImplicitStep {
     scripts = &stepScripts;
     at = arrays;
     contact.law.dt = motion.dt;
-    contact.law.where = int(motion.where);
+    contact.law.lawInstant = int(motion.lawInstant);
     contact.beginStep();
     if (!contact.jacobianFixed) contact.empty();
-    d = its.d.numbers();
-    its.counts.numbers().setZero();
+    d = script.d.numbers();
+    script.counts.numbers().setZero();
     iterations = renewed = renewedAt = 0;
     chained = false;
     if (!inMean()) missing = missingBefore = pressureMove = pressureBack = Vector();
     // a changing B is set up in every iteration: few candidates
-    searchDistance = contact.jacobianFixed ? motion.dt * its.v.numbers().lpNorm<Eigen::Infinity>()
+    searchDistance = contact.jacobianFixed
+      ? motion.dt * script.v.numbers().lpNorm<Eigen::Infinity>()
       : motion.searchDistance / 5;
-    if (settings.everyCandidate) searchDistance = 1e30;
+    if (settings.allCandidates) searchDistance = 1e30;
   }
 
   void predict() {
     // Evaluates at the prediction, which is halved, up to six times, while it inverts elements.
-    const Eigen::Map<const Vector> start(its.pressureStart, its.pressureStart.size());
+    const Eigen::Map<const Vector> start(script.pressureStart, script.pressureStart.size());
     returnTo(d, start);
     for (int cut = 0; ended != bodies::fine && cut < 6; cut++) {
       for (int j = 0; j < d.size(); j++) if (body.free[j] != 0) d[j] /= 2;
@@ -193,18 +194,18 @@ class ImplicitStep {
   void evaluateBodies() {
     // Residual of the bodies, with 0 at held unknowns; heldResidual is that before.
     const Timed timed(seconds(assembly));
-    its.counts[evaluations]++;
+    script.counts[evaluations]++;
     ofBodies.resize(d.size());
-    ended = body.forces(d.data(), its.inertiaKnown, its.bodyForce,
-      {motion.massScale, settings.damped ? 1 / motion.dt : 0, int(motion.stressAt),
+    ended = body.forces(d.data(), script.inertiaKnown, script.bodyForce,
+      {motion.massScale, settings.damped ? 1 / motion.dt : 0, int(motion.stressInstant),
        settings.breaks, inMean()}, at, ofBodies.data());
     if (settings.loads && ended == bodies::fine) {
       scripts->loads();
-      ofBodies -= its.loadForce.numbers();
+      ofBodies -= script.loadForce.numbers();
     }
-    if (its.heldResidual.size() > 0) {
-      its.heldResidual.numbers() = ofBodies;
-      if (inMean()) its.heldResidual.numbers() += mapped(body.volume.lag);
+    if (script.heldResidual.size() > 0) {
+      script.heldResidual.numbers() = ofBodies;
+      if (inMean()) script.heldResidual.numbers() += mapped(body.volume.lag);
     }
     ofBodies = ofBodies.cwiseProduct(mapped(body.free));
     if (inMean()) mapped(body.volume.lag) = mapped(body.volume.lag).cwiseProduct(mapped(body.free));
@@ -216,7 +217,7 @@ class ImplicitStep {
     residual = ofBodies;
     if (contact.touches()) {
       if (!contact.jacobianFixed) scripts->terms();
-      residual += contact.its.force.numbers();
+      residual += contact.script.force.numbers();
     }
     residualNow = residual.norm();
     if (residualNow != residualNow) ended = bodies::notANumber;
@@ -228,11 +229,11 @@ class ImplicitStep {
     correction = -solved(residual);
     if (!chained) {
       trial = d;                                 // w, with A^-1 B^T t if B is fixed
-      if (contact.jacobianFixed && contact.its.force.numbers().lpNorm<Eigen::Infinity>() > 0)
-        trial += solved(contact.its.force.numbers());
+      if (contact.jacobianFixed && contact.script.force.numbers().lpNorm<Eigen::Infinity>() > 0)
+        trial += solved(contact.script.force.numbers());
     }
     else if (!contact.jacobianFixed) trial = d;
-    if (inMean()) missing = its.pressureStar.numbers() - mapped(body.volume.now);
+    if (inMean()) missing = script.pressureStar.numbers() - mapped(body.volume.now);
     if (chained) history.learn(trialMove, correction - correctionBefore,
                                pressureMove + missing - missingBefore);
     correctionBefore = trialMove = correction;
@@ -251,13 +252,13 @@ class ImplicitStep {
     // Goes from dBack along trialMove, halved until the residual allows it. Sets d and chained.
     double scale = 1;
     const bool fresh = renewed > 0 && iterations == renewedAt;   // A was factorised at dBack
-    const Eigen::Matrix<long, Eigen::Dynamic, 1> sticks = contact.its.sticks.numbers(),
-      changes = contact.its.statusChanges.numbers();
+    const Eigen::Matrix<long, Eigen::Dynamic, 1> sticks = contact.script.sticks.numbers(),
+      changes = contact.script.statusChanges.numbers();
     if (inMean()) pressureBack = mapped(body.volume.now);
     chained = false;
     residualBefore = residualNow;
     for (int cut = 0; cut < 7 && !chained; cut++) {
-      // B and tractions of the iterate, not of the try
+      // B and forces of the iterate, not of the try
       if (cut > 0 && !contact.jacobianFixed) returnTo(dBack, pressureBack);
       const Vector tried = trial + scale * trialMove;
       if (inMean()) {
@@ -275,8 +276,8 @@ class ImplicitStep {
         break;
       }
       scale /= 2;
-      contact.its.sticks.numbers() = sticks;
-      contact.its.statusChanges.numbers() = changes;
+      contact.script.sticks.numbers() = sticks;
+      contact.script.statusChanges.numbers() = changes;
       // an old matrix that inverts elements is replaced, not followed in small steps
       if (ended == bodies::inverted && cut > 0 && !fresh) break;
     }
@@ -287,34 +288,34 @@ class ImplicitStep {
   }
 
   void project(const Vector &w) {
-    // Contact on A: d = w - A^-1 B^T t(q(d)), from the tractions of the last evaluation. The error
+    // Contact on A: d = w - A^-1 B^T t(q(d)), from the forces of the last evaluation. The error
     // becomes part of the next residual: 1/500 of the last one is accurate enough. If the step may
     // end with this iteration: 1e-10 of the contact force, as momentum has to be exact. The
     // geometric contact stiffness c with rows T has no force at the last d.
     const Timed timed(seconds(contacts));
     const long ns = contact.ns();
-    const Vector place = contact.gapSlip(w);
-    Vector highest = contact.its.q0.numbers().cwiseMax(contact.its.q1.numbers()),
+    const Vector gapSlip = contact.gapSlip(w);
+    Vector highest = contact.script.q0.numbers().cwiseMax(contact.script.q1.numbers()),
       back = Vector::Zero(w.size());
-    if (highest.maxCoeff() <= 0) highest = place.head(ns);
+    if (highest.maxCoeff() <= 0) highest = gapSlip.head(ns);
     const bool last = work() < 1e3 * settings.tolerance * motion.energyScale;
     ended = bodies::fine;
     bool more = highest.maxCoeff() > 0;
     for (int pass = 0; pass < 20 && more; pass++) {
       contact.update(highest, searchDistance / (contact.jacobianFixed ? 5 : 1));
       Vector force;
-      if (!solveContact(w, place, last, force)) { ended = bodies::diverged;  return; }
+      if (!solveContact(w, gapSlip, last, force)) { ended = bodies::diverged;  return; }
       factor.respond(contact.unknowns, force.data(), back.data());
-      highest = place.head(ns) - contact.move(back).head(ns);
+      highest = gapSlip.head(ns) - contact.move(back).head(ns);
       more = contact.penetrates(highest);
     }
     if (more) ended = bodies::diverged;
     else setD(w - back);
   }
-  bool solveContact(const Vector &w, const Vector &place, bool last, Vector &force) {
+  bool solveContact(const Vector &w, const Vector &gapSlip, bool last, Vector &force) {
     // Forces on the active unknowns for the trial state w; without those in w if B changes.
-    const Vector acting = contact.its.force.numbers()(contact.unknowns);
-    Vector tau = contact.ofActive(contact.its.tractions.numbers()), start = place,
+    const Vector acting = contact.script.force.numbers()(contact.unknowns);
+    Vector tau = contact.ofActive(contact.script.candidateForces.numbers()), start = gapSlip,
       ahead = (w - d)(contact.unknowns);
     if (!contact.jacobianFixed) {                // w lacks the displacement A^-1 B^T t
       const Vector moved = contact.comply(acting);
@@ -322,17 +323,17 @@ class ImplicitStep {
       start += contact.move(contact.onUnknowns(moved));
     }
     const bool exact = tau.size() <= std::min(200L, 2L * long(contact.unknowns.size()) + 1);
-    // the prediction's tractions are less accurate
+    // the prediction's forces are less accurate
     if (contact.jacobianFixed && iterations == 0 && !exact) tau = contact.ofActive(contact.last);
     const double enough = exact ? 0
-      : last ? 1e-10 * contact.its.force.numbers().norm() : 2e-3 * residual.norm();
+      : last ? 1e-10 * contact.script.force.numbers().norm() : 2e-3 * residual.norm();
     if (contact.solve(start, ahead, enough, tau, force) < 0) return false;
     if (contact.jacobianFixed) contact.remember(tau); else force -= acting;
     return true;
   }
 
   double work() const {                          // of the residual, relative to the frame [J/m; J]
-    return std::abs(residual.dot(d - motion.dt * its.frameMotion.numbers()));
+    return std::abs(residual.dot(d - motion.dt * script.frameMotion.numbers()));
   }
   void measure() {
     // `convergence`, accepted at <= 1: from the work of the residual, linear in it, and
@@ -360,7 +361,7 @@ class ImplicitStep {
     // Whether a point loses four fifths of its volume in the step. An implicit step has more than
     // one solution, and this one is no motion that it can follow: a smaller step is taken.
     if (!settings.refusesCollapse) return false;
-    for (int q = 0; q < body.nq; q++) if (at.jacobian1[q] < 0.2 * its.jacobian0[q]) return true;
+    for (int q = 0; q < body.nq; q++) if (at.jacobian1[q] < 0.2 * script.jacobian0[q]) return true;
     return false;
   }
   int accept() {
@@ -406,13 +407,13 @@ class ImplicitStep {
       massScaleOfA = motion.massScale;
       { const Timed timed(seconds(assembly));  assemble(); }
       const Timed timed(seconds(factorisation));
-      its.counts[factorisations]++;
+      script.counts[factorisations]++;
       if (factor.factorise(contact.expected) != 0) continue;
       if (inMean()) {                            // lag belonged to the previous A
         residual += mapped(body.volume.lag);
         mapped(body.volume.lag).setZero();
       }
-      history.forget(d.size(), inMean() ? its.pressureStart.size() : 0);
+      history.forget(d.size(), inMean() ? script.pressureStart.size() : 0);
       fewest = 1000;
       excess = 0;
       return true;

@@ -144,13 +144,13 @@ class Surface {
   }
 };
 
-static std::map<long, Surface> known;      // the obstacles by their numbers
+static std::map<long, Surface> obstacles;  // by their numbers
 
 inline void addSurface() {
   ::add("kernelObstacle", +[](long k, Reals numbers) {
     // Sets obstacle k. numbers: rounding, number of vertices, number of triangles, x y z of each
     // vertex, the three vertices of each triangle.
-    Surface &obstacle = known[k] = Surface();
+    Surface &obstacle = obstacles[k] = Surface();
     const long points = long(numbers[1]), faces = long(numbers[2]);
     obstacle.rounding = numbers[0];
     for (long i = 0; i < points; i++)
@@ -161,7 +161,7 @@ inline void addSurface() {
   });
   ::add("kernelObstacleGaps", +[](long k, Reals X, Reals g, Reals n) {
     // Gaps g (m) [m] and normals n (3 m) of the m points X (3 m) to obstacle k.
-    const Surface &obstacle = known[k];
+    const Surface &obstacle = obstacles[k];
     const long m = g.N();
     for (long i = 0; i < m; i++) {
       Point normal;

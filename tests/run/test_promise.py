@@ -44,8 +44,8 @@ def test_a_mixture_has_all_dimensions_friction_and_two_bodies(count):
         made = promise.open_scene(name, point)
         assert (made.contact or made.values)["penalty"] == "auto" and draws.words(point)
     if count == 60:
-        rubs = [point.get("friction_static", point.get("contact.friction_static", 0)) > 0 for _, point in drawn]
-        assert 15 < sum(rubs) < 45 and len({point["accuracy"] for _, point in drawn}) > 3
+        hasFriction = [point.get("friction_static", point.get("contact.friction_static", 0)) > 0 for _, point in drawn]
+        assert 15 < sum(hasFriction) < 45 and len({point["accuracy"] for _, point in drawn}) > 3
 
 
 RUBBER = {"young": 7e6, "density": 1722.0, "nu": 0.45, "accuracy": 0.1}
