@@ -186,8 +186,8 @@ def functions(
         definition = [definition]
     if not isinstance(definition, list) or len(definition) != len(names):
         raise BadInput(
-            f"{entry}: '{brief(definition)}' is no [{', '.join(names)}] (accepted: {len(names)} numbers "
-            f"or expressions of t, or a CSV file)"
+            f"{entry}: '{brief(definition)}' is no [{', '.join(names)}] "
+            f"(accepted: {len(names)} numbers or expressions of t, or a CSV file)"
         )
     return tuple(
         of_entry(f"{entry}.{k}" if len(names) > 1 else entry, component, end_time)
@@ -207,8 +207,9 @@ def displacements(
         if len(function.knots) == 1 and not function.is_zero:
             name = f"{entry}.{k}" if len(names) > 1 else entry
             raise BadInput(
-                f"{name}: {function.knots[0, 1]:g} does not change in time, and a motion counts from its value "
-                f"at t = 0 (accepted: 0, or a function of t, '0.1*t'; place or turn the part itself)"
+                f"{name}: {function.knots[0, 1]:g} does not change in time, and a motion counts "
+                f"from its value at t = 0 (accepted: 0, or a function of t, '0.1*t'; place or turn "
+                f"the part itself)"
             )
     return motion
 
@@ -218,8 +219,8 @@ def farthest(
 ) -> tuple[np.ndarray, float]:
     """The largest displacement (axes,) from the value at t = 0, and the time [s] of it.
 
-    `translation` contains the functions of the components. Only their knots from 0 to `until` [s] are
-    examined.
+    `translation` contains the functions of the components. Only their knots from 0 to `until` [s]
+    are examined.
     """
     times = np.unique(np.concatenate([function.knots[:, 0] for function in translation]))
     times = times[(times >= 0) & (times <= until)]
@@ -257,8 +258,8 @@ def _sampled(entry: str, expression: str, program: tuple[float, ...], end: float
         t = np.sort(np.append(t, (t[:-1] + width / 2)[open_ones]))
     if off.max() > BROKEN * largest:
         raise BadInput(
-            f"{entry}: '{brief(expression)}' jumps, or has no limit, at t = {t[off.argmax()]:.6g} s "
-            f"(accepted: a continuous function)"
+            f"{entry}: '{brief(expression)}' jumps, or has no limit, at "
+            f"t = {t[off.argmax()]:.6g} s (accepted: a continuous function)"
         )
     return knots
 
