@@ -75,8 +75,8 @@ def load(name: str | Path) -> Scene:
     """
     name = str(name)
     path = SCENES / f"{name}.toml" if name in built_in() else Path(name)
-    _, tables = read_toml(path, absent(name, "scene", built_in()))
+    _, content = read_toml(path, absent(name, "scene", built_in()))
     try:
-        return read(tables, path.parent, path.stem)
+        return read(content, path.parent, path.stem)
     except BadInput as error:
         raise error.within(str(path)) if path.parent != SCENES else error from None
