@@ -71,7 +71,7 @@ def bodies(folder: Path, tables: dict, **given: Value | Path) -> Outcome:
     flags, in `folder`/run."""
     out = folder / "run"
     shutil.rmtree(out, ignore_errors=True)
-    _start(f"edp/{dimension.of(tables).script}.edp", prepared(folder, tables) | given | {"out": out})
+    _start(f"edp/{dimension.of_scene(tables).script}.edp", prepared(folder, tables) | given | {"out": out})
     return outcome(out)
 
 

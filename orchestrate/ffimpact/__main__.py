@@ -192,14 +192,14 @@ def _run(options: argparse.Namespace) -> None:
     from .report import report
     from .running import run
 
-    wanted, given = scene.load(options.scene), parameters.overrides(options.set)
-    given = run.states(wanted) | given
+    loaded, overrides = scene.load(options.scene), parameters.overrides(options.set)
+    overrides = run.states(loaded) | overrides
     if options.checkpoint_every:
-        given["checkpoint_every"] = options.checkpoint_every
+        overrides["checkpoint_every"] = options.checkpoint_every
     with contextlib.redirect_stdout(None if options.quiet else sys.stdout):
         result = run.run(
-            wanted,
-            given,
+            loaded,
+            overrides,
             options.out,
             mesh_file=options.mesh,
             force=options.force,
@@ -237,8 +237,8 @@ def _list(options: argparse.Namespace) -> None:
 
     names = scene.built_in()
     for name in names:
-        one = scene.load(name)
-        print(f"{name:<{2 + max(map(len, names))}}{f'edp/{one.script}.edp':<29}{one.title}")
+        loaded = scene.load(name)
+        print(f"{name:<{2 + max(map(len, names))}}{f'edp/{loaded.script}.edp':<29}{loaded.title}")
 
 
 def _parameters(options: argparse.Namespace) -> None:

@@ -49,15 +49,15 @@ def run(
     leaves `fields` open, the run keeps 60 states. Raises the exceptions of ffimpact: BadInput,
     StepFailed and so on.
     """
-    given = _given(entries, more)
-    wanted, place = _wanted(scene, given)
-    found = running.run(
-        wanted, given, out or place, force=force, progress=progress, estimate=estimate
+    overrides = _overrides(entries, more)
+    loaded, default_folder = _loaded(scene, overrides)
+    record = running.run(
+        loaded, overrides, out or default_folder, force=force, progress=progress, estimate=estimate
     )
-    return Result(found)
+    return Result(record)
 
 
-def _given(entries: Mapping[str, Any] | None, more: dict[str, Any]) -> dict[str, Any]:
+def _overrides(entries: Mapping[str, Any] | None, more: dict[str, Any]) -> dict[str, Any]:
     """Returns the entries that are set, by dotted names, without the keywords that are None. Raises
     BadInput if `entries` is not a mapping.
     """
@@ -66,22 +66,22 @@ def _given(entries: Mapping[str, Any] | None, more: dict[str, Any]) -> dict[str,
     return dict(entries or {}) | {name: value for name, value in more.items() if value is not None}
 
 
-def _wanted(scene: Scene | str | Path, given: dict[str, Any]) -> tuple[Any, Path]:
+def _loaded(scene: Scene | str | Path, overrides: dict[str, Any]) -> tuple[Any, Path]:
     """Returns the scene as the program reads it and its default result folder. Adds the number of
-    states to keep to `given`. Raises BadInput if `scene` is not a scene.
+    states to keep to `overrides`. Raises BadInput if `scene` is not a scene.
     """
     if isinstance(scene, Scene):
-        wanted = scene.checked(_word(scene.title or "scene"))
+        loaded = scene.checked(_word(scene.title or "scene"))
     elif isinstance(scene, str | Path):
-        wanted = files.load(scene)
+        loaded = files.load(scene)
     else:
         raise BadInput(
             f"scene: '{scene}' is none (accepted: a Scene, the name of a built-in one, the path of a TOML file)"
         )
-    given.update(running.states(wanted) | given)
-    choices = [scene.table() if isinstance(scene, Scene) else "", given]
+    overrides.update(running.states(loaded) | overrides)
+    choices = [scene.table() if isinstance(scene, Scene) else "", overrides]
     own = f"-{_digits(choices)}" if isinstance(scene, Scene) else ""
-    return wanted, RESULTS / f"{wanted.name}{own}"
+    return loaded, RESULTS / f"{loaded.name}{own}"
 
 
 def _word(title: str) -> str:
@@ -140,8 +140,10 @@ class Study:
                     "(accepted: a number; of a vector sweep a component, body.1.velocity.2)"
                 )
         ax = ax if ax is not None else plt.subplots(layout="constrained")[1]
-        bars = pd.Series([one.errors.get(y, np.nan) if one else np.nan for one in self.results])
-        unit = next((one.units.get(y, "") for one in self.results if one), "")
+        bars = pd.Series(
+            [result.errors.get(y, np.nan) if result else np.nan for result in self.results]
+        )
+        unit = next((result.units.get(y, "") for result in self.results if result), "")
         for value, rows in (
             self.table.assign(bars=bars).groupby(by)
             if by
@@ -182,25 +184,29 @@ def sweep(
     combination is not accepted.
     """
     _check(values, workers)
-    given = _given(entries, more)
-    wanted, place = _wanted(scene, given)
+    overrides = _overrides(entries, more)
+    loaded, default_folder = _loaded(scene, overrides)
     points = [dict(zip(values, combination)) for combination in itertools.product(*values.values())]
-    varied = {name: list(one) for name, one in values.items()}
-    folder = Path(out) if out else place.with_name(f"{place.name}-sweep-{_digits([varied, given])}")
+    varied = {name: list(choices) for name, choices in values.items()}
+    folder = (
+        Path(out)
+        if out
+        else default_folder.with_name(f"{default_folder.name}-sweep-{_digits([varied, overrides])}")
+    )
     # Raises BadInput before the first run.
-    scenes = [wanted.override(given | point) for point in points]
+    scenes = [loaded.override(overrides | point) for point in points]
     folder.mkdir(parents=True, exist_ok=True)
     acts = {
-        k: partial(_point, one, folder / f"{k:03d}", force, estimate)
-        for k, one in enumerate(scenes, 1)
+        k: partial(_point, point_scene, folder / f"{k:03d}", force, estimate)
+        for k, point_scene in enumerate(scenes, 1)
     }
-    found = dict(side_by_side(acts, workers or freefem.CORES, folder.name))
-    outcomes = [found[k] for k in acts]
+    finished = dict(side_by_side(acts, workers or freefem.CORES, folder.name))
+    outcomes = [finished[k] for k in acts]
     return Study(
         list(values),
         points,
-        [one if isinstance(one, Result) else None for one in outcomes],
-        [one if isinstance(one, Failure) else None for one in outcomes],
+        [outcome if isinstance(outcome, Result) else None for outcome in outcomes],
+        [outcome if isinstance(outcome, Failure) else None for outcome in outcomes],
     )
 
 
@@ -210,7 +216,7 @@ def _check(values: Any, workers: Any) -> None:
         raise BadInput(
             f"sweep: '{values}' is no table (accepted: {{\"body.1.young\": [1e6, 2e6]}})"
         )
-    if not values or not all(len(_listed(name, one)) for name, one in values.items()):
+    if not values or not all(len(_listed(name, choices)) for name, choices in values.items()):
         raise BadInput("sweep: nothing varies (accepted: one value or more of each entry)")
     if workers is not None and not (isinstance(workers, int) and workers >= 1):
         raise BadInput(f"workers: '{workers}' (accepted: a whole number from 1 on)")
@@ -228,13 +234,13 @@ def _listed(name: str, value: Any) -> list[Any]:
     return list(value)
 
 
-def _point(wanted: Any, folder: Path, force: bool, estimate: bool) -> Result | Failure | None:
+def _point(scene: Any, folder: Path, force: bool, estimate: bool) -> Result | Failure | None:
     """Returns the result of one run, its failure, or None if another program is writing the
     folder.
     """
     try:
         return Result(
-            running.run(wanted, out=folder, force=force, estimate=estimate, progress=False)
+            running.run(scene, out=folder, force=force, estimate=estimate, progress=False)
         )
     except Busy:
         return None

@@ -46,13 +46,13 @@ class Failure(Exception):
 
     def __init__(self, *messages: str, code: int | None = None):
         # Each message becomes one line, even if it repeats a text of several lines.
-        self.messages = tuple(" ".join(one.splitlines()) for one in messages)
+        self.messages = tuple(" ".join(message.splitlines()) for message in messages)
         super().__init__("\n".join(self.messages))
         self.code = self.code if code is None else code
 
-    def within(self, place: str) -> Self:
-        """Returns the same failure with `place`, a file or a table, in front of each message."""
-        return type(self)(*(f"{place}: {one}" for one in self.messages), code=self.code)
+    def within(self, origin: str) -> Self:
+        """Returns the same failure with `origin`, a file or a table, in front of each message."""
+        return type(self)(*(f"{origin}: {message}" for message in self.messages), code=self.code)
 
 
 def brief(value) -> str:
@@ -63,21 +63,21 @@ def brief(value) -> str:
     return shortened(text, MOST + len(MORE))
 
 
-def shortened(text: str, most: int) -> str:
-    """Returns a text, cut to at most `most` characters."""
-    return text if len(text) <= most else text[: most - len(MORE)] + MORE
+def shortened(text: str, limit: int) -> str:
+    """Returns a text, cut to at most `limit` characters."""
+    return text if len(text) <= limit else text[: limit - len(MORE)] + MORE
 
 
 def suggestion(word, accepted: Iterable[str]) -> str:
     """Returns the part of a message that suggests one or two accepted words similar to the user's
     word. It is empty if no word is similar.
     """
-    given, words = brief(word).lower(), list(dict.fromkeys(accepted))
-    near = [one for one in (SWITCHES.get(given),) if one in words] or difflib.get_close_matches(
-        given, words, n=2
-    )
-    likeness = [difflib.SequenceMatcher(None, one, given).ratio() for one in near]
-    near = [one for one, like in zip(near, likeness) if like > likeness[0] - ALIKE]
+    lowered, words = brief(word).lower(), list(dict.fromkeys(accepted))
+    near = [
+        candidate for candidate in (SWITCHES.get(lowered),) if candidate in words
+    ] or difflib.get_close_matches(lowered, words, n=2)
+    likeness = [difflib.SequenceMatcher(None, candidate, lowered).ratio() for candidate in near]
+    near = [candidate for candidate, like in zip(near, likeness) if like > likeness[0] - ALIKE]
     return f"; did you mean {' or '.join(near)}?" if near else ""
 
 
@@ -134,8 +134,8 @@ class Busy(Unreadable):
 def of_code(code: int, message: str) -> Failure:
     """Returns the failure that has this exit code."""
     kinds = {
-        one.code: one
-        for one in (StepFailed, MaterialFailed, TooLong, BadInput, NotInstalled, Unreadable)
+        kind.code: kind
+        for kind in (StepFailed, MaterialFailed, TooLong, BadInput, NotInstalled, Unreadable)
     }
     return kinds[code](message) if code in kinds else Failure(message, code=code)
 
@@ -144,12 +144,12 @@ def gathered(acts: Iterable[Callable[[], T]]) -> list[T]:
     """Calls all `acts` and returns their results. Raises one BadInput with the messages of all that
     failed.
     """
-    found, messages = [], []
+    results, messages = [], []
     for act in acts:
         try:
-            found.append(act())
+            results.append(act())
         except BadInput as error:
             messages += error.messages
     if messages:
         raise BadInput(*messages)
-    return found
+    return results

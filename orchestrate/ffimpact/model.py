@@ -34,13 +34,13 @@ def _of_tables(key: str) -> BeforeValidator:
     file.
     """
 
-    def objects(given: Any) -> Any:
-        listed = models.several(given)
+    def objects(value: Any) -> Any:
+        listed = models.several(value)
         if not isinstance(listed, list):
-            return given
+            return value
         made = [
-            models.of_table(f"{key}.{k}", one, key) if isinstance(one, dict) else one
-            for k, one in enumerate(listed, 1)
+            models.of_table(f"{key}.{k}", item, key) if isinstance(item, dict) else item
+            for k, item in enumerate(listed, 1)
         ]
         return made
 
@@ -87,18 +87,19 @@ class Scene(models.Top):
 
     def table(self) -> dict[str, Any]:
         """Returns the scene as the tables of its TOML file."""
-        found = super().table()
+        tables = super().table()
         for name in ("bodies", "obstacles", "contact", "folder"):
-            found.pop(name, None)
+            tables.pop(name, None)
         axes = self.kind.axes
         floor = {"point": [0.0] * axes, "normal": [0.0, 1.0, 0.0][:axes]}
-        found["dimension"] = self.kind.name
-        found["body"] = [body.table() for body in self.bodies]
-        found["obstacle"] = [
-            (floor if isinstance(one, Plane) else {}) | one.table() for one in self.obstacles
+        tables["dimension"] = self.kind.name
+        tables["body"] = [body.table() for body in self.bodies]
+        tables["obstacle"] = [
+            (floor if isinstance(obstacle, Plane) else {}) | obstacle.table()
+            for obstacle in self.obstacles
         ]
-        found["contact"] = self.contact.table()
-        return {name: value for name, value in found.items() if value not in ({}, [])}
+        tables["contact"] = self.contact.table()
+        return {name: value for name, value in tables.items() if value not in ({}, [])}
 
     def checked(self, name: str = "scene") -> reading.Scene:
         """Returns the scene as the program reads it. Raises BadInput if the program does not accept
@@ -120,27 +121,27 @@ class Scene(models.Top):
         """
         name = str(path)
         path = files.SCENES / f"{name}.toml" if name in files.built_in() else Path(name)
-        _, given = files.read_toml(path, files.absent(name, "scene", files.built_in()))
-        if "body" not in given:
+        _, content = files.read_toml(path, files.absent(name, "scene", files.built_in()))
+        if "body" not in content:
             raise BadInput(
                 f"{name}: has no [[body]] (accepted: a scene of bodies; run('{name}') runs this one)"
             )
         try:
-            return cls.of(given, path.parent)
+            return cls.of(content, path.parent)
         except BadInput as error:
             raise error.within(str(path)) from None
 
     @classmethod
-    def of(cls, given: dict[str, Any], folder: Path = Path(".")) -> Scene:
+    def of(cls, content: dict[str, Any], folder: Path = Path(".")) -> Scene:
         """Makes a scene from the tables of a TOML file. Raises BadInput."""
-        reading.read(given, folder, "scene")  # reports all errors by the names of the file
+        reading.read(content, folder, "scene")  # reports all errors by the names of the file
         top = {
             name: value
-            for name, value in given.items()
+            for name, value in content.items()
             if name not in ("body", "obstacle", "contact")
         }
-        tables = {"bodies": given["body"], "obstacles": given.get("obstacle", [])}
-        return cls(folder=folder, contact=Contact(**given.get("contact", {})), **tables, **top)
+        tables = {"bodies": content["body"], "obstacles": content.get("obstacle", [])}
+        return cls(folder=folder, contact=Contact(**content.get("contact", {})), **tables, **top)
 
     def set(self, values: Mapping[str, Any] | None = None, /, **entries: Any) -> Scene:
         """Returns a copy of the scene with entries set by their dotted names:
@@ -149,8 +150,8 @@ class Scene(models.Top):
         An entry that is set to None is removed; the program then chooses its value. Raises
         BadInput.
         """
-        given = plain(dict(values or {}) | entries)
-        return type(self).of(self.checked().override(given).given, self.folder)
+        overrides = plain(dict(values or {}) | entries)
+        return type(self).of(self.checked().override(overrides).content, self.folder)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Scene) and self.table() == other.table()

@@ -91,7 +91,7 @@ class Plots:
             )
         if time is None:
             time = float(self.result.history.t[self.result.history.normal_force.idxmax()])
-        when, path = min(series, key=lambda one: abs(one[0] - time))
+        when, path = min(series, key=lambda entry: abs(entry[0] - time))
         state = vtu.read(path)
         if field not in state.fields:
             raise BadInput(f"field: {unknown(field, state.fields, ', ')}")

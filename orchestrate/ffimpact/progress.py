@@ -89,7 +89,7 @@ class Line(contextlib.AbstractContextManager):
             if math.isfinite(share)
             else self.shares.get(part, 0.0)
         )
-        done = sum(self.costs[each] * of for each, of in self.shares.items()) / (
+        done = sum(self.costs[name] * fraction for name, fraction in self.shares.items()) / (
             sum(self.costs.values()) or 1.0
         )
         if self.outer:

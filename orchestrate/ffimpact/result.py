@@ -127,18 +127,18 @@ class Result:
         thickness.
         """
         script = self.summary["provenance"]["script"]
-        said = describe_results(script=script)["meanings"]
-        found = {
+        meanings = describe_results(script=script)["meanings"]
+        units = {
             name: entry[0]
             for table in ("summary", "history", "contacts")
-            for name, entry in said[table].items()
+            for name, entry in meanings[table].items()
         } | {
-            name: said["summary"][bare][0]
+            name: meanings["summary"][bare][0]
             for name in self.summary
-            if (bare := re.sub(r"_[0-9]+$", "", name)) in said["summary"]
+            if (bare := re.sub(r"_[0-9]+$", "", name)) in meanings["summary"]
         }
         suffix = "" if per_metre(script) else "/m"
-        return {name: unit.removesuffix(suffix) for name, unit in found.items()}
+        return {name: unit.removesuffix(suffix) for name, unit in units.items()}
 
     @property
     def table(self) -> pd.DataFrame:
@@ -272,30 +272,30 @@ def compare(*results: Result | str | Path, names: Sequence[str] | str = ()) -> p
     """
     if len(results) == 1 and isinstance(results[0], list | tuple):
         results = tuple(results[0])
-    runs = [one if isinstance(one, Result) else load(one) for one in results]
+    runs = [result if isinstance(result, Result) else load(result) for result in results]
     if len(runs) < 2:
         raise BadInput(f"compare: '{len(runs)}' results (accepted: two or more)")
     chosen = [names] if isinstance(names, str) else list(names)
     rows = chosen or [
-        name for name in runs[0].table.index if all(name in one.table.index for one in runs)
+        name for name in runs[0].table.index if all(name in result.table.index for result in runs)
     ]
-    found = pd.DataFrame(index=pd.Index(rows, name="number"))
-    for k, one in enumerate(runs, 1):
-        found[f"run {k}"] = [one[name] for name in rows]
-        found[f"error {k}"] = [one.errors.get(name) for name in rows]
-    found["unit"] = [runs[0].units.get(name, "") for name in rows]
-    found["agree"] = [_agree(runs, name) for name in rows]
-    found.attrs["folders"] = [str(one.folder) for one in runs]
-    return found
+    table = pd.DataFrame(index=pd.Index(rows, name="number"))
+    for k, run in enumerate(runs, 1):
+        table[f"run {k}"] = [run[name] for name in rows]
+        table[f"error {k}"] = [run.errors.get(name) for name in rows]
+    table["unit"] = [runs[0].units.get(name, "") for name in rows]
+    table["agree"] = [_agree(runs, name) for name in rows]
+    table.attrs["folders"] = [str(result.folder) for result in runs]
+    return table
 
 
 def _agree(runs: Sequence[Result], name: str) -> bool | None:
     """Returns whether all error bars of a number have a value in common, or None if a run has no
     error estimate.
     """
-    if not all(name in one.errors for one in runs):
+    if not all(name in run.errors for run in runs):
         return None
     return bool(
-        max(one[name] - one.errors[name] for one in runs)
-        <= min(one[name] + one.errors[name] for one in runs)
+        max(run[name] - run.errors[name] for run in runs)
+        <= min(run[name] + run.errors[name] for run in runs)
     )

@@ -46,8 +46,10 @@ def _unit_in(path: Path, error: Exception) -> str:
     entry, _, value = path.read_text("utf-8").splitlines()[int(line[1]) - 1].partition("=")
     entry, value = entry.strip(), value.partition("#")[0].strip()
     rule = parameters.PARAMETERS.get(entry)
-    said = parameters.with_unit(value, rule.unit if rule else "")
-    return said and f"{entry}: '{value}' {said}" + (f" (accepted: {rule.accepted})" if rule else "")
+    message = parameters.with_unit(value, rule.unit if rule else "")
+    return message and f"{entry}: '{value}' {message}" + (
+        f" (accepted: {rule.accepted})" if rule else ""
+    )
 
 
 def absent(name: str, kind: str, names: list[str]) -> str:
@@ -73,8 +75,8 @@ def load(name: str | Path) -> Scene:
     """
     name = str(name)
     path = SCENES / f"{name}.toml" if name in built_in() else Path(name)
-    _, given = read_toml(path, absent(name, "scene", built_in()))
+    _, content = read_toml(path, absent(name, "scene", built_in()))
     try:
-        return read(given, path.parent, path.stem)
+        return read(content, path.parent, path.stem)
     except BadInput as error:
         raise error.within(str(path)) if path.parent != SCENES else error from None

@@ -26,14 +26,14 @@ def schema() -> dict[str, Any]:
     parameters of a case of the paper.
     """
     models = [Top, Contact, *BODIES.values(), *OBSTACLES.values()]
-    _, made = models_json_schema([(one, "validation") for one in models])
-    known: dict[str, Any] = {name: _plain(one) for name, one in made["$defs"].items()}
+    _, made = models_json_schema([(entry_model, "validation") for entry_model in models])
+    definitions: dict[str, Any] = {name: _plain(part) for name, part in made["$defs"].items()}
     for word, table in (("shape", BODIES), ("kind", OBSTACLES)):
         for name, model in table.items():
-            one = known[model.__name__]
-            one["properties"] = {word: {"const": name}} | one["properties"]
-            one["required"] = [word, *one.get("required", [])]
-    of_bodies = known.pop("Top")
+            definition = definitions[model.__name__]
+            definition["properties"] = {word: {"const": name}} | definition["properties"]
+            definition["required"] = [word, *definition.get("required", [])]
+    of_bodies = definitions.pop("Top")
     of_bodies["properties"] |= {
         "body": {"type": "array", "minItems": 1, "items": {"oneOf": _references(BODIES)}},
         "obstacle": {"type": "array", "items": {"oneOf": _references(OBSTACLES)}},
@@ -41,18 +41,24 @@ def schema() -> dict[str, Any]:
     }
     of_bodies["required"] = ["body"]
     scripts = sorted(
-        {name for one in parameters.PARAMETERS.values() for name in one.scripts} - set(SCRIPTS)
+        {name for parameter in parameters.PARAMETERS.values() for name in parameter.scripts}
+        - set(SCRIPTS)
     )
     case = {
         "type": "object",
         "properties": {"title": {"type": "string"}, "script": {"enum": scripts}}
         | {
-            name: one.schema() | {"description": one.meaning}
-            for name, one in parameters.PARAMETERS.items()
+            name: parameter.schema() | {"description": parameter.meaning}
+            for name, parameter in parameters.PARAMETERS.items()
         },
         "additionalProperties": False,
     }
-    return {"$schema": DRAFT, "title": "ffimpact scene", "oneOf": [of_bodies, case], "$defs": known}
+    return {
+        "$schema": DRAFT,
+        "title": "ffimpact scene",
+        "oneOf": [of_bodies, case],
+        "$defs": definitions,
+    }
 
 
 def text() -> str:
@@ -69,11 +75,11 @@ def _plain(made: Any) -> Any:
     names.
     """
     if isinstance(made, list):
-        return [_plain(one) for one in made]
+        return [_plain(item) for item in made]
     if not isinstance(made, dict):
         return made
-    kinds = [one for one in made.get("anyOf", []) if one != {"type": "null"}]
-    found = {
+    kinds = [kind for kind in made.get("anyOf", []) if kind != {"type": "null"}]
+    cleaned = {
         name: _plain(value)
         for name, value in made.items()
         if name != "anyOf"
@@ -81,7 +87,7 @@ def _plain(made: Any) -> Any:
         and not (name == "default" and value is None)
     }
     if len(kinds) == 1:
-        found |= _plain(kinds[0])
+        cleaned |= _plain(kinds[0])
     elif kinds:
-        found["anyOf"] = _plain(kinds)
-    return found
+        cleaned["anyOf"] = _plain(kinds)
+    return cleaned

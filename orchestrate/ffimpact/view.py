@@ -131,10 +131,10 @@ def view(
     )
     plot += body
     obstacles = []
-    for one in obstacles_of(result.scene):
-        if drawn := _obstacle(k3d, one, states.kind, low, high):
+    for obstacle in obstacles_of(result.scene):
+        if drawn := _obstacle(k3d, obstacle, states.kind, low, high):
             plot += drawn
-            moving = np.r_[one.velocity, np.zeros(3 - len(one.velocity))]
+            moving = np.r_[obstacle.velocity, np.zeros(3 - len(obstacle.velocity))]
             obstacles.append({"id": drawn.id, "velocity": moving.tolist()})
     plot.camera_fov = 20
     plot.camera = _camera(states.kind, low, high)
@@ -193,14 +193,17 @@ def _states(result: Result, revolved: bool) -> States:
     else:
         mirrored = is_half(result.scene) or of_revolution
         kind, shown = "plane", _section(vtu.read(series[0][1]), mirrored)
-    found: list[Any] = [(vtu.read_solid if solid else vtu.read)(path) for _, path in series]
+    snapshots: list[Any] = [(vtu.read_solid if solid else vtu.read)(path) for _, path in series]
     places = np.array(
-        [shown.places(_three(one.points) + _three(one.fields["displacement"])) for one in found]
+        [
+            shown.places(_three(snapshot.points) + _three(snapshot.fields["displacement"]))
+            for snapshot in snapshots
+        ]
     )
     fields = {
-        name: np.array([shown.values(_scalar(one.fields[source])) for one in found])
+        name: np.array([shown.values(_scalar(snapshot.fields[source])) for snapshot in snapshots])
         for name, (_, source, _) in FIELDS.items()
-        if source in found[0].fields
+        if source in snapshots[0].fields
     }
     return States(np.array([t for t, _ in series]), places, shown.triangles, fields, kind)
 
@@ -230,8 +233,8 @@ class Shown:
         """Returns the positions (vertices, 3) [m] of the vertices."""
         x, y, z = self.values(places).T
         turned = [np.cos(self.angle) * x, y, np.sin(self.angle) * x + z]
-        found: np.ndarray = np.stack(turned, axis=1) * self.mirror
-        return found
+        positions: np.ndarray = np.stack(turned, axis=1) * self.mirror
+        return positions
 
 
 def _section(state: vtu.Snapshot, mirrored: bool) -> Shown:
@@ -247,12 +250,12 @@ def _images(
     """Shows triangles of n vertices together with their mirror images. Each of `images` is a list
     of the signs of the three coordinates.
     """
-    found = [
+    parts = [
         (triangles if np.prod(signs) > 0 else triangles[:, ::-1]) + k * n
         for k, signs in enumerate(images)
     ]
     nodes = np.tile(np.arange(n), len(images))
-    return Shown(np.vstack(found), nodes, np.zeros(len(nodes)), np.repeat(images, n, axis=0), skin)
+    return Shown(np.vstack(parts), nodes, np.zeros(len(nodes)), np.repeat(images, n, axis=0), skin)
 
 
 def _revolution(state: vtu.Snapshot) -> Shown:
@@ -348,19 +351,19 @@ def _text(array: np.ndarray) -> str:
 # ---- obstacles, camera and figure
 
 
-def _obstacle(k3d: Any, one: Obstacle, kind: str, low: np.ndarray, high: np.ndarray) -> Any:
+def _obstacle(k3d: Any, obstacle: Obstacle, kind: str, low: np.ndarray, high: np.ndarray) -> Any:
     """Returns an obstacle at t = 0 as a k3d object: a line in the plane, else a surface. Returns
     None if it is not visible.
     """
     margin = 0.25 * (high - low).max()
-    left, right = low - margin, high + margin
-    count = 3 if one.kind == "plane" else GRID  # the gap to a plane is linear
-    x, y, z = (np.linspace(a, b, count) for a, b in zip(left, right))
+    lower, upper = low - margin, high + margin
+    count = 3 if obstacle.kind == "plane" else GRID  # the gap to a plane is linear
+    x, y, z = (np.linspace(a, b, count) for a, b in zip(lower, upper))
     if kind == "plane":
         from contourpy import contour_generator
 
         points = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
-        gap = one.gap_in_plane(points, 0.0).reshape(count, count)
+        gap = obstacle.gap_in_plane(points, 0.0).reshape(count, count)
         lines = contour_generator(x, y, gap).lines(0.0)
         if not lines:
             return None
@@ -375,9 +378,9 @@ def _obstacle(k3d: Any, one: Obstacle, kind: str, low: np.ndarray, high: np.ndar
     points = np.stack([xs, ys, zs], axis=-1).reshape(-1, 3)
     if kind == "revolved":
         points = np.stack([np.hypot(points[:, 0], points[:, 2]), points[:, 1]], axis=-1)
-        gap = one.gap_in_plane(points, 0.0)
+        gap = obstacle.gap_in_plane(points, 0.0)
     else:
-        gap = one.gap(points)
+        gap = obstacle.gap(points)
     if not gap.min() < 0 < gap.max():
         return None
     return k3d.marching_cubes(

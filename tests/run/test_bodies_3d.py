@@ -325,7 +325,7 @@ def test_the_scene_as_used_makes_the_same_run(falls, tmp_path):
     gives the same history."""
     found = falls["quarter"]
     again = load(str(found.folder / "scene.toml"))
-    assert again.script == SCRIPT and set(again.values) <= set(parameters.names(SCRIPT)) and again.given["symmetry"] == "quarter"
+    assert again.script == SCRIPT and set(again.values) <= set(parameters.names(SCRIPT)) and again.content["symmetry"] == "quarter"
     made = assembly.assemble(again)
     assert made.data == (found.folder / "scene.dat").read_text() and to_toml(made.used) == (found.folder / "scene.toml").read_text()
     flags = freefem.words_of(made.values)

@@ -37,7 +37,7 @@ def told(given: dict, folder: Path) -> dict[str, float]:
 
 
 @pytest.mark.few(1)
-@pytest.mark.parametrize("given", [scene.load("two-discs").given | {"accuracy": 0.1}, ON_PLANE], ids=["two discs", "a body on a plane"])
+@pytest.mark.parametrize("given", [scene.load("two-discs").content | {"accuracy": 0.1}, ON_PLANE], ids=["two discs", "a body on a plane"])
 def test_no_answer_and_no_stated_error_depends_on_the_frame(given, tmp_path):
     """At 60 m/s, and rotated by 37 degrees at a distance of 1 km, a scene has the same results and
     error estimates as at rest, to 1e-3."""
@@ -51,7 +51,7 @@ def test_a_disc_is_meshed_finely_where_it_touches_whatever_its_angle(tmp_path):
     """A disc comes into contact with its lowest point. The angle in the scene has no effect."""
     from ffimpact.scenes import approach
     for angle in (0.0, 50.0):
-        found = approach.turned(read(seen(scene.load("two-discs").given | {"body": [one | {"angle": angle} for one in scene.load("two-discs").given["body"]]}), tmp_path, "x"))
+        found = approach.turned(read(seen(scene.load("two-discs").content | {"body": [one | {"angle": angle} for one in scene.load("two-discs").content["body"]]}), tmp_path, "x"))
         met, = approach.meetings(found)
         touching = found.bodies[0].position * 0 - met.normal
         assert found.bodies[0].angle - math.pi / 2 == pytest.approx(math.atan2(touching[1], touching[0]), abs=1e-6)

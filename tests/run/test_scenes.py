@@ -456,7 +456,7 @@ def test_what_a_scene_of_bodies_fixed_follows():
     larger = bowl.override({"body.1.radius": 0.04})
     assert larger.bodies[0].mesh_size == larger.bodies[0].contact_mesh_size == 0 and len(larger.released) == 2
     assert bowl.override({"body.1.radius": 0.04, "body.1.mesh_size": 0.01, "body.1.contact_mesh_size": 0.01}).released == ()
-    own = read_scene(bowl.given | {"obstacle": [bowl.given["obstacle"][0] | {"friction_static": 0.2}]}, bowl.folder, "bowl")
+    own = read_scene(bowl.content | {"obstacle": [bowl.content["obstacle"][0] | {"friction_static": 0.2}]}, bowl.folder, "bowl")
     assert assembly.assemble(own).used["contact"]["pair"][0]["friction_dynamic"] == 0.2
 
 

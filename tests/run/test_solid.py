@@ -98,7 +98,7 @@ def test_without_pyvista_the_rest_is_drawn(ball, no_pyvista, capsys):
     said = capsys.readouterr()
     assert "contact.png" in said.out and "solid.png" not in said.out and not (result.folder / "figures/solid.png").exists()
     assert re.fullmatch(r"ffimpact: without figures/solid.png: PyVista is not installed \(\S+ -m pip install pyvista vtk\)\n", said.err)
-    stage = movie.of(result)
+    stage = movie.stage_of(result)
     stage.show(2e-3)
     assert isinstance(stage, movie.PlaneStage)
     figures.plt.close(stage.figure)
@@ -130,7 +130,7 @@ def test_picture_and_film(ball, symmetry):
     if reason := solid.missing():
         pytest.skip(reason)
     assert result.folder / "figures/solid.png" in drawing.draw(result.folder)
-    stage = movie.of(result)
+    stage = movie.stage_of(result)
     assert isinstance(stage, movie.SolidStage)
     start = [picture.get_array().copy() for picture in stage.pictures]
     stage.show(float(stage.times[len(stage.times) // 2]))
@@ -156,7 +156,7 @@ def test_whole_ball_is_cut_for_figures_and_films(ball, no_pyvista, tmp_path):
     outline = figures.pose_at(t, path, result.history).outline
     assert len(outline) > 12 and np.hypot(*(outline - (0, RADIUS)).T) == pytest.approx(RADIUS, rel=0.03)
     assert "shapes" in {drawn.stem for drawn in drawing.draw(result.folder)}
-    stage = movie.of(result)
+    stage = movie.stage_of(result)
     assert isinstance(stage, movie.PlaneStage)
     stage.show(stage.times[1])
     figures.plt.close("all")

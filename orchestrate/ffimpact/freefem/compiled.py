@@ -27,14 +27,14 @@ def compiled(name: str, made_of: Iterable[str], make: Callable[[Path], None]) ->
     cannot be made because a compiler, headers or a writable folder are missing.
     """
     key = hashlib.sha256("\0".join(made_of).encode()).hexdigest()[:12]
-    place = user_cache_path("ffimpact") / __version__ / key / name
-    if place.exists():
-        return place
+    path = user_cache_path("ffimpact") / __version__ / key / name
+    if path.exists():
+        return path
     try:
-        place.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(dir=place.parent) as folder:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=path.parent) as folder:
             make(Path(folder))
-            os.replace(Path(folder) / name, place)
-        return place
+            os.replace(Path(folder) / name, path)
+        return path
     except (OSError, subprocess.SubprocessError):
         return None

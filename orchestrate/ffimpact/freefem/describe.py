@@ -40,18 +40,19 @@ def describe_record(values: dict | None = None, script: str = "disc-plane") -> d
 
 
 @cache
-def _ask(asked: str, *flags: str) -> str:
+def _ask(script: str, *flags: str) -> str:
     program = freefem.find()
     try:
-        answer = program.call(asked, *flags, timeout=LIMIT)
+        answer = program.call(script, *flags, timeout=LIMIT)
     except subprocess.TimeoutExpired:
         raise NotInstalled(
-            f"{program.command} does not finish {asked} in {LIMIT} s; the machine is too busy, or {freefem.HOW}"
+            f"{program.command} does not finish {script} in {LIMIT} s; "
+            f"the machine is too busy, or {freefem.HOW}"
         ) from None
     if answer.returncode == 0:
         return answer.stdout
-    if answer.returncode == 10 and (said := freefem.said_in(answer.stderr)):
-        raise BadInput(said)
+    if answer.returncode == 10 and (message := freefem.said_in(answer.stderr)):
+        raise BadInput(message)
     raise NotInstalled(
-        f"{program.command} does not run {asked} (exit code {answer.returncode}); {freefem.HOW}"
+        f"{program.command} does not run {script} (exit code {answer.returncode}); {freefem.HOW}"
     )

@@ -157,14 +157,16 @@ def find() -> FreeFem:
 def _find(variables: tuple[tuple[str, str], ...]) -> FreeFem:
     """Finds FreeFem++ as find() does, in the environment `variables`."""
     environment = dict(variables)
-    wanted = environment.get("FREEFEM", "FreeFem++")
-    command = shutil.which(wanted)
+    executable = environment.get("FREEFEM", "FreeFem++")
+    command = shutil.which(executable)
     if not command:
-        raise NotInstalled(f"{wanted} not found; {HOW}")
+        raise NotInstalled(f"{executable} not found; {HOW}")
     environment |= _threads(environment.get("FFIMPACT_THREADS", "1"))
     # The folder in which includes inside includes are sought, also where its path has a semicolon.
-    known = environment.get("FF_INCLUDEPATH", "")
-    environment["FF_INCLUDEPATH"] = f"{ROOT / 'edp'};./edp" + (f";{known}" if known else "")
+    include_path = environment.get("FF_INCLUDEPATH", "")
+    environment["FF_INCLUDEPATH"] = f"{ROOT / 'edp'};./edp" + (
+        f";{include_path}" if include_path else ""
+    )
     environment = _blas_kernels() | environment | quick_clock(environment)
     description = _probe(command, environment)
     if not description and "FF_LOADPATH" not in environment:
@@ -184,23 +186,24 @@ def _find(variables: tuple[tuple[str, str], ...]) -> FreeFem:
     )
 
 
-def _threads(wanted: str) -> dict[str, str]:
-    """Returns the environment variables that give a process `wanted` threads. Raises BadInput if
-    `wanted` is not a number from 1 to 64.
+def _threads(threads: str) -> dict[str, str]:
+    """Returns the environment variables that give a process this number of `threads`. Raises
+    BadInput if `threads` is not a number from 1 to 64.
 
     One thread is best if processes fill the cores, as in a sweep or in a run beside the one that
     estimates its error. The results do not depend on the number of threads. CHOLMOD starts four
     threads of its own unless OMP_THREAD_LIMIT limits them. OpenBLAS has one thread, because its
     sums depend on the number of threads.
     """
-    if not (wanted.isdecimal() and 1 <= int(wanted) <= 64):
+    if not (threads.isdecimal() and 1 <= int(threads) <= 64):
         raise BadInput(
-            f"FFIMPACT_THREADS: '{wanted}' in the environment is no number of threads (accepted: 1 to 64)"
+            f"FFIMPACT_THREADS: '{threads}' in the environment is no number of threads "
+            f"(accepted: 1 to 64)"
         )
     return {
         "OPENBLAS_NUM_THREADS": "1",
-        "OMP_NUM_THREADS": wanted,
-        "OMP_THREAD_LIMIT": wanted,
+        "OMP_NUM_THREADS": threads,
+        "OMP_THREAD_LIMIT": threads,
         "OMP_WAIT_POLICY": "passive",
     }
 
@@ -256,9 +259,9 @@ def _probe(command: str, environment: dict[str, str]) -> dict | None:
     a number, in which 4.10 equals 4.1.
     """
     try:
-        said = FreeFem(command, "", environment, {}).call(DESCRIBE, "-v", "1", timeout=60).stdout
-        banner = BANNER.search(said)
-        return json.loads(said[said.index("{") :]) | ({"version": banner[1]} if banner else {})
+        output = FreeFem(command, "", environment, {}).call(DESCRIBE, "-v", "1", timeout=60).stdout
+        banner = BANNER.search(output)
+        return json.loads(output[output.index("{") :]) | ({"version": banner[1]} if banner else {})
     except (OSError, subprocess.TimeoutExpired, ValueError):
         return None
 
@@ -334,10 +337,10 @@ class Process:
                         )
                     )
         self.errors.seek(0)
-        said = self.errors.read()
+        stderr = self.errors.read()
         with open(self.log, "a") as file:
-            file.write(said)
-        return code, said_in(said)
+            file.write(stderr)
+        return code, said_in(stderr)
 
 
 @contextmanager

@@ -86,10 +86,10 @@ def _tokens(node: ast.AST, names: str) -> list[float]:
             return [0.0, math.pi]
         case ast.Name(id=name) if name in tuple(names):
             return [1.0 + names.index(name)]
-        case ast.UnaryOp(op=ast.UAdd(), operand=one):
-            return _tokens(one, names)
-        case ast.UnaryOp(op=ast.USub(), operand=one):
-            return [*_tokens(one, names), float(ONE[ast.USub])]
+        case ast.UnaryOp(op=ast.UAdd(), operand=operand):
+            return _tokens(operand, names)
+        case ast.UnaryOp(op=ast.USub(), operand=operand):
+            return [*_tokens(operand, names), float(ONE[ast.USub])]
         case ast.BinOp(left=base, op=ast.Pow(), right=power):
             exponent = _tokens(power, names)
             if any(token in (1, 2, 3) for token in exponent[::2]) or len(exponent) > 3:
@@ -97,8 +97,8 @@ def _tokens(node: ast.AST, names: str) -> list[float]:
             return [*_tokens(base, names), *exponent, float(TWO[ast.Pow])]
         case ast.BinOp(left=a, op=op, right=b) if type(op) in TWO:
             return [*_tokens(a, names), *_tokens(b, names), float(TWO[type(op)])]
-        case ast.Call(func=ast.Name(id=name), args=[one], keywords=[]) if name in ONE:
-            return [*_tokens(one, names), float(ONE[name])]
+        case ast.Call(func=ast.Name(id=name), args=[operand], keywords=[]) if name in ONE:
+            return [*_tokens(operand, names), float(ONE[name])]
         case ast.Call(func=ast.Name(id=name), args=[a, b], keywords=[]) if name in TWO:
             return [*_tokens(a, names), *_tokens(b, names), float(TWO[name])]
     raise Stop(ast.unparse(node))
@@ -171,18 +171,18 @@ def gap(points: np.ndarray, numbers: tuple[float, ...], bounds: bool = True) -> 
     """
     steepest, limit, *code = numbers
     with np.errstate(all="ignore"):
-        found, slope = run(code, points)
+        gaps, slope = run(code, points)
         size = np.linalg.norm(slope, axis=1)
-        near = abs(found) < limit * np.minimum(size, STEEPEST)
-        found = np.where(
+        near = abs(gaps) < limit * np.minimum(size, STEEPEST)
+        gaps = np.where(
             size < STEEPEST,
-            found / np.maximum(steepest if bounds else 0, size),
-            np.copysign(limit, found),
+            gaps / np.maximum(steepest if bounds else 0, size),
+            np.copysign(limit, gaps),
         )
         if near.any():
             distance = closest(points[near], code, limit)[0]
-            found[near] = np.where(abs(distance) <= 2 * limit, distance, found[near])
-    return found
+            gaps[near] = np.where(abs(distance) <= 2 * limit, distance, gaps[near])
+    return gaps
 
 
 def closest(points: np.ndarray, code: list[float], limit: float) -> tuple[np.ndarray, np.ndarray]:
@@ -297,18 +297,18 @@ def bending(code: tuple[float, ...], points: np.ndarray, step: float) -> np.ndar
         slope = run(code, at)[1]
         return slope / np.linalg.norm(slope, axis=1)[:, None]
 
-    n, found = normals(points), []
+    n, curvatures = normals(points), []
     for axis in np.eye(points.shape[1]):
         along = axis - n * (n @ axis)[:, None]
         # The short projection of an axis that is nearly normal to the surface is not scaled to 1.
         along /= np.maximum(np.linalg.norm(along, axis=1), 0.3)[:, None]
-        found.append(
+        curvatures.append(
             np.sum(
                 along * (normals(points + step * along) - normals(points - step * along)), axis=1
             )
             / (2 * step)
         )
-    return np.nan_to_num(np.transpose(found))
+    return np.nan_to_num(np.transpose(curvatures))
 
 
 def radius_at(point: np.ndarray, numbers: tuple[float, ...]) -> float:
@@ -343,4 +343,4 @@ def is_mirrored(code: tuple[float, ...], axis: int, axes: int) -> bool:
 
 
 def _text(point: np.ndarray) -> str:
-    return "[" + ", ".join(f"{one:.4g}" for one in point) + "]"
+    return "[" + ", ".join(f"{coordinate:.4g}" for coordinate in point) + "]"

@@ -297,7 +297,7 @@ class Outline(Shape):
     def gyration(self) -> float:
         """The squared radius of gyration [m2] about the centroid, from the loops as polygons."""
         first, moments, areas = [loop.polygon - self.area_centre for loop in self.loops], [], []
-        for a, b in ((one, np.roll(one, -1, axis=0)) for one in first):
+        for a, b in ((polygon, np.roll(polygon, -1, axis=0)) for polygon in first):
             areas.append(cross(a, b).sum() / 2)
             moments.append((cross(a, b) * (a * a + a * b + b * b).sum(axis=1)).sum() / 12)
         return float((moments[0] - sum(moments[1:])) / (areas[0] - sum(areas[1:])))
@@ -312,9 +312,9 @@ class Outline(Shape):
         return float(min(self.extent.min() / 2, 2 * self.area / self.length))
 
     def placed(self, centre: np.ndarray, angle: float) -> "Outline":
-        found = Outline(tuple(loop.placed(centre, angle) for loop in self.loops))
-        found.__dict__["reach"] = self.reach  # independent of the position: not computed again
-        return found
+        outline = Outline(tuple(loop.placed(centre, angle) for loop in self.loops))
+        outline.__dict__["reach"] = self.reach  # independent of the position: not computed again
+        return outline
 
     def turned(self, angle: float, spin: float, t: float) -> float:
         """The angle [rad] of a body at time t [s], from its angle at t = 0 and its spin [rad/s]."""
@@ -467,7 +467,7 @@ def folding(corners: np.ndarray, thickness: float, revolved: bool) -> float:
     length = np.linalg.norm(along, axis=1)
     if (cross(along, np.roll(along, -1, axis=0)) >= -1e-9 * length * np.roll(length, -1)).all():
         return math.inf  # the polygon is convex
-    middle, normal, place = (
+    middle, normal, arc_position = (
         corners + along / 2,
         along @ [[0, -1], [1, 0]] / length[:, None],
         np.cumsum(length) - length / 2,
@@ -476,7 +476,10 @@ def folding(corners: np.ndarray, thickness: float, revolved: bool) -> float:
     for at in range(0, len(corners), CHUNK):
         some = slice(at, at + CHUNK)
         to = middle - middle[some, None]
-        distance, way = np.linalg.norm(to, axis=2), np.abs(place - place[some, None])
+        distance, arc_length = (
+            np.linalg.norm(to, axis=2),
+            np.abs(arc_position - arc_position[some, None]),
+        )
         ahead, behind = (to * normal[some, None]).sum(axis=2), (to * normal).sum(axis=2)
         sees = (np.minimum(ahead, -behind) > 1e-9 * distance) & (
             normal[some] @ normal.T < math.cos(math.radians(80))
@@ -485,9 +488,11 @@ def folding(corners: np.ndarray, thickness: float, revolved: bool) -> float:
             sees &= (middle[some, None, 0] > 0) & (middle[:, 0] > 0)
         least = min(
             least,
-            (thickness * distance[sees] / np.minimum(way, length.sum() - way)[sees] ** 2).min(
-                initial=math.inf
-            ),
+            (
+                thickness
+                * distance[sees]
+                / np.minimum(arc_length, length.sum() - arc_length)[sees] ** 2
+            ).min(initial=math.inf),
         )
     return float(least)
 

@@ -73,32 +73,32 @@ def constant(value: float) -> TimeFunction:
     return TimeFunction(np.array([[0.0, value, 0.0]]))
 
 
-def of_entry(entry: str, given: object, end_time: float) -> TimeFunction:
+def of_entry(entry: str, definition: object, end_time: float) -> TimeFunction:
     """The function of an entry: a number, or an expression of t, used from 0 to end_time [s].
 
     Raises BadInput, with the name of the entry, if the entry is neither, or if the expression has
     no finite value or slope at some time.
     """
-    if isinstance(given, bool) or not isinstance(given, int | float | str):
+    if isinstance(definition, bool) or not isinstance(definition, int | float | str):
         raise BadInput(
-            f"{entry}: '{brief(given)}' is no function of time (accepted: a number, or an "
+            f"{entry}: '{brief(definition)}' is no function of time (accepted: a number, or an "
             f"expression of t in quotes)"
         )
-    if isinstance(given, int | float):
-        return constant(_limited(entry, float(given)))
-    program = implicit.program(entry, given, "t")
-    value, _ = _evaluated(entry, given, program, np.zeros(1))
+    if isinstance(definition, int | float):
+        return constant(_limited(entry, float(definition)))
+    program = implicit.program(entry, definition, "t")
+    value, _ = _evaluated(entry, definition, program, np.zeros(1))
     if not any(
         isinstance(node, ast.Name) and node.id == "t"
-        for node in ast.walk(ast.parse(given.strip().replace("^", "**")))
+        for node in ast.walk(ast.parse(definition.strip().replace("^", "**")))
     ):
         return constant(float(value[0]))
     if end_time <= 0:
         raise BadInput(
-            f"{entry}: '{brief(given)}' is a function of time, and end_time is 0, the end "
+            f"{entry}: '{brief(definition)}' is a function of time, and end_time is 0, the end "
             f"of the contact (accepted: a number here, or an end_time > 0)"
         )
-    return TimeFunction(_sampled(entry, given, program, end_time))
+    return TimeFunction(_sampled(entry, definition, program, end_time))
 
 
 def of_table(entry: str, times: object, values: object) -> TimeFunction:
@@ -109,12 +109,14 @@ def of_table(entry: str, times: object, values: object) -> TimeFunction:
     """
     columns = []
     for name, column in (("t", times), ("value", values)):
-        if not isinstance(column, list) or not all(type(one) in (int, float) for one in column):
+        if not isinstance(column, list) or not all(
+            type(number) in (int, float) for number in column
+        ):
             raise BadInput(
                 f"{entry}: '{brief(column)}' of {name} is no list of numbers "
                 f"(accepted: as many numbers as times, two or more)"
             )
-        columns.append(np.array([_limited(entry, float(one)) for one in column]))
+        columns.append(np.array([_limited(entry, float(number)) for number in column]))
     t, value = columns
     if len(t) != len(value) or len(t) < 2:
         raise BadInput(
@@ -163,66 +165,73 @@ def of_csv(entry: str, path: Path, columns: str) -> dict[str, list[float]]:
     return {name: [float(row[k]) for row in rows[1:]] for k, name in enumerate(rows[0])}
 
 
-def functions(entry: str, given: object, names: str, end_time: float) -> tuple[TimeFunction, ...]:
+def functions(
+    entry: str, definition: object, names: str, end_time: float
+) -> tuple[TimeFunction, ...]:
     """The functions of an entry, one for each component in `names`.
 
     The entry is a list of numbers and expressions, a single one for a single component, or a table
     {t, ...} with a column for each component. `end_time` is in s. Raises BadInput, with the name of
     the entry, for anything else.
     """
-    if isinstance(given, dict):
-        if set(given) != {"t", *names}:
+    if isinstance(definition, dict):
+        if set(definition) != {"t", *names}:
             raise BadInput(
-                f"{entry}: '{brief(given)}' is no table (accepted: t and {', '.join(names)})"
+                f"{entry}: '{brief(definition)}' is no table (accepted: t and {', '.join(names)})"
             )
-        return tuple(of_table(f"{entry}.{name}", given["t"], given[name]) for name in names)
-    if len(names) == 1 and not isinstance(given, list):
-        given = [given]
-    if not isinstance(given, list) or len(given) != len(names):
+        return tuple(
+            of_table(f"{entry}.{name}", definition["t"], definition[name]) for name in names
+        )
+    if len(names) == 1 and not isinstance(definition, list):
+        definition = [definition]
+    if not isinstance(definition, list) or len(definition) != len(names):
         raise BadInput(
-            f"{entry}: '{brief(given)}' is no [{', '.join(names)}] (accepted: {len(names)} numbers "
-            f"or expressions of t, or a CSV file)"
+            f"{entry}: '{brief(definition)}' is no [{', '.join(names)}] "
+            f"(accepted: {len(names)} numbers or expressions of t, or a CSV file)"
         )
     return tuple(
-        of_entry(f"{entry}.{k}" if len(names) > 1 else entry, one, end_time)
-        for k, one in enumerate(given, 1)
+        of_entry(f"{entry}.{k}" if len(names) > 1 else entry, component, end_time)
+        for k, component in enumerate(definition, 1)
     )
 
 
 def displacements(
-    entry: str, given: object, names: str, end_time: float
+    entry: str, definition: object, names: str, end_time: float
 ) -> tuple[TimeFunction, ...]:
     """The functions of a motion, as `functions`. A displacement is the change since t = 0.
 
     Raises BadInput, in addition, if a component is a number other than 0: it would have no effect.
     """
-    found = functions(entry, given, names, end_time)
-    for k, one in enumerate(found, 1):
-        if len(one.knots) == 1 and not one.is_zero:
+    motion = functions(entry, definition, names, end_time)
+    for k, function in enumerate(motion, 1):
+        if len(function.knots) == 1 and not function.is_zero:
             name = f"{entry}.{k}" if len(names) > 1 else entry
             raise BadInput(
-                f"{name}: {one.knots[0, 1]:g} does not change in time, and a motion counts from its value "
-                f"at t = 0 (accepted: 0, or a function of t, '0.1*t'; place or turn the part itself)"
+                f"{name}: {function.knots[0, 1]:g} does not change in time, and a motion counts "
+                f"from its value at t = 0 (accepted: 0, or a function of t, '0.1*t'; place or turn "
+                f"the part itself)"
             )
-    return found
+    return motion
 
 
-def farthest(way: Sequence[TimeFunction], until: float = np.inf) -> tuple[np.ndarray, float]:
+def farthest(
+    translation: Sequence[TimeFunction], until: float = np.inf
+) -> tuple[np.ndarray, float]:
     """The largest displacement (axes,) from the value at t = 0, and the time [s] of it.
 
-    `way` contains the functions of the components. Only their knots from 0 to `until` [s] are
-    examined.
+    `translation` contains the functions of the components. Only their knots from 0 to `until` [s]
+    are examined.
     """
-    times = np.unique(np.concatenate([one.knots[:, 0] for one in way]))
+    times = np.unique(np.concatenate([function.knots[:, 0] for function in translation]))
     times = times[(times >= 0) & (times <= until)]
     if not len(times):
-        return np.zeros(len(way)), 0.0
-    moved = np.array([one(times) - one(0.0) for one in way]).T
+        return np.zeros(len(translation)), 0.0
+    moved = np.array([function(times) - function(0.0) for function in translation]).T
     k = int(np.linalg.norm(moved, axis=1).argmax())
     return moved[k], float(times[k])
 
 
-def _sampled(entry: str, given: str, program: tuple[float, ...], end: float) -> np.ndarray:
+def _sampled(entry: str, expression: str, program: tuple[float, ...], end: float) -> np.ndarray:
     """The knots (n, 3) of an expression from 0 to `end` [s].
 
     Intervals are halved until the polynomial in each agrees with the expression to CLOSE. At a kink
@@ -231,10 +240,10 @@ def _sampled(entry: str, given: str, program: tuple[float, ...], end: float) -> 
     """
     t = np.linspace(0, end, FEWEST + 1)
     while True:
-        knots = np.column_stack([t, *_evaluated(entry, given, program, t)])
+        knots = np.column_stack([t, *_evaluated(entry, expression, program, t)])
         width = np.diff(t)
         between = t[:-1, None] + width[:, None] * np.arange(1, TESTED + 1) / (TESTED + 1)
-        value, _ = _evaluated(entry, given, program, between.ravel())
+        value, _ = _evaluated(entry, expression, program, between.ravel())
         off = abs(TimeFunction(knots)(between) - value.reshape(between.shape)).max(axis=1)
         largest = max(abs(knots[:, 1]).max(), abs(value).max())
         open_ones = (off > CLOSE * largest) & (width > SHORTEST_INTERVAL * end)
@@ -243,20 +252,20 @@ def _sampled(entry: str, given: str, program: tuple[float, ...], end: float) -> 
             break
         if too_many:
             raise BadInput(
-                f"{entry}: '{brief(given)}' changes too often up to end_time = {end:g} s "
+                f"{entry}: '{brief(expression)}' changes too often up to end_time = {end:g} s "
                 f"(accepted: what {MOST} cubic polynomials follow)"
             )
         t = np.sort(np.append(t, (t[:-1] + width / 2)[open_ones]))
     if off.max() > BROKEN * largest:
         raise BadInput(
-            f"{entry}: '{brief(given)}' jumps, or has no limit, at t = {t[off.argmax()]:.6g} s "
-            f"(accepted: a continuous function)"
+            f"{entry}: '{brief(expression)}' jumps, or has no limit, at "
+            f"t = {t[off.argmax()]:.6g} s (accepted: a continuous function)"
         )
     return knots
 
 
 def _evaluated(
-    entry: str, given: str, program: tuple[float, ...], t: np.ndarray
+    entry: str, expression: str, program: tuple[float, ...], t: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """The values (n,) and slopes (n,) per second of an expression at times (n,) [s].
 
@@ -268,7 +277,7 @@ def _evaluated(
     bad = ~((abs(value) <= LONGEST**2) & (abs(slope) <= STEEPEST))
     if bad.any():
         raise BadInput(
-            f"{entry}: '{brief(given)}' is {value[bad][0]:g}, its slope {slope[bad][0]:g}, at "
+            f"{entry}: '{brief(expression)}' is {value[bad][0]:g}, its slope {slope[bad][0]:g}, at "
             f"t = {t[bad][0]:g} s (accepted: a number and a finite slope at all times)"
         )
     return value, slope

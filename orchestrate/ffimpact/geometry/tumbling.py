@@ -44,8 +44,8 @@ def rotation(turn: np.ndarray) -> np.ndarray:
     if angle == 0:
         return np.eye(3)
     K = _cross(turn / angle)
-    found = np.eye(3) + math.sin(angle) * K + (1 - math.cos(angle)) * K @ K
-    return np.where(abs(found - found.round()) < 1e-15, found.round(), found)
+    matrix = np.eye(3) + math.sin(angle) * K + (1 - math.cos(angle)) * K @ K
+    return np.where(abs(matrix - matrix.round()) < 1e-15, matrix.round(), matrix)
 
 
 def _cross(w: np.ndarray) -> np.ndarray:
@@ -71,7 +71,7 @@ class _Motion:
     """
 
     def __init__(self, moments: np.ndarray, start: np.ndarray, spin: np.ndarray):
-        self.inverse, self.momentum, self.found = (
+        self.inverse, self.momentum, self.rotations = (
             np.linalg.inv(moments),
             start @ moments @ start.T @ spin,
             [start],
@@ -91,7 +91,7 @@ class _Motion:
         """The rotation vector (3,) [rad] of the body over one period."""
         axis, once = (
             self.momentum / np.linalg.norm(self.momentum),
-            self._within(self.period) @ self.found[0].T,
+            self._within(self.period) @ self.rotations[0].T,
         )
         sine = (
             axis @ [once[2, 1] - once[1, 2], once[0, 2] - once[2, 0], once[1, 0] - once[0, 1]] / 2
@@ -100,17 +100,19 @@ class _Motion:
 
     def _within(self, t: float) -> np.ndarray:
         whole = int(t / self.step)
-        while len(self.found) <= whole:
-            self.found.append(self._next(self.found[-1], self.step))
-        return self._next(self.found[whole], t - whole * self.step)
+        while len(self.rotations) <= whole:
+            self.rotations.append(self._next(self.rotations[-1], self.step))
+        return self._next(self.rotations[whole], t - whole * self.step)
 
     def _next(self, R: np.ndarray, dt: float) -> np.ndarray:
         a = self._rate(R)
         b = self._rate(R + dt / 2 * a)
         c = self._rate(R + dt / 2 * b)
         d = self._rate(R + dt * c)
-        left, _, right = np.linalg.svd(R + dt / 6 * (a + 2 * b + 2 * c + d))
-        return left @ right  # the rotation that is closest to the result of the step
+        left_vectors, _, right_vectors = np.linalg.svd(R + dt / 6 * (a + 2 * b + 2 * c + d))
+        return (
+            left_vectors @ right_vectors
+        )  # the rotation that is closest to the result of the step
 
     def _rate(self, R: np.ndarray) -> np.ndarray:
         return _cross(R @ self.inverse @ R.T @ self.momentum) @ R
@@ -122,21 +124,21 @@ def _period(moments: np.ndarray, momentum: np.ndarray, spin: np.ndarray) -> floa
     Source: Landau and Lifshitz, Mechanics, section 37. The complete elliptic integral K is computed
     by the arithmetic-geometric mean.
     """
-    (least, middle, most), square, energy = (
+    (least, middle, largest), square, energy = (
         np.linalg.eigvalsh(moments),
         momentum @ momentum,
         spin @ momentum,
     )
     if square < energy * middle:
-        least, most = most, least
-    rate = (most - middle) * (square - energy * least)
-    a, b = 1.0, math.sqrt(max(1e-30, 1 - (middle - least) * (energy * most - square) / rate))
+        least, largest = largest, least
+    rate = (largest - middle) * (square - energy * least)
+    a, b = 1.0, math.sqrt(max(1e-30, 1 - (middle - least) * (energy * largest - square) / rate))
     for _ in range(8):
         a, b = (a + b) / 2, math.sqrt(a * b)
-    return 2 * math.pi / a * math.sqrt(most * middle * least / rate)
+    return 2 * math.pi / a * math.sqrt(largest * middle * least / rate)
 
 
 @lru_cache(maxsize=64)
-def _motion(*given: bytes) -> _Motion:
-    moments, start, spin = map(np.frombuffer, given)
+def _motion(*buffers: bytes) -> _Motion:
+    moments, start, spin = map(np.frombuffer, buffers)
     return _Motion(moments.reshape(3, 3), start.reshape(3, 3), spin)

@@ -14,7 +14,7 @@ __all__ = [
     "PLANE_STRAIN",
     "SCRIPTS",
     "SOLID",
-    "of",
+    "of_scene",
     "per_metre",
 ]
 
@@ -40,14 +40,14 @@ AXISYMMETRIC = Dimension(
     "axisymmetric", "bodies-axisymmetric", 2, "ball-plane", ("ball-axisymmetric",)
 )
 SOLID = Dimension("3d", "bodies-3d", 3, "ball-plane", ("ball-plane",))
-DIMENSIONS = {one.name: one for one in (PLANE_STRAIN, AXISYMMETRIC, SOLID)}
-SCRIPTS = tuple(one.script for one in DIMENSIONS.values())
+DIMENSIONS = {dimension.name: dimension for dimension in (PLANE_STRAIN, AXISYMMETRIC, SOLID)}
+SCRIPTS = tuple(dimension.script for dimension in DIMENSIONS.values())
 
 
-def of(given: dict) -> Dimension:
+def of_scene(content: dict) -> Dimension:
     """The dimension of a scene's tables; raises BadInput for an unknown word."""
     rule = Parameter("dimension", "word", PLANE_STRAIN.name, "-", "", words=tuple(DIMENSIONS))
-    return DIMENSIONS[rule.check(given.get("dimension", rule.default))]
+    return DIMENSIONS[rule.check(content.get("dimension", rule.default))]
 
 
 def per_metre(script: str) -> str:
@@ -55,4 +55,10 @@ def per_metre(script: str) -> str:
 
     In plane strain they are per metre of thickness ("/m"); in other dimensions the suffix is empty.
     """
-    return "" if any(script in (one.script, *one.cases) for one in (AXISYMMETRIC, SOLID)) else "/m"
+    return (
+        ""
+        if any(
+            script in (dimension.script, *dimension.cases) for dimension in (AXISYMMETRIC, SOLID)
+        )
+        else "/m"
+    )

@@ -23,9 +23,12 @@ TYPES = {"real": "real", "int": "int", "word": "string", "numbers": "string"}
 def flags() -> str:
     """The FreeFEM lines that read the flags; each script reads the flags that it takes."""
     text = f"{BEGIN}, written by python -m ffimpact.input.flags from orchestrate/ffimpact/input/table.py\n"
-    for scripts, rows in groupby(PARAMETERS.values(), lambda one: one.scripts):
+    for scripts, rows in groupby(PARAMETERS.values(), lambda parameter: parameter.scripts):
         text += f'takers = "{"|".join(scripts)}";\n'
-        text += "".join(f"{TYPES[one.kind]} {variable(one.name)} = {_call(one)};\n" for one in rows)
+        text += "".join(
+            f"{TYPES[parameter.kind]} {variable(parameter.name)} = {_call(parameter)};\n"
+            for parameter in rows
+        )
     return text + END
 
 
@@ -35,14 +38,22 @@ def variable(name: str) -> str:
     return OTHERWISE.get(name, first + "".join(map(str.capitalize, others)))
 
 
-def _call(one: Parameter) -> str:
-    if one.kind == "word":
-        return f'parameterWord("{one.name}", "{one.default}",\n  "{"|".join(one.words)}")'
-    if one.kind == "numbers":
-        return f'parameterNumbers("{one.name}")'
-    default = "automatic" if one.default == "auto" else _number(one.default, one.kind)
-    kind = "Int" if one.kind == "int" else "Real"
-    return f'parameter{kind}("{one.name}", {default}, {_number(one.low, one.kind)}, {_number(one.high, one.kind)})'
+def _call(parameter: Parameter) -> str:
+    if parameter.kind == "word":
+        return (
+            f'parameterWord("{parameter.name}", "{parameter.default}",\n'
+            f'  "{"|".join(parameter.words)}")'
+        )
+    if parameter.kind == "numbers":
+        return f'parameterNumbers("{parameter.name}")'
+    default = (
+        "automatic" if parameter.default == "auto" else _number(parameter.default, parameter.kind)
+    )
+    kind = "Int" if parameter.kind == "int" else "Real"
+    return (
+        f'parameter{kind}("{parameter.name}", {default}, '
+        f"{_number(parameter.low, parameter.kind)}, {_number(parameter.high, parameter.kind)})"
+    )
 
 
 def _number(value: float | str, kind: str) -> str:

@@ -100,9 +100,17 @@ SIDES = ("left", "right", "bottom", "top", "back", "front", "all", "outer", "inn
 
 def shared(name: str, meaning: str = "") -> Parameter:
     """The rule of a parameter of the table, for an entry of the same name."""
-    one = PARAMETERS[name]
+    parameter = PARAMETERS[name]
     return Parameter(
-        "", one.kind, None, one.unit, meaning or one.help, one.low, one.high, one.words, one.scripts
+        "",
+        parameter.kind,
+        None,
+        parameter.unit,
+        meaning or parameter.help,
+        parameter.low,
+        parameter.high,
+        parameter.words,
+        parameter.scripts,
     )
 
 
@@ -123,18 +131,18 @@ class _Made(type(BaseModel)):  # type: ignore[misc]
             raise BadInput(
                 f"{cls.__name__}: '{brief(unnamed[0])}' has no name (accepted: entries by name: {accepted})"
             )
-        given = {name: plain(value) for name, value in entries.items() if value is not None}
+        set_entries = {name: plain(value) for name, value in entries.items() if value is not None}
         try:
-            made = super().__call__(**given)
+            made = super().__call__(**set_entries)
         except ValidationError as error:
             raise BadInput(*_lines(cls, error, cls.__name__, ": ", None)) from None
-        made._given = given
+        made._given = set_entries
         return made
 
     @property
     def __signature__(cls) -> Signature:
         """The entries as keywords, with units and meanings, for help() and notebooks."""
-        keywords = [_keyword(*one) for one in cls.model_fields.items() if not one[1].exclude]
+        keywords = [_keyword(*item) for item in cls.model_fields.items() if not item[1].exclude]
         if issubclass(cls, Body):
             own = Keyword("material", Keyword.KEYWORD_ONLY, default=None, annotation="a Material")
             keywords.insert(1, own)
@@ -147,7 +155,7 @@ class _Made(type(BaseModel)):  # type: ignore[misc]
 
 def _keyword(name: str, field: FieldInfo) -> Keyword:
     """The entry of a model as a keyword of its constructor."""
-    rules = [one for one in field.metadata if isinstance(one, Rule)]
+    rules = [rule for rule in field.metadata if isinstance(rule, Rule)]
     text = rules[0].meaning if rules else field.description or ""
     default = Keyword.empty if field.is_required() else field.get_default()
     annotation = text or Keyword.empty
@@ -183,7 +191,7 @@ class Entries(BaseModel, metaclass=_Made):
         """The full name of an entry of the table, "body.2.radius"."""
         return f"{self._entry}.{name}" if self._entry else name
 
-    def given(self, name: str) -> str:
+    def value_text(self, name: str) -> str:
         """The given value of an entry, as a message prints it."""
         return brief(self._given.get(name, ""))
 
@@ -192,66 +200,71 @@ class Entries(BaseModel, metaclass=_Made):
         return {name: _table(value) for name, value in self if value is not None}
 
     @classmethod
-    def names(cls, of: Dimension | None) -> list[str]:
+    def names(cls, dimension: Dimension | None) -> list[str]:
         """The names of the entries in a dimension; the model's own precede those of its base."""
         general = cls.__mro__[1]
         common = (
             general.model_fields if issubclass(general, Entries) and general is not Entries else {}
         )
         every = [name for name in cls.model_fields if name not in common] + list(common)
-        return [name for name in every if of is None or of in cls.only.get(name, (of,))]
+        return [
+            name
+            for name in every
+            if dimension is None or dimension in cls.only.get(name, (dimension,))
+        ]
 
     @classmethod
-    def refused(cls, name: str, value: Any, of: Dimension | None) -> str:
+    def refused(cls, name: str, value: Any, dimension: Dimension | None) -> str:
         """The message about an entry that the model does not have, behind the entry's name."""
-        return _no_such(name, value, [*cls.heading, *cls.names(of)])
+        return _no_such(name, value, [*cls.heading, *cls.names(dimension)])
 
     @classmethod
-    def read(cls, entry: str, given: Any, of: Dimension | None) -> Self:
+    def read(cls, entry: str, table: Any, dimension: Dimension | None) -> Self:
         """The model of the table `entry` of a scene.
 
         Raises BadInput with a line for each error in the table.
         """
-        if not isinstance(given, dict):
+        if not isinstance(table, dict):
             raise BadInput(
-                f"{entry}: '{brief(given)}' is no table (accepted: a table with {', '.join(cls.names(of))})"
+                f"{entry}: '{brief(table)}' is no table (accepted: a table with {', '.join(cls.names(dimension))})"
             )
-        names, others = cls.names(of), {}
+        names, others = cls.names(dimension), {}
         if set(cls.model_fields) - set(names):  # the model has entries of other dimensions
             others = {
                 name: value
-                for name, value in given.items()
+                for name, value in table.items()
                 if name in cls.model_fields and name not in names
             }
         messages = [
-            f"{entry}.{name}{cls.refused(name, value, of)}".lstrip(".")
+            f"{entry}.{name}{cls.refused(name, value, dimension)}".lstrip(".")
             for name, value in others.items()
         ]
         try:
-            found = cls.model_validate(
-                {name: given[name] for name in given if name not in others}, context={"of": of}
+            model = cls.model_validate(
+                {name: table[name] for name in table if name not in others},
+                context={"of": dimension},
             )
         except ValidationError as error:
-            messages += _lines(cls, error, entry, ".", of)
+            messages += _lines(cls, error, entry, ".", dimension)
         if messages:
             raise BadInput(*messages)
-        found._stands_at(entry, given)
-        return found
+        model._stands_at(entry, table)
+        return model
 
-    def _stands_at(self, entry: str, given: dict[str, Any]) -> None:
-        self._entry, self._given = entry, given
+    def _stands_at(self, entry: str, table: dict[str, Any]) -> None:
+        self._entry, self._given = entry, table
         for name, value in self:
             if isinstance(value, Entries):
-                value._stands_at(self.at(name), given[name])
+                value._stands_at(self.at(name), table[name])
             elif name in self.nested and isinstance(value, list):
-                for k, one in enumerate(value, 1):
-                    one._stands_at(f"{self.at(name)}.{k}", given[name][k - 1])
+                for k, nested_model in enumerate(value, 1):
+                    nested_model._stands_at(f"{self.at(name)}.{k}", table[name][k - 1])
 
 
 def _table(value: Any) -> Any:
     if isinstance(value, Entries):
         return value.table()
-    return [_table(one) for one in value] if isinstance(value, list | tuple) else plain(value)
+    return [_table(item) for item in value] if isinstance(value, list | tuple) else plain(value)
 
 
 def _no_such(name: str, value: Any, accepted: list[str], meant: str = "") -> str:
@@ -263,51 +276,64 @@ MOST_LINES = 20  # largest number of messages about one table
 
 
 def _lines(
-    model: type[Entries], error: ValidationError, entry: str, between: str, of: Dimension | None
+    model: type[Entries],
+    error: ValidationError,
+    entry: str,
+    between: str,
+    dimension: Dimension | None,
 ) -> list[str]:
     """The messages about all errors that pydantic finds: entry, value and accepted values.
 
     `between` is the text between the name of the table and that of the entry.
     """
-    found = []
+    messages = []
     every = error.errors()
-    misspelt = [str(one["loc"][-1]) for one in every if one["type"] == "extra_forbidden"]
-    for one in every:
+    misspelt = [str(item["loc"][-1]) for item in every if item["type"] == "extra_forbidden"]
+    for problem in every:
         holder = model
-        for part in one["loc"][:-1]:
+        for part in problem["loc"][:-1]:
             holder = holder.nested.get(str(part), holder)
-        *way, last = one["loc"]
-        place = [str(part + 1 if isinstance(part, int) else part) for part in way]
+        *parents, last = problem["loc"]
+        parent_keys = [str(part + 1 if isinstance(part, int) else part) for part in parents]
         name = brief(last + 1 if isinstance(last, int) else last)
-        if one["type"] == "missing" and any(suggestion(word, [name]) for word in misspelt):
+        if problem["type"] == "missing" and any(suggestion(word, [name]) for word in misspelt):
             continue  # the message about the misspelt name covers it
-        at = f"{entry}{between if entry else ''}{'.'.join([*place, name])}"
-        found.append(
-            at + _refusal(holder, one, name, ".".join([*([entry] if entry else []), *place]), of)
+        at = f"{entry}{between if entry else ''}{'.'.join([*parent_keys, name])}"
+        messages.append(
+            at
+            + _refusal(
+                holder,
+                problem,
+                name,
+                ".".join([*([entry] if entry else []), *parent_keys]),
+                dimension,
+            )
         )
-    if len(found) > MOST_LINES:
-        found[MOST_LINES:] = [
-            f"{entry or 'the scene'}: {len(found) - MOST_LINES} more entries are not accepted"
+    if len(messages) > MOST_LINES:
+        messages[MOST_LINES:] = [
+            f"{entry or 'the scene'}: {len(messages) - MOST_LINES} more entries are not accepted"
         ]
-    return found
+    return messages
 
 
-def _refusal(holder: type[Entries], one: Any, name: str, table: str, of: Dimension | None) -> str:
+def _refusal(
+    holder: type[Entries], problem: Any, name: str, table: str, dimension: Dimension | None
+) -> str:
     """The message about an error, behind the name of the entry; `table` is the enclosing table."""
-    if one["type"] == "extra_forbidden":
-        return holder.refused(name, one["input"], of)
-    if one["type"] == "missing":
-        rules = [each for each in holder.model_fields[name].metadata if isinstance(each, Rule)]
-        return f": is missing (accepted: {rules[0].accepted_in(of) if rules else 'a table'})"
-    if one["type"] == "value_error":
-        return str(one["ctx"]["error"])
-    given = brief(one["input"])
-    if one["type"] == "list_type":
-        return f": '{given}' is no list of tables (accepted: [[{table}.{name}]])"
+    if problem["type"] == "extra_forbidden":
+        return holder.refused(name, problem["input"], dimension)
+    if problem["type"] == "missing":
+        rules = [rule for rule in holder.model_fields[name].metadata if isinstance(rule, Rule)]
+        return f": is missing (accepted: {rules[0].accepted_in(dimension) if rules else 'a table'})"
+    if problem["type"] == "value_error":
+        return str(problem["ctx"]["error"])
+    text = brief(problem["input"])
+    if problem["type"] == "list_type":
+        return f": '{text}' is no list of tables (accepted: [[{table}.{name}]])"
     if name.isdecimal():
-        return f": '{given}' is no table (accepted: [[{table}]])"
+        return f": '{text}' is no table (accepted: [[{table}]])"
     model = holder.nested.get(name, holder)
-    return f": '{given}' is no table (accepted: a table with {', '.join(model.names(of))})"
+    return f": '{text}' is no table (accepted: a table with {', '.join(model.names(dimension))})"
 
 
 # ---- materials
@@ -371,8 +397,8 @@ class Ogden(Material):
 
 
 LAWS: dict[str, type[Material]] = {
-    one.model_fields["law"].default: one
-    for one in (SaintVenantKirchhoff, NeoHookean, Incompressible, MooneyRivlin, Ogden)
+    model.model_fields["law"].default: model
+    for model in (SaintVenantKirchhoff, NeoHookean, Incompressible, MooneyRivlin, Ogden)
 }
 MATERIAL = tuple(Material.model_fields)
 
@@ -495,9 +521,9 @@ class Body(Entries):
         if not isinstance(entries, dict):
             return entries
         if not isinstance(entries.get("material"), Material | None):
-            given = brief(entries["material"])
+            text = brief(entries["material"])
             raise BadInput(
-                f"material: '{given}' is no material (accepted: NeoHookean(young=..., nu=..., density=...), say)"
+                f"material: '{text}' is no material (accepted: NeoHookean(young=..., nu=..., density=...), say)"
             )
         own = {name: value for name, value in entries.items() if name != "material"}
         return (entries["material"].table() if "material" in entries else {}) | own
@@ -642,8 +668,8 @@ class Mesh(Body):
 
 
 BODIES: dict[str, type[Body]] = {
-    one.shape: one
-    for one in (
+    model.shape: model
+    for model in (
         Disc,
         Ellipse,
         Rectangle,
@@ -694,8 +720,8 @@ class Obstacle(Entries):
         return {"kind": self.kind} | super().table()
 
     @classmethod
-    def refused(cls, name: str, value: Any, of: Dimension | None) -> str:
-        return _of_all(name, value) or super().refused(name, value, of)
+    def refused(cls, name: str, value: Any, dimension: Dimension | None) -> str:
+        return _of_all(name, value) or super().refused(name, value, dimension)
 
 
 class Plane(Obstacle):
@@ -772,7 +798,7 @@ class Implicit(Obstacle):
 
 
 OBSTACLES: dict[str, type[Obstacle]] = {
-    one.kind: one for one in (Plane, Circle, Sphere, Bowl, Polyline, Surface, Implicit)
+    model.kind: model for model in (Plane, Circle, Sphere, Bowl, Polyline, Surface, Implicit)
 }
 
 
@@ -791,8 +817,8 @@ class Pair(Entries):
     friction_dynamic: Annotated[float | str | None, shared("friction_dynamic")] = None
 
     @classmethod
-    def refused(cls, name: str, value: Any, of: Dimension | None) -> str:
-        return _of_all(name, value) or super().refused(name, value, of)
+    def refused(cls, name: str, value: Any, dimension: Dimension | None) -> str:
+        return _of_all(name, value) or super().refused(name, value, dimension)
 
 
 class Contact(Entries):
@@ -890,13 +916,13 @@ class Top(Entries):
     without: Annotated[str | None, shared("without")] = None
 
     @classmethod
-    def refused(cls, name: str, value: Any, of: Dimension | None) -> str:
+    def refused(cls, name: str, value: Any, dimension: Dimension | None) -> str:
         """The message about an unknown entry, with the table that has this entry, if any."""
-        of_bodies = {each for one in BODIES.values() for each in one.names(of)}
+        of_bodies = {entry for model in BODIES.values() for entry in model.names(dimension)}
         meant = (
             f"body.1.{name}" if name in of_bodies else f"contact.{name}" if name in CONTACT else ""
         )
-        return _no_such(name, value, [*cls.names(of), "body", "obstacle", "contact"], meant)
+        return _no_such(name, value, [*cls.names(dimension), "body", "obstacle", "contact"], meant)
 
 
 # ---- whole scenes
@@ -917,41 +943,48 @@ KINDS: dict[str, tuple[str, dict[str, type[Any]]]] = {
 }
 
 
-def read(given: dict[str, Any], of: Dimension) -> Tables:
+def read(content: dict[str, Any], dimension: Dimension) -> Tables:
     """The tables of a scene; raises BadInput with a line for each error in any of them."""
-    top = {name: value for name, value in given.items() if name not in (*KINDS, "contact")}
-    found = gathered([
-        lambda: Top.read("", top, of), lambda: tables(given, "body", of), lambda: tables(given, "obstacle", of),
-        lambda: Contact.read("contact", given.get("contact", {}), of)])  # fmt: skip
-    return Tables.model_construct(**dict(zip(("top", "bodies", "obstacles", "contact"), found)))
+    top = {name: value for name, value in content.items() if name not in (*KINDS, "contact")}
+    parts = gathered([
+        lambda: Top.read("", top, dimension), lambda: tables(content, "body", dimension),
+        lambda: tables(content, "obstacle", dimension),
+        lambda: Contact.read("contact", content.get("contact", {}), dimension)])  # fmt: skip
+    return Tables.model_construct(**dict(zip(("top", "bodies", "obstacles", "contact"), parts)))
 
 
-def tables(given: dict[str, Any], key: str, of: Dimension) -> list[Any]:
+def tables(content: dict[str, Any], key: str, dimension: Dimension) -> list[Any]:
     """The bodies or obstacles of a scene's tables `[[key]]`."""
-    listed_ones = enumerate(listed(given, key), 1)
-    return gathered([partial(of_table, f"{key}.{k}", one, key, of) for k, one in listed_ones])
+    listed_ones = enumerate(listed(content, key), 1)
+    return gathered(
+        [partial(of_table, f"{key}.{k}", table, key, dimension) for k, table in listed_ones]
+    )
 
 
-def of_table(entry: str, given: dict[str, Any], key: str, of: Dimension | None = None) -> Any:
+def of_table(
+    entry: str, table: dict[str, Any], key: str, dimension: Dimension | None = None
+) -> Any:
     """The body or obstacle of a table, by its shape or kind.
 
-    Without a dimension `of`, the shapes or kinds of all dimensions are accepted. Raises BadInput
+    Without a `dimension`, the shapes or kinds of all dimensions are accepted. Raises BadInput
     for other ones and for errors in the table.
     """
     word, models = KINDS[key]
-    accepted = [name for name, one in models.items() if of is None or of in one.dimensions]
-    name = given.get(word)
+    accepted = [
+        name for name, model in models.items() if dimension is None or dimension in model.dimensions
+    ]
+    name = table.get(word)
     if name is None:
         raise BadInput(f"{entry}.{word}: is missing (accepted: {'|'.join(accepted)})")
     if not isinstance(name, str) or name not in accepted:
         raise BadInput(f"{entry}.{word}: {unknown(name, accepted)}")
-    own = {key: value for key, value in given.items() if key != word}
-    return models[name].read(entry, own, of)
+    own = {key: value for key, value in table.items() if key != word}
+    return models[name].read(entry, own, dimension)
 
 
-def listed(given: dict[str, Any], key: str) -> list[dict[str, Any]]:
+def listed(content: dict[str, Any], key: str) -> list[dict[str, Any]]:
     """The list of tables `[[key]]` of a file, [] without such tables; raises BadInput otherwise."""
-    tables = given.get(key, [])
+    tables = content.get(key, [])
     if not isinstance(tables, list):
         raise BadInput(f"{key}: '{brief(tables)}' is no list of tables (accepted: [[{key}]])")
     for k, table in enumerate(tables, 1):

@@ -53,15 +53,15 @@ class Rule:
     accepted: str  # the accepted values as messages print them
     meaning: str = ""
 
-    def checked(self, given: Any, of: Dimension | None) -> Any:
-        """Returns the value as the program uses it; `of` is the scene's dimension, if known.
+    def checked(self, value: Any, dimension: Dimension | None) -> Any:
+        """Returns the value as the program uses it; `dimension` is that of the scene, if known.
 
         Raises BadInput if the value is not accepted. The message contains the text behind the
         entry's name: ": 'x' is not a number (accepted: ...)", or ".2: ..." for a component.
         """
         raise NotImplementedError
 
-    def accepted_in(self, of: Dimension | None) -> str:
+    def accepted_in(self, dimension: Dimension | None) -> str:
         """The accepted values in a dimension, as messages print them."""
         return self.accepted
 
@@ -79,9 +79,9 @@ class Rule:
     ) -> dict[str, Any]:
         return self.schema() | ({"description": self.meaning} if self.meaning else {})
 
-    def _validated(self, given: Any, info: ValidationInfo) -> Any:
+    def _validated(self, value: Any, info: ValidationInfo) -> Any:
         try:
-            return self.checked(plain(given), (info.context or {}).get("of"))
+            return self.checked(plain(value), (info.context or {}).get("of"))
         except BadInput as error:
             raise ValueError(str(error)) from None
 
@@ -91,8 +91,8 @@ def plain(value: Any) -> Any:
     if isinstance(value, np.ndarray | np.generic):
         return value.tolist()
     if isinstance(value, list | tuple):
-        return [plain(one) for one in value]
-    return {key: plain(one) for key, one in value.items()} if isinstance(value, dict) else value
+        return [plain(item) for item in value]
+    return {key: plain(item) for key, item in value.items()} if isinstance(value, dict) else value
 
 
 @dataclass(frozen=True)
@@ -119,21 +119,21 @@ class Parameter(Rule):
         """The meaning of the parameter, with its unit."""
         return f"{self.help} [{self.unit}]" if self.unit not in ("", "-") else self.help
 
-    def checked(self, given: Any, of: Dimension | None) -> Value:
-        return replace(self, name="").check(given)
+    def checked(self, value: Any, dimension: Dimension | None) -> Value:
+        return replace(self, name="").check(value)
 
     def schema(self) -> dict[str, Any]:
-        found = {} if self.default is None else {"default": self.default}
+        common = {} if self.default is None else {"default": self.default}
         if self.kind == "word":
-            return found | {"enum": list(self.words)}
+            return common | {"enum": list(self.words)}
         if self.kind == "numbers":
-            return found | {"type": ["string", "number", "array"]}
+            return common | {"type": ["string", "number", "array"]}
         number = {
             "type": "integer" if self.kind == "int" else "number",
             "minimum": self.low,
             "maximum": self.high,
         }
-        return found | ({"anyOf": [number, {"enum": list(self.words)}]} if self.words else number)
+        return common | ({"anyOf": [number, {"enum": list(self.words)}]} if self.words else number)
 
     @property
     def accepted(self) -> str:  # type: ignore[override]
@@ -146,46 +146,42 @@ class Parameter(Rule):
             else ", ".join([*self.words, f"{self.low:g} to {self.high:g}"])
         )
 
-    def check(self, given: Any) -> Value:
-        """Converts `given` (text, a TOML value or a number of numpy) to a float, an int or a word.
+    def check(self, raw: Any) -> Value:
+        """Converts `raw` (text, a TOML value or a number of numpy) to a float, an int or a word.
 
         Raises BadInput, with the name of the parameter, if the value is not accepted.
         """
-        given = plain(given)
-        if isinstance(given, str) and given in self.words:
-            return given
+        raw = plain(raw)
+        if isinstance(raw, str) and raw in self.words:
+            return raw
         if self.kind == "word":
-            raise BadInput(f"{self.name}: {unknown(given, self.words)}")
+            raise BadInput(f"{self.name}: {unknown(raw, self.words)}")
         if self.kind == "numbers":
-            each = (
-                given.split(",")
-                if isinstance(given, str)
-                else [str(one) for one in (given if isinstance(given, list) else [given])]
+            texts = (
+                raw.split(",")
+                if isinstance(raw, str)
+                else [str(item) for item in (raw if isinstance(raw, list) else [raw])]
             )
-            if not each or not all(_NUMBER.fullmatch(one.strip()) for one in each):
+            if not texts or not all(_NUMBER.fullmatch(text.strip()) for text in texts):
                 raise BadInput(
-                    f"{self.name}: '{brief(given)}' is no list of numbers (accepted: {self.accepted})"
+                    f"{self.name}: '{brief(raw)}' is no list of numbers (accepted: {self.accepted})"
                 )
-            return ",".join(one.strip() for one in each)
-        wanted = "a whole number" if self.kind == "int" else "a number"
-        is_number = (
-            _NUMBER.fullmatch(given) if isinstance(given, str) else type(given) in (int, float)
-        )
+            return ",".join(text.strip() for text in texts)
+        expected = "a whole number" if self.kind == "int" else "a number"
+        is_number = _NUMBER.fullmatch(raw) if isinstance(raw, str) else type(raw) in (int, float)
         if not is_number or (
-            self.kind == "int" and not isinstance(given, int) and float(given) % 1 != 0
+            self.kind == "int" and not isinstance(raw, int) and float(raw) % 1 != 0
         ):
-            said = (
-                isinstance(given, str) and with_unit(given, self.unit)
-            ) or f"is not {wanted}{suggestion(given, self.words)}"
-            raise BadInput(f"{self.name}: '{brief(given)}' {said} (accepted: {self.accepted})")
+            problem = (
+                isinstance(raw, str) and with_unit(raw, self.unit)
+            ) or f"is not {expected}{suggestion(raw, self.words)}"
+            raise BadInput(f"{self.name}: '{brief(raw)}' {problem} (accepted: {self.accepted})")
         try:
-            value = float(given)
+            value = float(raw)
         except OverflowError:
             value = math.inf
         if not self.low <= value <= self.high:
-            raise BadInput(
-                f"{self.name}: {brief(given)} is out of range (accepted: {self.accepted})"
-            )
+            raise BadInput(f"{self.name}: {brief(raw)} is out of range (accepted: {self.accepted})")
         return int(value) if self.kind == "int" else value
 
 
@@ -195,13 +191,13 @@ def with_unit(text: str, unit: str) -> str:
     The message contains the converted number if the units are known multiples of each other. It is
     empty if the text is not a number with a unit.
     """
-    if not (found := _QUANTITY.fullmatch(text)):
+    if not (match := _QUANTITY.fullmatch(text)):
         return ""
-    given = found[found.lastindex or 0].translate(POWERS)
+    user_unit = match[match.lastindex or 0].translate(POWERS)
     factors = {prefix + unit: factor for prefix, factor in PREFIXES.items()} | OTHER_UNITS.get(
         unit, {}
     )
-    number = f": {float(found[1]) * factors[given]:.12g}" if given in factors else ""
+    number = f": {float(match[1]) * factors[user_unit]:.12g}" if user_unit in factors else ""
     return f"has a unit; give the number {'alone' if unit in ('', '-') else f'in {unit}'}{number}"
 
 

@@ -46,7 +46,11 @@ OUTPUT = {"fields": 0, "modes": 0}
 
 def names(script: str = "") -> list[str]:
     """The names of the parameters of one script, or of all scripts."""
-    return [one.name for one in PARAMETERS.values() if not script or script in one.scripts]
+    return [
+        parameter.name
+        for parameter in PARAMETERS.values()
+        if not script or script in parameter.scripts
+    ]
 
 
 def taken(name: str, script: str) -> None:
@@ -57,19 +61,19 @@ def taken(name: str, script: str) -> None:
         )
 
 
-def check(given: dict[str, Value], script: str = "") -> dict[str, Value]:
+def check(values: dict[str, Value], script: str = "") -> dict[str, Value]:
     """Checks and converts the given parameters of one script, or of all scripts.
 
     Raises BadInput with the name of the first parameter that is unknown or not accepted.
     """
-    for name in given:
+    for name in values:
         if name in names() and script:
             taken(name, script)
         if name not in names():
             raise BadInput(
                 f"{brief(name)}: no such parameter{suggestion(name, names())} (accepted: {', '.join(names(script))})"
             )
-    return {name: PARAMETERS[name].check(value) for name, value in given.items()}
+    return {name: PARAMETERS[name].check(value) for name, value in values.items()}
 
 
 def defaults(script: str = "disc-plane") -> dict[str, Value]:

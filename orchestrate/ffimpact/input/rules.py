@@ -59,34 +59,34 @@ def placeholder(count: int) -> str:
     return f"[{', '.join('xyz'[:count])}]"
 
 
-def vector(given: Any, count: int, low: float, high: float, at: str = "") -> list[float]:
+def vector(value: Any, count: int, low: float, high: float, at: str = "") -> list[float]:
     """Checks a list of `count` numbers between two bounds.
 
     Raises BadInput otherwise; its message begins with `at`, the text behind the entry's name.
     """
-    if not isinstance(given, list | tuple) or len(given) != count:
+    if not isinstance(value, list | tuple) or len(value) != count:
         raise BadInput(
-            f"{at}: '{brief(given)}' is no {placeholder(count)} (accepted: {('two', 'three')[count - 2]} numbers, each "
+            f"{at}: '{brief(value)}' is no {placeholder(count)} (accepted: {('two', 'three')[count - 2]} numbers, each "
             f"{low:g} to {high:g})"
         )
     return [
-        float(Parameter(f"{at}.{k}", "real", None, "", "", low, high).check(one))
-        for k, one in enumerate(given, 1)
+        float(Parameter(f"{at}.{k}", "real", None, "", "", low, high).check(component))
+        for k, component in enumerate(value, 1)
     ]
 
 
-def points(given: Any, least: int, at: str = "") -> list[list[float]]:
+def points(value: Any, least: int, at: str = "") -> list[list[float]]:
     """Checks a list of at least `least` points [x, y].
 
     Raises BadInput otherwise; its message begins with `at`, the text behind the entry's name.
     """
-    if not isinstance(given, list) or len(given) < least:
+    if not isinstance(value, list) or len(value) < least:
         raise BadInput(
-            f"{at}: '{brief(given)}' is too little (accepted: {least} points [x, y] or more)"
+            f"{at}: '{brief(value)}' is too little (accepted: {least} points [x, y] or more)"
         )
-    if len(given) > MOST:
-        raise BadInput(f"{at}: {len(given)} points (accepted: {least} to {MOST})")
-    return [vector(one, 2, -LONGEST, LONGEST, f"{at}.{k}") for k, one in enumerate(given, 1)]
+    if len(value) > MOST:
+        raise BadInput(f"{at}: {len(value)} points (accepted: {least} to {MOST})")
+    return [vector(point, 2, -LONGEST, LONGEST, f"{at}.{k}") for k, point in enumerate(value, 1)]
 
 
 @dataclass(frozen=True)
@@ -102,18 +102,20 @@ class Vector(Rule):
     def accepted(self) -> str:  # type: ignore[override]
         return self.accepted_in(PLANE_STRAIN)
 
-    def accepted_in(self, of: Dimension | None) -> str:
-        return f"{placeholder(self.count or (of.axes if of else 2))}, each {self.low:g} to {self.high:g}"
+    def accepted_in(self, dimension: Dimension | None) -> str:
+        return f"{placeholder(self.count or (dimension.axes if dimension else 2))}, each {self.low:g} to {self.high:g}"
 
-    def checked(self, given: Any, of: Dimension | None) -> Any:
-        open_count = len(given) if isinstance(given, list) and len(given) in (2, 3) else 2
-        return vector(given, self.count or (of.axes if of else open_count), self.low, self.high)
+    def checked(self, value: Any, dimension: Dimension | None) -> Any:
+        open_count = len(value) if isinstance(value, list) and len(value) in (2, 3) else 2
+        return vector(
+            value, self.count or (dimension.axes if dimension else open_count), self.low, self.high
+        )
 
     def schema(self) -> dict[str, Any]:
-        one = {"type": "number", "minimum": self.low, "maximum": self.high}
+        component = {"type": "number", "minimum": self.low, "maximum": self.high}
         return {
             "type": "array",
-            "items": one,
+            "items": component,
             "minItems": self.count or 2,
             "maxItems": self.count or 3,
         }
@@ -123,16 +125,16 @@ class Vector(Rule):
 class Place(Vector):
     """A position or a vector; for bodies of revolution along the axis, [0, y] or y alone."""
 
-    def checked(self, given: Any, of: Dimension | None) -> Any:
-        if of in (AXISYMMETRIC, None) and not isinstance(given, list):
-            y = number(self.low, self.high, "").checked(given, of)
-            return [0.0, y] if of else y
-        found = super().checked(given, of)
-        if of is AXISYMMETRIC and found[0] != 0:
+    def checked(self, value: Any, dimension: Dimension | None) -> Any:
+        if dimension in (AXISYMMETRIC, None) and not isinstance(value, list):
+            y = number(self.low, self.high, "").checked(value, dimension)
+            return [0.0, y] if dimension else y
+        position = super().checked(value, dimension)
+        if dimension is AXISYMMETRIC and position[0] != 0:
             raise BadInput(
-                f": x is {found[0]:g}, off the axis of revolution (accepted: [0, y], or y alone)"
+                f": x is {position[0]:g}, off the axis of revolution (accepted: [0, y], or y alone)"
             )
-        return found
+        return position
 
     def schema(self) -> dict[str, Any]:
         return {
@@ -163,11 +165,15 @@ class InSpace(Rule):
     def _vector(self) -> Vector:
         return Vector("", self.plane.low if self.low is None else self.low, self.plane.high, 3)
 
-    def checked(self, given: Any, of: Dimension | None) -> Any:
-        if of is PLANE_STRAIN or not isinstance(given, list) and (of is None or self.about_z):
-            found = self.plane.checked(given, of)
-            return [0.0, 0.0, found] if of is SOLID else found
-        return self._vector.checked(given, of)
+    def checked(self, value: Any, dimension: Dimension | None) -> Any:
+        if (
+            dimension is PLANE_STRAIN
+            or not isinstance(value, list)
+            and (dimension is None or self.about_z)
+        ):
+            rotation = self.plane.checked(value, dimension)
+            return [0.0, 0.0, rotation] if dimension is SOLID else rotation
+        return self._vector.checked(value, dimension)
 
     def schema(self) -> dict[str, Any]:
         return {"anyOf": [self.plane.schema(), self._vector.schema()]}
@@ -184,8 +190,8 @@ class Points(Rule):
     def accepted(self) -> str:  # type: ignore[override]
         return f"{self.least} points [x, y] or more"
 
-    def checked(self, given: Any, of: Dimension | None) -> Any:
-        return points(given, self.least)
+    def checked(self, value: Any, dimension: Dimension | None) -> Any:
+        return points(value, self.least)
 
     def schema(self) -> dict[str, Any]:
         return {
@@ -203,10 +209,10 @@ class Polygons(Rule):
     meaning: str = ""
     accepted: str = "[[[x, y], ...], ...]"
 
-    def checked(self, given: Any, of: Dimension | None) -> Any:
-        if not isinstance(given, list):
-            raise BadInput(f": '{brief(given)}' is no list of polygons (accepted: {self.accepted})")
-        return [points(one, 3, f".{k}") for k, one in enumerate(given, 1)]
+    def checked(self, value: Any, dimension: Dimension | None) -> Any:
+        if not isinstance(value, list):
+            raise BadInput(f": '{brief(value)}' is no list of polygons (accepted: {self.accepted})")
+        return [points(polygon, 3, f".{k}") for k, polygon in enumerate(value, 1)]
 
     def schema(self) -> dict[str, Any]:
         return {"type": "array", "items": Points().schema()}
@@ -219,12 +225,12 @@ class Flag(Rule):
     meaning: str = ""
     accepted: str = "true|false"
 
-    def checked(self, given: Any, of: Dimension | None) -> Any:
-        if not isinstance(given, bool):
+    def checked(self, value: Any, dimension: Dimension | None) -> Any:
+        if not isinstance(value, bool):
             raise BadInput(
-                f": '{brief(given)}' is neither true nor false (accepted: {self.accepted})"
+                f": '{brief(value)}' is neither true nor false (accepted: {self.accepted})"
             )
-        return given
+        return value
 
     def schema(self) -> dict[str, Any]:
         return {"type": "boolean"}
@@ -237,10 +243,10 @@ class Text(Rule):
     meaning: str = ""
     accepted: str = "text in quotes"
 
-    def checked(self, given: Any, of: Dimension | None) -> Any:
-        if not isinstance(given, str):
-            raise BadInput(f": '{brief(given)}' is no text (accepted: text in quotes)")
-        return given
+    def checked(self, value: Any, dimension: Dimension | None) -> Any:
+        if not isinstance(value, str):
+            raise BadInput(f": '{brief(value)}' is no text (accepted: text in quotes)")
+        return value
 
     def schema(self) -> dict[str, Any]:
         return {"type": "string"}
@@ -253,10 +259,10 @@ class Name(Rule):
     meaning: str = ""
     accepted: str = "letters, digits, _ - . without blanks, a letter first"
 
-    def checked(self, given: Any, of: Dimension | None) -> Any:
-        if not isinstance(given, str) or not NAME.fullmatch(given):
-            raise BadInput(f": '{brief(given)}' is no name (accepted: {self.accepted})")
-        return given
+    def checked(self, value: Any, dimension: Dimension | None) -> Any:
+        if not isinstance(value, str) or not NAME.fullmatch(value):
+            raise BadInput(f": '{brief(value)}' is no name (accepted: {self.accepted})")
+        return value
 
     def schema(self) -> dict[str, Any]:
         return {"type": "string", "pattern": f"^{NAME.pattern}$"}
@@ -269,8 +275,8 @@ class Partners(Rule):
     meaning: str = ""
     accepted: str = "two names, one at least of a body"
 
-    def checked(self, given: Any, of: Dimension | None) -> Any:
-        return given
+    def checked(self, value: Any, dimension: Dimension | None) -> Any:
+        return value
 
     def schema(self) -> dict[str, Any]:
         return {"type": "array", "items": Text().schema(), "minItems": 2, "maxItems": 2}
@@ -287,8 +293,8 @@ class Function(Rule):
     single: bool = False
     accepted: str = "numbers, expressions of t in quotes, a CSV file or a table"
 
-    def checked(self, given: Any, of: Dimension | None) -> Any:
-        return given
+    def checked(self, value: Any, dimension: Dimension | None) -> Any:
+        return value
 
     def schema(self) -> dict[str, Any]:
         kinds = ["string", "object", "number"] if self.single else ["string", "object", "array"]
@@ -309,41 +315,50 @@ class Where(Rule):
     def accepted(self) -> str:  # type: ignore[override]
         return self.accepted_in(SOLID)
 
-    def accepted_in(self, of: Dimension | None) -> str:
+    def accepted_in(self, dimension: Dimension | None) -> str:
         axial = {"axis": AXISYMMETRIC, "front": SOLID, "back": SOLID}
-        names = [one for one in self.sides if axial.get(one, of) is of or of is None]
-        return f"{', '.join(names)}, the name of a group of its file, or a region {'|'.join(_kinds(of))}"
+        names = [
+            side
+            for side in self.sides
+            if axial.get(side, dimension) is dimension or dimension is None
+        ]
+        return f"{', '.join(names)}, the name of a group of its file, or a region {'|'.join(_kinds(dimension))}"
 
-    def checked(self, given: Any, of: Dimension | None) -> Any:
-        if isinstance(given, str):
-            return given
-        if not isinstance(given, dict) or given.get("kind") not in _kinds(of):
+    def checked(self, value: Any, dimension: Dimension | None) -> Any:
+        if isinstance(value, str):
+            return value
+        if not isinstance(value, dict) or value.get("kind") not in _kinds(dimension):
             raise BadInput(
-                f": '{brief(given)}' is no part of a boundary (accepted: {self.accepted_in(of)})"
+                f": '{brief(value)}' is no part of a boundary "
+                f"(accepted: {self.accepted_in(dimension)})"
             )
-        first, second = REGIONS[ALIAS.get(given["kind"], given["kind"])]
+        first, second = REGIONS[ALIAS.get(value["kind"], value["kind"])]
         accepted = ("kind", first, second)
-        for key in [key for key in given if key not in accepted]:
-            said = f"set to '{brief(given[key])}'{suggestion(key, accepted)} (accepted: {', '.join(accepted)})"
-            raise BadInput(f".{brief(key)}: no such entry, {said}")
-        each = Vector()
+        for key in [key for key in value if key not in accepted]:
+            details = f"set to '{brief(value[key])}'{suggestion(key, accepted)} (accepted: {', '.join(accepted)})"
+            raise BadInput(f".{brief(key)}: no such entry, {details}")
+        vector_rule = Vector()
         for key in (first, second):
-            if key not in given:
-                accepted = number().accepted if key == "radius" else each.accepted_in(of)
+            if key not in value:
+                accepted = (
+                    number().accepted if key == "radius" else vector_rule.accepted_in(dimension)
+                )
                 raise BadInput(f".{key}: is missing (accepted: {accepted})")
-        found = {"kind": given["kind"]}
+        region = {"kind": value["kind"]}
         for key in (first, second):
             try:
-                found[key] = (number() if key == "radius" else each).checked(given[key], of)
+                region[key] = (number() if key == "radius" else vector_rule).checked(
+                    value[key], dimension
+                )
             except BadInput as error:
                 raise BadInput(f".{key}{error}") from None
-        if second == "normal" and not any(found[second]):
+        if second == "normal" and not any(region[second]):
             raise BadInput(
-                f".normal: '{brief(given[second])}' has no direction (accepted: other than 0)"
+                f".normal: '{brief(value[second])}' has no direction (accepted: other than 0)"
             )
-        if second == "high" and any(high < low for low, high in zip(found[first], found[second])):
-            raise BadInput(f".high: '{brief(given[second])}' is below low (accepted: from low on)")
-        return found
+        if second == "high" and any(high < low for low, high in zip(region[first], region[second])):
+            raise BadInput(f".high: '{brief(value[second])}' is below low (accepted: from low on)")
+        return region
 
     def schema(self) -> dict[str, Any]:
         return {
@@ -358,11 +373,11 @@ class Where(Rule):
         }
 
 
-def _kinds(of: Dimension | None) -> list[str]:
+def _kinds(dimension: Dimension | None) -> list[str]:
     return (
         [*REGIONS, *ALIAS]
-        if of is None
+        if dimension is None
         else [*REGIONS]
-        if of is SOLID
+        if dimension is SOLID
         else ["half-plane", "box", "disc"]
     )

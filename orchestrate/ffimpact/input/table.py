@@ -370,5 +370,5 @@ ROWS = (
     ),
 )
 PARAMETERS: dict[str, Parameter] = {
-    one.name: replace(one, scripts=one.scripts or SCRIPTS) for one in ROWS
+    row.name: replace(row, scripts=row.scripts or SCRIPTS) for row in ROWS
 }

@@ -22,9 +22,9 @@ def to_toml(table: dict) -> str:
 def _plain(value):
     """A value with Python's numbers and lists in place of numpy's."""
     if isinstance(value, dict):
-        return {_plain(key): _plain(one) for key, one in value.items()}
+        return {_plain(key): _plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [_plain(one) for one in value]
+        return [_plain(item) for item in value]
     if isinstance(value, str) and re.search("[\ud800-\udfff]", value):
         raise BadInput(
             f"'{brief(value)}': is no text in UTF-8, in which scenes are written down (accepted: names and paths that are)"

@@ -33,7 +33,7 @@ def surfaces(points: np.ndarray, faces: np.ndarray) -> list[tuple[Curved, np.nda
     normals = np.cross(b - a, c - a)
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     patch = _patches(faces, normals)
-    found = []
+    result = []
     for k in np.unique(patch):
         own = np.flatnonzero(patch == k)
         if not _bends(normals[own]):
@@ -42,11 +42,11 @@ def surfaces(points: np.ndarray, faces: np.ndarray) -> list[tuple[Curved, np.nda
         # on a cylinder: only a cylinder is tried for it.
         inner = np.setdiff1d(faces[own], faces[patch != k])
         corners = points[np.unique(faces[own])]
-        one = _sphere(corners) if len(inner) else None
-        one = one or _cylinder(corners, normals[own])
-        if one and _agrees(one, points[faces[own]], normals[own]):
-            found.append((one, own))
-    return found
+        fit = _sphere(corners) if len(inner) else None
+        fit = fit or _cylinder(corners, normals[own])
+        if fit and _agrees(fit, points[faces[own]], normals[own]):
+            result.append((fit, own))
+    return result
 
 
 def _patches(faces: np.ndarray, normals: np.ndarray) -> np.ndarray:
@@ -65,16 +65,16 @@ def _bends(normals: np.ndarray) -> bool:
     return bool((normals @ far).min() <= math.cos(WIDEST * (1 - ON)))
 
 
-def _agrees(one: Curved, corners: np.ndarray, normals: np.ndarray) -> bool:
+def _agrees(fit: Curved, corners: np.ndarray, normals: np.ndarray) -> bool:
     """Whether faces with corners (f, 3, 3) and unit normals (f, 3) lie on a sphere or cylinder."""
-    arms = one.arms(corners)
-    if abs(np.linalg.norm(arms, axis=2) - one.radius).max() > ON * one.radius:
+    arms = fit.arms(corners)
+    if abs(np.linalg.norm(arms, axis=2) - fit.radius).max() > ON * fit.radius:
         return False
     chords = np.linalg.norm(arms - np.roll(arms, 1, axis=1), axis=2).max()
     middle = arms.sum(axis=1)
     turned = (middle * normals).sum(axis=1) / np.linalg.norm(middle, axis=1)
     return bool(
-        chords <= 2 * one.radius * math.sin(WIDEST / 2) * (1 + ON)
+        chords <= 2 * fit.radius * math.sin(WIDEST / 2) * (1 + ON)
         and min(abs(turned.sum()) / len(turned), abs(turned).min()) >= math.cos(WIDEST)
     )
 
@@ -83,13 +83,13 @@ def _sphere(points: np.ndarray) -> Curved | None:
     """The sphere through points (n, 3), by least squares; None if the points do not lie on it."""
     middle, scale = points.mean(axis=0), np.ptp(points, axis=0).max()
     local = (points - middle) / scale
-    found, *_ = np.linalg.lstsq(
+    solution, *_ = np.linalg.lstsq(
         np.column_stack([2 * local, np.ones(len(local))]), (local**2).sum(axis=1), rcond=None
     )
     # The linear equations are 2 x.c + (R^2 - c^2) = x^2, with the centre c and the radius R.
-    radius = math.sqrt(max(found[3] + (found[:3] ** 2).sum(), 0.0))
-    on = abs(np.linalg.norm(local - found[:3], axis=1) - radius).max() <= ON * radius
-    return Curved(middle + scale * found[:3], np.array([]), scale * radius) if on else None
+    radius = math.sqrt(max(solution[3] + (solution[:3] ** 2).sum(), 0.0))
+    on = abs(np.linalg.norm(local - solution[:3], axis=1) - radius).max() <= ON * radius
+    return Curved(middle + scale * solution[:3], np.array([]), scale * radius) if on else None
 
 
 def _cylinder(points: np.ndarray, normals: np.ndarray) -> Curved | None:
@@ -118,13 +118,13 @@ def _cylinder(points: np.ndarray, normals: np.ndarray) -> Curved | None:
         axis = axis + x[0] * first + x[1] * second
         axis /= np.linalg.norm(axis)
         centre = centre + x[2] * first + x[3] * second
-    found = Curved(centre, axis, float(x[4]))
-    arms = found.arms(local)
-    if abs(np.linalg.norm(arms, axis=1) - found.radius).max() > ON * abs(found.radius):
+    cylinder = Curved(centre, axis, float(x[4]))
+    arms = cylinder.arms(local)
+    if abs(np.linalg.norm(arms, axis=1) - cylinder.radius).max() > ON * abs(cylinder.radius):
         return None
     turn = np.arctan2(arms @ np.cross(axis, arms[0]), arms @ arms[0])
     return (
-        Curved(middle + scale * centre, axis, scale * found.radius)
+        Curved(middle + scale * centre, axis, scale * cylinder.radius)
         if len(np.unique(np.round(turn, 6))) >= PLACES
         else None
     )

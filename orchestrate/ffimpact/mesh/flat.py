@@ -36,10 +36,10 @@ LOOPS = {
 
 def shape(body: Body, folder: Path) -> tuple[Outline, mesh.Mesh | None]:
     """The outline of a body, and its mesh if a file contains one, both about the centroid."""
-    found = mesh_file(body, folder, "disc-plane") if isinstance(body, Mesh) else None
-    outline = mesh_outline(found) if found else _outline(body)
+    body_mesh = mesh_file(body, folder, "disc-plane") if isinstance(body, Mesh) else None
+    outline = mesh_outline(body_mesh) if body_mesh else _outline(body)
     centre = outline.area_centre
-    return outline.placed(-centre, 0.0), found and found.moved(-centre)
+    return outline.placed(-centre, 0.0), body_mesh and body_mesh.moved(-centre)
 
 
 def motion(body: Body) -> dict:
@@ -59,7 +59,7 @@ def _velocity(body: Body) -> np.ndarray:
     speed, degrees = body.speed, body.direction
     if body.velocity is not None and (speed is not None or degrees is not None):
         raise BadInput(
-            f"{body.at('velocity')}: '{body.given('velocity')}' stands beside speed or direction (accepted: velocity, "
+            f"{body.at('velocity')}: '{body.value_text('velocity')}' stands beside speed or direction (accepted: velocity, "
             f"or speed with direction)"
         )
     if (speed is None) != (degrees is None):
@@ -102,7 +102,7 @@ def _polygon(body: Polygon) -> Outline:
     """
     import shapely  # imported here: other bodies do not need it
 
-    outer, holes = np.array(body.vertices), [np.array(one) for one in body.holes or []]
+    outer, holes = np.array(body.vertices), [np.array(hole) for hole in body.holes or []]
     named = [
         (body.at("vertices"), outer),
         *((f"{body.at('holes')}.{k}", hole) for k, hole in enumerate(holes, 1)),
@@ -160,26 +160,26 @@ def mesh_file(body: Mesh, folder: Path, script: str) -> mesh.Mesh:
         with tempfile.NamedTemporaryFile(suffix=".msh") as file:
             file.write(text)
             file.flush()
-            found = mesh.read(Path(file.name))
-            if script == "ball-axisymmetric" and not (found.labels == mesh.AXIS).any():
+            body_mesh = mesh.read(Path(file.name))
+            if script == "ball-axisymmetric" and not (body_mesh.labels == mesh.AXIS).any():
                 script = "disc-plane"  # the section of a tube is a closed outline
-            elif script == "disc-plane" and (found.labels == mesh.AXIS).any():
+            elif script == "disc-plane" and (body_mesh.labels == mesh.AXIS).any():
                 raise BadInput(
                     f"mesh: '{brief(name)}' has edges with the label {mesh.AXIS} of a symmetry axis (accepted: whole bodies, "
                     f"labels {mesh.FREE}: contact boundary, 3 and more: free boundary without contact)"
                 )
-            size = float(np.ptp(found.points, axis=0).max()) if len(found.points) else 0.0
-            if size and not (found.labels == mesh.FREE).any():
+            size = float(np.ptp(body_mesh.points, axis=0).max()) if len(body_mesh.points) else 0.0
+            if size and not (body_mesh.labels == mesh.FREE).any():
                 raise BadInput(
                     f"mesh: {file.name}: no boundary edge has the label {mesh.FREE} of the "
-                    f"contact boundary, but labels from {found.labels.min()} to "
-                    f"{found.labels.max()}"
+                    f"contact boundary, but labels from {body_mesh.labels.min()} to "
+                    f"{body_mesh.labels.max()}"
                 )
             # For the check the whole boundary may come into contact: the script has a plane below
             # the body, which this scene need not have.
-            labels = np.where(found.labels > mesh.AXIS, mesh.FREE, found.labels)
-            mesh.write(replace(found, labels=labels), Path(file.name))
-            said = describe(
+            labels = np.where(body_mesh.labels > mesh.AXIS, mesh.FREE, body_mesh.labels)
+            mesh.write(replace(body_mesh, labels=labels), Path(file.name))
+            description = describe(
                 {"mesh": file.name, "radius": size / 2 if SHORTEST < size < LONGEST else 1.0},
                 script,
             )
@@ -187,8 +187,8 @@ def mesh_file(body: Mesh, folder: Path, script: str) -> mesh.Mesh:
         raise BadInput(
             f"{body.at('file')}: {str(error).removeprefix('mesh: ').replace(file.name if file else name, name)}"
         ) from None
-    arc_centres = np.array([*said["circles"], [math.nan] * 3])[said["circle_of"], :2]
-    return replace(found, arc_centres=arc_centres).scaled(body.scale or 1.0)
+    arc_centres = np.array([*description["circles"], [math.nan] * 3])[description["circle_of"], :2]
+    return replace(body_mesh, arc_centres=arc_centres).scaled(body.scale or 1.0)
 
 
 def _may_be_read(path: Path) -> bool:
@@ -202,15 +202,15 @@ def _may_be_read(path: Path) -> bool:
         return True
 
 
-def mesh_outline(found: mesh.Mesh) -> Outline:
+def mesh_outline(body_mesh: mesh.Mesh) -> Outline:
     """The boundary of a mesh as loops, the loop with the largest area first.
 
     Edges on circles become arcs. A loop whose edges all lie on one circle becomes that circle.
     """
     arc_centre = {
-        tuple(sorted(edge)): at for edge, at in zip(found.edges.tolist(), found.arc_centres)
+        tuple(sorted(edge)): at for edge, at in zip(body_mesh.edges.tolist(), body_mesh.arc_centres)
     }
-    following = dict(mesh.boundary(found.triangles).tolist())
+    following = dict(mesh.boundary(body_mesh.triangles).tolist())
     loops = []
     while following:
         first, v = (chain := list(following.popitem()))
@@ -219,7 +219,7 @@ def mesh_outline(found: mesh.Mesh) -> Outline:
             chain.append(v)
         loops.append(
             _loop(
-                found.points[chain[:-1]],
+                body_mesh.points[chain[:-1]],
                 np.array([arc_centre[tuple(sorted(edge))] for edge in zip(chain, chain[1:])]),
             )
         )

@@ -39,8 +39,8 @@ def load(path: Path, alone: bool = False) -> bytes:
         copy, made = Path(folder) / "mesh.msh", Path(folder) / "freefem.msh"
         copy.write_bytes(text)
         try:
-            found = mesh.in_own_process(read, copy)
-            mesh.write(mesh.without_inner(found) if alone else found, made)
+            converted = mesh.in_own_process(read, copy)
+            mesh.write(mesh.without_inner(converted) if alone else converted, made)
         except BadInput as error:
             raise BadInput(f"mesh: {path}: {str(error).replace(copy.name, path.name)}") from None
         return made.read_bytes()

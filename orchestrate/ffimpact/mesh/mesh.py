@@ -213,10 +213,10 @@ def mesh_body(boundary: list[list[tuple[Curve, float, int]]], sizes: Sizes, scal
     """
     pieces = [[nodes_on(curve, largest, sizes) for curve, largest, _ in loop] for loop in boundary]
     labels = [
-        np.repeat([label for *_, label in loop], [len(nodes) for nodes in each])
-        for loop, each in zip(boundary, pieces)
+        np.repeat([label for *_, label in loop], [len(nodes) for nodes in piece])
+        for loop, piece in zip(boundary, pieces)
     ]
-    loops = [np.vstack(each) for each in pieces]
+    loops = [np.vstack(piece) for piece in pieces]
     # Holes are reversed; their labels are not, because a hole has a single label.
     loops = [nodes if k == 0 else nodes[::-1] for k, nodes in enumerate(loops)]
     # Lengths are divided by `scale`, because gmsh's tolerances are absolute.
@@ -236,7 +236,7 @@ def mesh_body(boundary: list[list[tuple[Curve, float, int]]], sizes: Sizes, scal
     points[corners] = np.vstack(loops)
     triangles = counter_clockwise(points, triangles)
     ends = np.split(corners, np.cumsum([len(nodes) for nodes in loops])[:-1])
-    edges = np.vstack([np.column_stack([each, np.roll(each, -1)]) for each in ends])
+    edges = np.vstack([np.column_stack([end_nodes, np.roll(end_nodes, -1)]) for end_nodes in ends])
     return Mesh(points, triangles, edges, np.concatenate(labels))
 
 
@@ -360,7 +360,7 @@ def _initialize(gmsh: ModuleType) -> None:
             signal.signal(number, handler)
 
 
-def in_own_process(read: Callable, path: Path, *given):
+def in_own_process(read: Callable, path: Path, *arguments):
     """Returns read(path, *given) from a separate process, because some broken files crash gmsh.
 
     Raises the BadInput of `read`, or BadInput with the signal or exit code of the process.
@@ -372,16 +372,16 @@ def in_own_process(read: Callable, path: Path, *given):
         child = subprocess.run(
             [*command, answer.name],
             env=os.environ | {"PYTHONPATH": modules},
-            input=pickle.dumps((read, path, *given)),
+            input=pickle.dumps((read, path, *arguments)),
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         )
         # The file is empty if a script in a geometry has ended the process.
-        if child.returncode == 0 and (said := answer.read()):
-            found = pickle.loads(said)
-            if isinstance(found, BadInput):
-                raise BadInput(str(found).replace(str(path), path.name))
-            return found
+        if child.returncode == 0 and (pickled := answer.read()):
+            result = pickle.loads(pickled)
+            if isinstance(result, BadInput):
+                raise BadInput(str(result).replace(str(path), path.name))
+            return result
     how = (
         signal.Signals(-child.returncode).name
         if child.returncode < 0
@@ -392,12 +392,12 @@ def in_own_process(read: Callable, path: Path, *given):
 
 def _answer() -> None:
     """Runs in the separate process: writes the result, or the BadInput, to the answer file."""
-    read, *given = pickle.load(sys.stdin.buffer)
+    read, *arguments = pickle.load(sys.stdin.buffer)
     try:
-        found = read(*given)
+        result = read(*arguments)
     except BadInput as error:
-        found = error
-    Path(sys.argv[1]).write_bytes(pickle.dumps(found))
+        result = error
+    Path(sys.argv[1]).write_bytes(pickle.dumps(result))
 
 
 @contextmanager
@@ -435,38 +435,38 @@ def graded(
     field.setNumbers(distance, kind, sources)
     if sampling:
         field.setNumber(distance, "Sampling", sampling)
-    least, most = sizes
+    least, largest = sizes
     for name, value in dict(
         InField=distance,
         SizeMin=least,
-        SizeMax=most,
+        SizeMax=largest,
         DistMin=flat,
-        DistMax=flat + max(most - least, 1e-9 * most) / GROWTH,
+        DistMax=flat + max(largest - least, 1e-9 * largest) / GROWTH,
     ).items():
         field.setNumber(size, name, value)
     return size
 
 
 def elements_of(
-    model, dimensions: Sequence[int], nodes: dict[int, int], one: str, many: str
+    model, dimensions: Sequence[int], nodes: dict[int, int], singular: str, plural: str
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Returns vertices (n, 3), elements (t, corners) and gmsh's numbers (n,) of the vertices.
 
     `nodes` maps the accepted gmsh element types to their numbers of nodes, of which the first are
     the corners. Only vertices of elements are returned. Raises BadInput if the model contains no
-    elements or other types; `one` and `many` are the names of an element and of elements.
+    elements or other types; `singular` and `plural` are the names of an element and of elements.
     """
     kinds = [kind for dimension in dimensions for kind in model.mesh.getElementTypes(dimension)]
     for kind in kinds:
         if kind not in nodes:
             raise BadInput(
-                f"it has elements '{model.mesh.getElementProperties(kind)[0]}' (accepted: {many} of "
+                f"it has elements '{model.mesh.getElementProperties(kind)[0]}' (accepted: {plural} of "
                 f"{' or '.join(map(str, nodes.values()))} nodes)"
             )
     if not kinds:
-        raise BadInput(f"it has no {many}")
-    found = [model.mesh.getElementsByType(kind)[1].reshape(-1, nodes[kind]) for kind in kinds]
-    corners = np.vstack([each[:, : min(nodes.values())] for each in found])
+        raise BadInput(f"it has no {plural}")
+    by_kind = [model.mesh.getElementsByType(kind)[1].reshape(-1, nodes[kind]) for kind in kinds]
+    corners = np.vstack([block[:, : min(nodes.values())] for block in by_kind])
     # The format 2.2 contains an element once for each physical group to which it belongs.
     once = np.unique(np.sort(corners, axis=1), axis=0, return_index=True)[1]
     used, elements = np.unique(corners[np.sort(once)], return_inverse=True)
@@ -474,7 +474,7 @@ def elements_of(
     row = np.full(int(max(tags.max(), used.max())) + 1, -1)
     row[tags] = np.arange(len(tags))
     if (row[used] < 0).any():
-        raise BadInput(f"a {one} names node {used[row[used] < 0][0]}, which is not there")
+        raise BadInput(f"a {singular} names node {used[row[used] < 0][0]}, which is not there")
     return coordinates.reshape(-1, 3)[row[used]], elements.reshape(-1, min(nodes.values())), used
 
 

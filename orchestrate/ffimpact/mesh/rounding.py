@@ -59,25 +59,25 @@ def fields(gmsh, sizes: Sizes, sources: list[int], bulk: float, cut: float) -> l
     """
     low, high = np.reshape(gmsh.model.getBoundingBox(-1, -1), (2, 3))
     # On surfaces with larger radii the size of the bulk gives more than TURN elements per turn.
-    found = roundings(gmsh.model, bulk * TURN / (2 * math.pi))
-    small = [one for one in found if one.radius < bulk]
+    surfaces = roundings(gmsh.model, bulk * TURN / (2 * math.pi))
+    small = [rounding for rounding in surfaces if rounding.radius < bulk]
     size = _size(small, bulk, cut * float(np.prod(high - low)))
     field, made = gmsh.model.mesh.field, []
-    for one in found:
-        own = one.fine if one.radius >= bulk else max(size, one.fine)
-        if one.radius >= bulk or own < one.across:
-            made.append(_on_surface(field, one, "Constant", VIn=own))
-        if sources and sizes.contact <= one.radius < bulk:
+    for surface in surfaces:
+        own = surface.fine if surface.radius >= bulk else max(size, surface.fine)
+        if surface.radius >= bulk or own < surface.across:
+            made.append(_on_surface(field, surface, "Constant", VIn=own))
+        if sources and sizes.contact <= surface.radius < bulk:
             # The surface is resolved where the elements around the contact are not larger than r.
-            reach = sizes.slack + (one.radius - sizes.contact) / GROWTH
-            near = mesh.graded(field, "PointsList", sources, (one.fine, bulk), flat=reach)
-            made.append(_on_surface(field, one, "Restrict", InField=near))
+            reach = sizes.slack + (surface.radius - sizes.contact) / GROWTH
+            near = mesh.graded(field, "PointsList", sources, (surface.fine, bulk), flat=reach)
+            made.append(_on_surface(field, surface, "Restrict", InField=near))
     return made
 
 
 def roundings(model, largest: float) -> list[Rounding]:
     """The curved surfaces of a gmsh model with a radius below `largest` [m]."""
-    found = []
+    surfaces = []
     for _, tag in model.getEntities(2):
         low, high = model.getParametrizationBounds(2, tag)
         u, v = (np.linspace(a, b, 2 * GRID + 1)[1::2] for a, b in zip(low, high))
@@ -87,8 +87,8 @@ def roundings(model, largest: float) -> list[Rounding]:
             tangents = np.reshape(model.getDerivative(2, tag, places), (-1, 2, 3))
             stretch = np.linalg.norm(np.cross(tangents[:, 0], tangents[:, 1]), axis=1).mean()
             area = float(stretch * np.prod(np.subtract(high, low)))
-            found.append(Rounding(tag, 1 / bent, area))
-    return found
+            surfaces.append(Rounding(tag, 1 / bent, area))
+    return surfaces
 
 
 def _size(small: list[Rounding], bulk: float, cut: float) -> float:
@@ -97,15 +97,17 @@ def _size(small: list[Rounding], bulk: float, cut: float) -> float:
     The size is divided by FINER until this holds or all surfaces have TURN elements per turn.
     """
     size = bulk
-    while sum(one.cut(size) for one in small) > cut and any(size > one.fine for one in small):
+    while sum(surface.cut(size) for surface in small) > cut and any(
+        size > surface.fine for surface in small
+    ):
         size /= FINER
     return size
 
 
-def _on_surface(field, one: Rounding, kind: str, **values: float) -> int:
+def _on_surface(field, surface: Rounding, kind: str, **values: float) -> int:
     """Adds a gmsh field of a kind for one surface and its edges; returns its number."""
     made = field.add(kind)
-    field.setNumbers(made, "SurfacesList", [one.tag])
+    field.setNumbers(made, "SurfacesList", [surface.tag])
     for name, value in values.items():
         field.setNumber(made, name, value)
     return made

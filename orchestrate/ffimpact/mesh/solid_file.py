@@ -166,10 +166,15 @@ def _labelled(model) -> SolidMesh:
 
     def keys(corners: np.ndarray) -> list[tuple]:
         """Keys of triangles: their sorted corners, rounded to 1e-9 of the size of the mesh."""
-        return [tuple(sorted(map(tuple, one))) for one in np.round(corners / scale, 9).tolist()]
+        return [
+            tuple(sorted(map(tuple, triangle)))
+            for triangle in np.round(corners / scale, 9).tolist()
+        ]
 
-    wanted = set(keys(named))
-    labels = np.array([FREE if key in wanted else SolidMesh.NEVER for key in keys(points[faces])])
+    contact_keys = set(keys(named))
+    labels = np.array(
+        [FREE if key in contact_keys else SolidMesh.NEVER for key in keys(points[faces])]
+    )
     if not (labels == FREE).any():
         raise BadInput(f"its physical surface '{CONTACT}' is not on its boundary")
     return SolidMesh(points, cells, faces, labels)
@@ -182,20 +187,22 @@ def _check_surface(points: np.ndarray, faces: np.ndarray) -> None:
     boundary point form one closed fan.
     """
     corners = np.arange(3 * len(faces)).reshape(-1, 3)
-    sides, ends = (of[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2) for of in (faces, corners))
+    sides, ends = (
+        triples[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2) for triples in (faces, corners)
+    )
     ends = np.where((sides[:, 0] > sides[:, 1])[:, None], ends[:, ::-1], ends)
-    found, which, count = np.unique(
+    edges, which, count = np.unique(
         np.sort(sides, axis=1), axis=0, return_inverse=True, return_counts=True
     )
 
-    def place(point: int) -> str:
+    def coordinates(point: int) -> str:
         return "({:g}, {:g}, {:g})".format(*points[point])
 
     if (count != 2).any():
-        a, b = found[np.argmax(count != 2)]
+        a, b = edges[np.argmax(count != 2)]
         raise BadInput(
-            f"it hangs together by an edge alone, from {place(a)} to {place(b)} (accepted: tetrahedra that hang together "
-            f"by faces)"
+            f"it hangs together by an edge alone, from {coordinates(a)} to {coordinates(b)} "
+            f"(accepted: tetrahedra that hang together by faces)"
         )
     first, second = (
         ends[np.argsort(which.ravel(), kind="stable")].reshape(-1, 2, 2).transpose(1, 0, 2)
@@ -208,7 +215,8 @@ def _check_surface(points: np.ndarray, faces: np.ndarray) -> None:
     )[:, 0]
     if len(twice := turns[1:][turns[1:] == turns[:-1]]):
         raise BadInput(
-            f"it hangs together by a point alone, {place(twice[0])} (accepted: tetrahedra that hang together by faces)"
+            f"it hangs together by a point alone, {coordinates(twice[0])} "
+            f"(accepted: tetrahedra that hang together by faces)"
         )
 
 

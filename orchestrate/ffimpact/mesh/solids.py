@@ -103,7 +103,7 @@ def box(extent: np.ndarray) -> Shape:
         ]
         faces = []
         for axis in range(3):
-            sides = [one if k != axis else one[[0, -1]] for k, one in enumerate(along)]
+            sides = [line if k != axis else line[[0, -1]] for k, line in enumerate(along)]
             faces.append(np.stack(np.meshgrid(*sides, indexing="ij"), axis=-1).reshape(-1, 3))
         return np.unique(np.vstack(faces), axis=0)
 
@@ -175,7 +175,9 @@ def surface(triangles: np.ndarray) -> Shape:
     low, high, six = corners.min(axis=0), corners.max(axis=0), (a * np.cross(b, c)).sum(axis=1)
     # The integral of x x^T over the tetrahedron of volume V between the centre and a triangle
     # (a, b, c) is 6 V / 120 (s s^T + a a^T + b b^T + c c^T) with s = a + b + c.
-    square = sum(np.einsum("t,ti,tj->ij", six, one, one) for one in (a + b + c, a, b, c)) / 120
+    square = (
+        sum(np.einsum("t,ti,tj->ij", six, vector, vector) for vector in (a + b + c, a, b, c)) / 120
+    )
 
     distances = distances_from(triangles)
 
@@ -198,12 +200,12 @@ def surface(triangles: np.ndarray) -> Shape:
     def sampled(spacing: float) -> np.ndarray:
         """The corners, and a grid of points in each triangle that is larger than the spacing."""
         longest = np.linalg.norm(triangles - np.roll(triangles, 1, axis=1), axis=2).max(axis=1)
-        parts, found = np.ceil(longest / spacing).astype(int), [corners]
+        parts, samples = np.ceil(longest / spacing).astype(int), [corners]
         for n in np.unique(parts[parts > 1]):
             i, j = np.array([(i, j) for i in range(n + 1) for j in range(n + 1 - i)]).T
             weights = np.column_stack([i, j, n - i - j]) / n
-            found.append(np.einsum("pk,tkx->tpx", weights, triangles[parts == n]).reshape(-1, 3))
-        return np.vstack(found)
+            samples.append(np.einsum("pk,tkx->tpx", weights, triangles[parts == n]).reshape(-1, 3))
+        return np.vstack(samples)
 
     return Shape(
         "surface",
@@ -232,11 +234,11 @@ def distances_from(triangles: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
         # The nearest triangle is no farther than the nearest corner. So its centre is no farther
         # than the nearest corner plus the largest radius of a triangle.
         near = within.query_ball_point(points, (1 + 1e-9) * (corners.query(points)[0] + radius))
-        count = np.array([len(one) for one in near])
-        found = distance_to_triangles(
+        count = np.array([len(candidates) for candidates in near])
+        distance = distance_to_triangles(
             np.repeat(points, count, axis=0), triangles[np.concatenate(near).astype(int)]
         )
-        return np.minimum.reduceat(found, np.cumsum(count) - count)
+        return np.minimum.reduceat(distance, np.cumsum(count) - count)
 
     return distances
 
@@ -247,7 +249,7 @@ def _solid_angle(triangles: np.ndarray, points: np.ndarray) -> np.ndarray:
     It is 4 pi inside and 0 outside (van Oosterom and Strackee 1983).
     """
     a, b, c = (triangles[:, k] - points[:, None] for k in range(3))
-    la, lb, lc = (np.linalg.norm(one, axis=2) for one in (a, b, c))
+    la, lb, lc = (np.linalg.norm(vector, axis=2) for vector in (a, b, c))
     below = (
         la * lb * lc
         + (a * b).sum(axis=2) * lc
@@ -269,13 +271,15 @@ def distance_to_triangles(points: np.ndarray, triangles: np.ndarray) -> np.ndarr
     inside = np.all(
         [dot(np.cross(q - p, points - p), normal) >= 0 for p, q in ((a, b), (b, c), (c, a))], axis=0
     )
-    found = np.where(inside, abs(dot(points - a, normal)) / np.sqrt(square), np.inf)
+    distance = np.where(inside, abs(dot(points - a, normal)) / np.sqrt(square), np.inf)
     for p, q in ((a, b), (b, c), (c, a)):
         s = np.clip(
             dot(points - p, q - p) / np.maximum(dot(q - p, q - p), np.finfo(float).tiny), 0, 1
         )
-        found = np.minimum(found, np.linalg.norm(points - p - s[..., None] * (q - p), axis=-1))
-    return found
+        distance = np.minimum(
+            distance, np.linalg.norm(points - p - s[..., None] * (q - p), axis=-1)
+        )
+    return distance
 
 
 @dataclass(frozen=True)
@@ -397,7 +401,9 @@ def mesh_of(body, sizes: Sizes | None, folded: tuple[int, ...], accuracy: float)
 
 def _with_curves(made: SolidMesh) -> SolidMesh:
     """The mesh with the spheres and cylinders on which its faces lie."""
-    return replace(made, curved=tuple(one for one, _ in curved.surfaces(made.points, made.faces)))
+    return replace(
+        made, curved=tuple(patch for patch, _ in curved.surfaces(made.points, made.faces))
+    )
 
 
 # ---- tables
@@ -418,19 +424,19 @@ def _of_file(body: Mesh, folder: Path) -> tuple[Solid, SolidMesh | None]:
         )
     path = folder / name
     try:
-        found = solid_file.read(path).scaled(scale)
+        file_mesh = solid_file.read(path).scaled(scale)
     except BadInput as error:
         raise BadInput(f"{body.at('file')}: {error}") from None
     sphere = next(
         (
-            one
-            for one, own in curved.surfaces(found.points, found.faces)
-            if not len(one.axis) and len(own) == len(found.faces)
+            patch
+            for patch, own in curved.surfaces(file_mesh.points, file_mesh.faces)
+            if not len(patch.axis) and len(own) == len(file_mesh.faces)
         ),
         None,
     )
-    centre = sphere.centre if sphere else found.centre
-    centred = found.moved(-centre)
+    centre = sphere.centre if sphere else file_mesh.centre
+    centred = file_mesh.moved(-centre)
     shape = ball(sphere.radius) if sphere else surface(centred.points[centred.faces])
     if solid_file.is_geometry(path):
         geometry = solid_file.Geometry(path, scale, centre, centred)
@@ -445,7 +451,7 @@ def motion(body: Body) -> dict:
     """
     if body.angle is not None and body.turn is not None:
         raise BadInput(
-            f"{body.at('angle')}: '{body.given('angle')}' stands beside turn (accepted: angle about z, or turn = "
+            f"{body.at('angle')}: '{body.value_text('angle')}' stands beside turn (accepted: angle about z, or turn = "
             f"[x, y, z])"
         )
     none = [0.0, 0.0, 0.0]

@@ -306,7 +306,7 @@ def intervals_of(folder: Path, diagnostics: Mapping[str, Any]) -> list[Interval]
     load are left out."""
     arrays, _ = read_arrays(folder / RECORDED)
     rows, heads = arrays["rows"].reshape(-1, 36), arrays["intervals"].reshape(-1, 12)
-    bodies, found = diagnostics["bodies"], []
+    bodies, result = diagnostics["bodies"], []
     for k in np.argsort(heads[:, 2], kind="stable"):
         own = rows[rows[:, 0] == k]
         if not len(own):
@@ -317,7 +317,7 @@ def intervals_of(folder: Path, diagnostics: Mapping[str, Any]) -> list[Interval]
             mass *= bodies[pair["counter_body"]]["mass"] / (
                 mass + bodies[pair["counter_body"]]["mass"]
             )
-        found.append(
+        result.append(
             Interval(
                 own,
                 heads[k],
@@ -327,7 +327,7 @@ def intervals_of(folder: Path, diagnostics: Mapping[str, Any]) -> list[Interval]
                 bool(diagnostics["friction"]),
             )
         )
-    return found
+    return result
 
 
 def write_contacts(path: Path, intervals: list[Interval], damped: bool) -> None:
@@ -343,46 +343,51 @@ def write_contacts(path: Path, intervals: list[Interval], damped: bool) -> None:
 def of_run(intervals: list[Interval]) -> dict[str, float | None]:
     """The numbers RUN_NUMBERS of summary.json but thresholded_contact_time."""
     pairs = {id(interval.pair) for interval in intervals}
-    jump, size = sum(one.jump for one in intervals), sum(one.impulse for one in intervals)
+    jump, size = (
+        sum(interval.jump for interval in intervals),
+        sum(interval.impulse for interval in intervals),
+    )
     normal, friction = (
-        sum((getattr(one, name) for one in intervals), np.zeros(3))
+        sum((getattr(interval, name) for interval in intervals), np.zeros(3))
         for name in ("normal_impulse", "tangential")
     )
     impacts, last = 0, None
-    for one in intervals:
-        if last is None or (last.after.normal > 0 and -one.before.normal > DRIVEN * one.jump):
+    for current in intervals:
+        if last is None or (
+            last.after.normal > 0 and -current.before.normal > DRIVEN * current.jump
+        ):
             impacts += 1
-        last = one
+        last = current
     along_one = (
         len(pairs) == 1
         and 0 < np.linalg.norm(normal)
         and bool(np.linalg.norm(normal) >= STEADY * size)
     )
-    found: dict[str, float | None] = dict.fromkeys(
+    numbers: dict[str, float | None] = dict.fromkeys(
         name for name in RUN_NUMBERS if name != "thresholded_contact_time"
     )
-    found["bounces"] = sum(one.impact for one in intervals)
+    numbers["bounces"] = sum(interval.impact for interval in intervals)
     if last is None or not along_one:
-        return found
+        return numbers
     before, after, least = intervals[0].before, last.after, SLIGHTEST * jump
     single = impacts == 1 and last.over
     slip = float(np.linalg.norm(before.slip))
     slip_after = along(before.slip, after.slip, before.n, after.n, 0.0)
-    found["restitution"] = ratio(
+    numbers["restitution"] = ratio(
         after.normal, -before.normal, is_impact(single, before, after, jump)
     )
-    found["restitution_tangential"] = ratio(-slip_after, slip, single and slip > least)
-    found["impulse_ratio"] = impulse_ratio(normal, friction)
+    numbers["restitution_tangential"] = ratio(-slip_after, slip, single and slip > least)
+    numbers["impulse_ratio"] = impulse_ratio(normal, friction)
     if before.centres_speed > least:
-        found["angle_in"] = _steepness(
+        numbers["angle_in"] = _steepness(
             -before.centres_normal, float(np.linalg.norm(before.centres_slip))
         )
     if single and after.centres_speed > least:
-        found["angle_out"] = _steepness(
+        numbers["angle_out"] = _steepness(
             after.centres_normal,
             along(before.centres_slip, after.centres_slip, before.n, after.n, 1e-9 * jump),
         )
-    return found
+    return numbers
 
 
 # ---- formulas

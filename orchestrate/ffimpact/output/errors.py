@@ -44,12 +44,12 @@ def errors(record: Record) -> dict[str, float]:
         return {}
     answers = read_answers(record.folder)
     energy, reach = float(answers.summary["largest_energy"]), record.scene.get("radius")
-    found: dict[str, float] = {
+    estimates: dict[str, float] = {
         name: share[name] * abs(summary[name])
         for name in share
         if (name in OF_ITSELF or name.startswith("support_peak")) and summary.get(name) is not None
     }
-    found |= {
+    estimates |= {
         name: share.get(name, 0.0) * energy
         for name in ("friction_work", "support_work", "load_work")
         if name in share
@@ -57,15 +57,15 @@ def errors(record: Record) -> dict[str, float]:
     for name in names:
         kind = re.sub(r"_[0-9]+$", "", name)
         if kind in ENERGIES:
-            found[name] = share["energy"] * energy
+            estimates[name] = share["energy"] * energy
         elif re.fullmatch("impulse_[xyz]", name):
-            found[name] = share["impulse"] * abs(summary["impulse"])
+            estimates[name] = share["impulse"] * abs(summary["impulse"])
         elif kind.startswith("rebound_v"):
-            found[name] = share["rebound"] * answers.speed
+            estimates[name] = share["rebound"] * answers.speed
         elif kind.startswith("rebound_spin"):
             size = summary.get(f"reach{name[len(kind) :]}") or reach
             if size:
-                found[name] = share["rebound_spin"] * answers.speed / size
+                estimates[name] = share["rebound_spin"] * answers.speed / size
         elif kind == "restitution":
-            found[name] = share["rebound"]
-    return {name: found[name] for name in names if name in found}
+            estimates[name] = share["rebound"]
+    return {name: estimates[name] for name in names if name in estimates}

@@ -231,8 +231,8 @@ def settle(
     # The runs of a pair differ in sizes alone, so the second one has the integrator of the first.
     chosen = {"integrator": summary["integrator"]} if values.get("integrator") == "auto" else {}
     why = [words for words in summary["skipped"] if words.startswith(STEPS)] if chosen else []
-    sizes = lambda *given: (scaled or other)(*given) | chosen  # noqa: E731
-    asked, seconds, refinements, before = values["accuracy"], 0.0, 0, math.inf
+    sizes = lambda *arguments: (scaled or other)(*arguments) | chosen  # noqa: E731
+    accuracy, seconds, refinements, before = values["accuracy"], 0.0, 0, math.inf
     sentences, notes, estimated, stated = [], [], None, None
     if failure := _ended(solve, sizes(values, used, COARSER, own_mesh), coarser):
         sentences = [
@@ -247,15 +247,17 @@ def settle(
             break
         estimated = error_estimates(answers, before_it, estimated)
         stated = held_errors(estimated, answers, before_it)
-        above = [name for name in wanted(values["accuracy_of"]) if estimated[name] > WORTH * asked]
+        above = [
+            name for name in wanted(values["accuracy_of"]) if estimated[name] > WORTH * accuracy
+        ]
         # The contact time of a flat strike does not scatter, but no finer run follows from it
         # alone.
         flat = summary.get("front_transit") is not None
         scatters = above == [SCATTERS] and (
-            flat or estimated[SCATTERS] ** 2 / before > WORTH * asked
+            flat or estimated[SCATTERS] ** 2 / before > WORTH * accuracy
         )
         before = estimated[SCATTERS]
-        exceeding = excess(stated, asked, values["accuracy_of"])
+        exceeding = excess(stated, accuracy, values["accuracy_of"])
         exceeding = exceeding and (touches(summary, coarse) or exceeding)
         sentences, notes = (exceeding, []) if above and (flat or not scatters) else ([], exceeding)
         fixed = not own_mesh or any(values[name] for name in SIZES)
@@ -305,7 +307,7 @@ def error_estimates(
     estimates of the coarser run.
     """
     summary = fine.summary
-    apart, way = (
+    apart, over_time = (
         difference(
             summary, coarse.summary, fine.speed, fine.used.get("radius"), held_bodies(fine.used)
         ),
@@ -313,16 +315,16 @@ def error_estimates(
     )
     if summary.get("front_transit"):
         lasts = summary["contact_time"] or math.inf
-        found = front_errors(
-            apart, way, summary["front_rise"] / lasts, summary["front_transit"] / lasts
+        estimates = front_errors(
+            apart, over_time, summary["front_rise"] / lasts, summary["front_transit"] / lasts
         )
     else:
-        found = errors(apart, way, resolved(fine), alike(fine, coarse))
+        estimates = errors(apart, over_time, resolved(fine), alike(fine, coarse))
     if summary.get("bounces", 1) > 1:
-        found = strikes_again(found, way, before)
+        estimates = strikes_again(estimates, over_time, before)
     # Both runs of a pair may have the same drift, so their difference does not show it.
-    found["energy"] = max(found["energy"], summary.get("energy_drift", 0.0))
-    return found | highest(fine, coarse) | driven(fine, coarse)
+    estimates["energy"] = max(estimates["energy"], summary.get("energy_drift", 0.0))
+    return estimates | highest(fine, coarse) | driven(fine, coarse)
 
 
 def _ended(solve: Solve, values: dict[str, Value], where: Path) -> Failure | None:
@@ -403,8 +405,8 @@ def difference(
     """
 
     def value(summary: Mapping, name: str) -> float:
-        found = summary.get(name)
-        return 0.0 if found is None or math.isnan(found) else float(found)
+        number = summary.get(name)
+        return 0.0 if number is None or math.isnan(number) else float(number)
 
     def apart(name: str, scale: float) -> float:
         return abs(value(fine, name) - value(coarse, name)) / abs(scale) if scale else 0.0
@@ -414,24 +416,30 @@ def difference(
         or value(fine, "energy_initial")
         or value(fine, "energy_final")
     )
-    free = [of for of in suffixes(fine) if of not in held]
+    free = [suffix for suffix in suffixes(fine) if suffix not in held]
     rebound = max(
-        (math.hypot(*(apart(f"rebound_v{axis}{of}", speed) for axis in "xyz")) for of in free),
+        (
+            math.hypot(*(apart(f"rebound_v{axis}{suffix}", speed) for axis in "xyz"))
+            for suffix in free
+        ),
         default=0.0,
     )
     rim = max(
         (
             math.hypot(
                 *(
-                    apart(f"rebound_spin{about}{of}", speed / (value(fine, f"reach{of}") or radius))
+                    apart(
+                        f"rebound_spin{about}{suffix}",
+                        speed / (value(fine, f"reach{suffix}") or radius),
+                    )
                     for about in ("", "_x", "_y")
                 )
             )
-            for of in free
+            for suffix in free
         ),
         default=0.0,
     )
-    found = {
+    differences = {
         "impulse": apart("impulse", value(fine, "impulse")),
         "rebound": rebound,
         "rebound_spin": rim,
@@ -439,8 +447,8 @@ def difference(
         "friction_work": apart("friction_work", energy),
     }
     for name in ("thresholded_contact_time", "contact_time", "peak_force"):
-        found[name] = apart(name, value(fine, name))
-    return found | {OF_ITSELF: apart("friction_work", value(fine, "friction_work"))}
+        differences[name] = apart(name, value(fine, name))
+    return differences | {OF_ITSELF: apart("friction_work", value(fine, "friction_work"))}
 
 
 def course(fine: Answers, coarse: Answers) -> dict[str, float]:
@@ -454,50 +462,59 @@ def course(fine: Answers, coarse: Answers) -> dict[str, float]:
     that is a little later is no error.
     """
     summary, history = fine.summary, (fine.history, coarse.history)
-    ends = [one["t"] for one in history]
+    ends = [run["t"] for run in history]
     t = np.union1d(*ends)
-    t = t[t <= min(one[-1] for one in ends)]
+    t = t[t <= min(times[-1] for times in ends)]
 
     def apart(values: Callable[[Mapping], list[np.ndarray]], scale: float) -> float:
         first, second = (
-            np.array([np.interp(t, one["t"], each) for each in values(one)]) for one in history
+            np.array([np.interp(t, run["t"], column) for column in values(run)]) for run in history
         )
         return float(np.linalg.norm(first - second, axis=0).max() / abs(scale)) if scale else 0.0
 
     def vector(*names: str) -> Callable[[Mapping], list[np.ndarray]]:
-        return lambda one: [one[name] for name in names if name in one]
+        return lambda run: [run[name] for name in names if name in run]
 
     energy, work = summary["largest_energy"], summary["friction_work"] or 0.0
-    bodies = [of for of in suffixes(fine.history) if of not in held_bodies(fine.used)]
-    reach = {of: summary.get(f"reach{of}") or fine.used["radius"] for of in bodies}
-    found = {
+    bodies = [suffix for suffix in suffixes(fine.history) if suffix not in held_bodies(fine.used)]
+    reach = {suffix: summary.get(f"reach{suffix}") or fine.used["radius"] for suffix in bodies}
+    differences = {
         "impulse": apart(
-            lambda one: [np.cumsum(one["normal_force"] * one["dt"])], summary["impulse"]
+            lambda run: [np.cumsum(run["normal_force"] * run["dt"])], summary["impulse"]
         ),
         "rebound": max(
-            (apart(vector(*(f"v{axis}{of}" for axis in "xyz")), fine.speed) for of in bodies),
+            (
+                apart(vector(*(f"v{axis}{suffix}" for axis in "xyz")), fine.speed)
+                for suffix in bodies
+            ),
             default=0.0,
         ),
         "rebound_spin": max(
             (
                 apart(
-                    vector(*(f"spin{about}{of}" for about in ("", "_x", "_y"))),
-                    fine.speed / reach[of],
+                    vector(*(f"spin{about}{suffix}" for about in ("", "_x", "_y"))),
+                    fine.speed / reach[suffix],
                 )
-                for of in bodies
+                for suffix in bodies
             ),
             default=0.0,
         ),
-        "energy": apart(lambda one: [one["elastic"] + one["contact"]], energy),
+        "energy": apart(lambda run: [run["elastic"] + run["contact"]], energy),
     }
-    for name in ("rebound", "energy", *(["rebound_spin"] if found["rebound_spin"] > NONE else [])):
-        found[name] += THROUGH * apart(vector("friction_work"), energy)
-    way = [_over_impulse(one.history) for one in (fine, coarse)] if work else [0.0, 0.0]
-    found["friction_work"] = (
-        float(np.sqrt(np.mean((way[0] - way[1]) ** 2)) / energy) if work else 0.0
+    for name in (
+        "rebound",
+        "energy",
+        *(["rebound_spin"] if differences["rebound_spin"] > NONE else []),
+    ):
+        differences[name] += THROUGH * apart(vector("friction_work"), energy)
+    work_paths = (
+        [_over_impulse(answers.history) for answers in (fine, coarse)] if work else [0.0, 0.0]
     )
-    found |= {name: found[stands] for name, stands in COURSE.items()}
-    return found | {OF_ITSELF: found["friction_work"] * energy / work if work else 0.0}
+    differences["friction_work"] = (
+        float(np.sqrt(np.mean((work_paths[0] - work_paths[1]) ** 2)) / energy) if work else 0.0
+    )
+    differences |= {name: differences[stands] for name, stands in COURSE.items()}
+    return differences | {OF_ITSELF: differences["friction_work"] * energy / work if work else 0.0}
 
 
 def _over_impulse(history: Mapping) -> np.ndarray:
@@ -515,10 +532,10 @@ def highest(fine: Answers, coarse: Answers, names: Sequence[str] = HIGHEST) -> d
     """
 
     def stated(name: str) -> float:
-        histories = [(one.history["t"], one.history[name]) for one in (fine, coarse)]
+        histories = [(answers.history["t"], answers.history[name]) for answers in (fine, coarse)]
         largest, other = (column.max() for _, column in histories)
         t = np.union1d(*(times for times, _ in histories))
-        first, second = (np.interp(t, *one, right=0.0) for one in histories)
+        first, second = (np.interp(t, *history, right=0.0) for history in histories)
         high = np.maximum(first, second) > largest / 2
         if not largest:
             return 0.0
@@ -536,32 +553,32 @@ def driven(fine: Answers, coarse: Answers) -> dict[str, float]:
     times the largest difference of the histories, relative to the largest energy.
     """
 
-    def force(one: Answers, number: int) -> np.ndarray:
+    def force(answers: Answers, number: int) -> np.ndarray:
         return np.linalg.norm(
             [
-                one.history[f"support_force_{axis}_{number}"]
+                answers.history[f"support_force_{axis}_{number}"]
                 for axis in "xyz"
-                if f"support_force_{axis}_{number}" in one.history
+                if f"support_force_{axis}_{number}" in answers.history
             ],
             axis=0,
         )
 
-    found, number = {}, 1
+    estimates, number = {}, 1
     while f"support_force_x_{number}" in fine.history:
         name = f"support_peak_{number}"
         both = [
-            one._replace(history={"t": one.history["t"], name: force(one, number)})
-            for one in (fine, coarse)
+            answers._replace(history={"t": answers.history["t"], name: force(answers, number)})
+            for answers in (fine, coarse)
         ]
-        found |= highest(*both, names=(name,))
+        estimates |= highest(*both, names=(name,))
         number += 1
     energy = fine.summary["largest_energy"]
     for name in ("support_work", "load_work"):
         if name in fine.history and energy:
             t = fine.history["t"]
             other = np.interp(t, coarse.history["t"], coarse.history[name])
-            found[name] = float(INSTANT * abs(fine.history[name] - other).max() / energy)
-    return found
+            estimates[name] = float(INSTANT * abs(fine.history[name] - other).max() / energy)
+    return estimates
 
 
 def resolved(run: Answers) -> float:
@@ -589,11 +606,11 @@ def alike(fine: Answers, coarse: Answers) -> float:
 
 
 def errors(
-    apart: Mapping[str, float], way: dict[str, float], steps: float, hidden: float = 0.0
+    apart: Mapping[str, float], over_time: dict[str, float], steps: float, hidden: float = 0.0
 ) -> dict[str, float]:
     """Returns the error estimates of all results.
 
-    `apart` are the differences of a pair at the end (difference()), `way` those of the time
+    `apart` are the differences of a pair at the end (difference()), `over_time` those of the time
     histories (course()), in the same units; `steps` is A (resolved()), `hidden` the share of
     alike().
     """
@@ -606,30 +623,31 @@ def errors(
     moved = [
         name
         for name in BOUND
-        if way[name] > NONE and (name != "rebound_spin" or way["friction_work"] > NONE)
+        if over_time[name] > NONE and (name != "rebound_spin" or over_time["friction_work"] > NONE)
     ]
-    seen = way | {
-        name: way[name] + ALIKE[COURSE.get(name, name)] * hidden * steps for name in moved
+    seen = over_time | {
+        name: over_time[name] + ALIKE[COURSE.get(name, name)] * hidden * steps for name in moved
     }
 
     def mean(name: str) -> float:
         return math.prod(
-            (measures | {"d": seen[name]})[each] for each in MEASURES.get(name, "DdA")
+            (measures | {"d": seen[name]})[letter] for letter in MEASURES.get(name, "DdA")
         ) ** (1 / ROOT.get(name, 3))
 
-    found = _together(
-        {name: bound * mean(name) for name, bound in BOUND.items()}, way["rebound_spin"] > NONE
+    estimates = _together(
+        {name: bound * mean(name) for name, bound in BOUND.items()},
+        over_time["rebound_spin"] > NONE,
     )
-    found = {name: max(apart[name], bound) for name, bound in found.items()}
-    return found | {
-        OF_ITSELF: found["friction_work"] * way[OF_ITSELF] / way["friction_work"]
-        if way["friction_work"]
+    estimates = {name: max(apart[name], bound) for name, bound in estimates.items()}
+    return estimates | {
+        OF_ITSELF: estimates["friction_work"] * over_time[OF_ITSELF] / over_time["friction_work"]
+        if over_time["friction_work"]
         else 0.0
     }
 
 
 def strikes_again(
-    stated: Mapping[str, float], way: Mapping[str, float], before: Mapping[str, float] | None
+    stated: Mapping[str, float], over_time: Mapping[str, float], before: Mapping[str, float] | None
 ) -> dict[str, float]:
     """Returns the error estimates of a run with several impacts.
 
@@ -640,7 +658,9 @@ def strikes_again(
     """
     least = {name: before[name] / COARSER**2 if before else 0.0 for name in BOUND}
     return dict(stated) | {
-        name: max(stated[name], way[name], least[name]) for name in BOUND if name not in COURSE
+        name: max(stated[name], over_time[name], least[name])
+        for name in BOUND
+        if name not in COURSE
     }
 
 
@@ -656,7 +676,7 @@ def held_errors(estimated: Mapping[str, float], fine: Answers, coarse: Answers) 
     """
     loaded = any(body.get("load") for body in fine.used.get("body", []))
     shares = LOADED if loaded else HELD if _is_held(fine.used) else {}
-    again = max(one.summary.get("contact_intervals", 1) for one in (fine, coarse)) > 1
+    again = max(answers.summary.get("contact_intervals", 1) for answers in (fine, coarse)) > 1
     accuracy = fine.used["accuracy"] * (TOUCHES_AGAIN if again else 1.0)
     return dict(estimated) | {
         name: max(estimated[name], share * accuracy)
@@ -670,12 +690,12 @@ def _is_held(used: Mapping) -> bool:
     time.
     """
     return any(body.get("rigid") or body.get("support") for body in used.get("body", [])) or any(
-        "motion" in one or "rotation" in one for one in used.get("obstacle", [])
+        "motion" in obstacle or "rotation" in obstacle for obstacle in used.get("obstacle", [])
     )
 
 
 def front_errors(
-    apart: Mapping[str, float], way: Mapping[str, float], rise: float, element: float
+    apart: Mapping[str, float], over_time: Mapping[str, float], rise: float, element: float
 ) -> dict[str, float]:
     """Returns the error estimates of a flat strike. Its results converge with the first power of
     the element size, and the penalty follows the element size. `rise` and `element` [1] are the
@@ -687,24 +707,24 @@ def front_errors(
     A front that rises in less than its transit through an element keeps a share of the speed, in
     runs of all element sizes alike: SHARP element.
     """
-    moved = [name for name in ("impulse", "rebound", "energy") if way[name] > NONE]
+    moved = [name for name in ("impulse", "rebound", "energy") if over_time[name] > NONE]
     share = (
-        math.sqrt(min(1.0, sum(apart[name] / way[name] for name in moved) / len(moved)))
+        math.sqrt(min(1.0, sum(apart[name] / over_time[name] for name in moved) / len(moved)))
         if moved
         else 0.0
     )
-    measures = {name: way[name] * share for name in BOUND}
+    measures = {name: over_time[name] * share for name in BOUND}
     measures["energy"] = max(measures["energy"], 2 * measures["rebound"])  # dE/E = 2 dv/v
     measures |= {name: rise + apart[name] for name in ("thresholded_contact_time", "contact_time")}
-    measures["peak_force"] = way["impulse"] + apart["peak_force"]
+    measures["peak_force"] = over_time["impulse"] + apart["peak_force"]
     sharp = element * min(1.0, element / (RESOLVED * rise)) if rise else 0.0
-    found = {
+    estimates = {
         name: max(apart[name], FRONT[name] * measure, SHARP.get(name, 0.0) * sharp)
         for name, measure in measures.items()
     }
-    return found | {
-        OF_ITSELF: found["friction_work"] * way[OF_ITSELF] / way["friction_work"]
-        if way["friction_work"]
+    return estimates | {
+        OF_ITSELF: estimates["friction_work"] * over_time[OF_ITSELF] / over_time["friction_work"]
+        if over_time["friction_work"]
         else 0.0
     }
 

@@ -51,10 +51,10 @@ def _summary(evidence: warnings.Evidence) -> dict[str, Any]:
     lasted = crossings[1] - crossings[0] if crossings else None
     ok = evidence.record["status"] == "ok"
     sentences = warnings.sentences(evidence) if ok else {"warnings": [], "notes": []}
-    found = {"thresholded_contact_time": lasted} | contacts.of_run(list(evidence.intervals))
+    numbers = {"thresholded_contact_time": lasted} | contacts.of_run(list(evidence.intervals))
     summary: dict[str, Any] = {}
     for name, value in evidence.record.items():
         summary |= sentences if name == "diagnostics" else {name: value}
         if name == "contact_time":
-            summary |= found
+            summary |= numbers
     return summary

@@ -181,15 +181,15 @@ def _points_under_load(surface: Arrays, state: Arrays, along: "_Along") -> Array
     loads = _columns(state.get("loads", np.zeros((2 * tangents + 2) * count)), count)
     under = np.flatnonzero(loads[:, 0] > 0)
     distance = along.distances(loads[:, 0])
-    place = _columns(surface["points"], count)
-    now = place + _columns(state.get("moved", np.zeros(3 * count)), count)
+    positions = _columns(surface["points"], count)
+    now = positions + _columns(state.get("moved", np.zeros(3 * count)), count)
     slip = loads[:, 1 + tangents : 1 + 2 * tangents]
     columns = {
         "t": empty + state["time"][0],
         "body": surface["pointBody"],
         "partner": np.rint(loads[:, -1]),
         "s": distance,
-        **dict(zip("XYZ", place.T)),
+        **dict(zip("XYZ", positions.T)),
         **dict(zip("xyz", now.T)),
         "weight": surface["weight"],
         "pressure": loads[:, 0],
@@ -217,12 +217,12 @@ class _Along:
 
     def __init__(self, surface: Arrays):
         self.symmetric = surface["options"][1] > 1
-        self.place = _columns(surface["points"], len(surface["pointBody"]))
+        self.positions = _columns(surface["points"], len(surface["pointBody"]))
         self.piece = surface["pointBody"].astype(int)
         self.along: np.ndarray | None = None
         if "sphere" in surface:
             radius, height = surface["sphere"]
-            x, y, z = self.place.T
+            x, y, z = self.positions.T
             self.fixed = np.where(x < 0, -radius, radius) * np.arctan2(np.hypot(x, z), height - y)
         elif "along" in surface:
             self.fixed = None
@@ -242,7 +242,7 @@ class _Along:
                 self.first[piece] = np.where(self.piece == piece, pressure, 0.0).argmax()
         origin = np.maximum(self.first[self.piece], 0)
         if self.along is None:
-            return np.linalg.norm(self.place - self.place[origin], axis=1)
+            return np.linalg.norm(self.positions - self.positions[origin], axis=1)
         length, start = self.length[self.piece], self.along[origin]
         if self.symmetric:  # half a body is measured from its axis
             start = np.where(start < length / 2, 0.0, length)

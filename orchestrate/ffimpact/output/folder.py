@@ -280,9 +280,9 @@ def replace(stage: Path, folder: Path, same: bool) -> None:
     earlier = None
     if folder.exists() and any(folder.iterdir()):
         earlier = next(
-            place
+            path
             for n in itertools.count(1)
-            if not os.path.lexists(place := folder.with_name(f"{folder.name}.{n}"))
+            if not os.path.lexists(path := folder.with_name(f"{folder.name}.{n}"))
         )
         os.rename(folder, earlier)
     os.rename(stage, folder)

@@ -24,14 +24,16 @@ def describe_results(values: dict | None = None, script: str = "disc-plane") -> 
 
     Raises BadInput if the script refuses the values, and NotInstalled without FreeFem++.
     """
-    said = describe_record(values, script)
-    place = said["summary"].index("contact_time") + 1
-    said["summary"][place:place] = list(RUN_NUMBERS)
-    said["contact_columns"] = [name for name in CONTACT_COLUMNS if name not in said["damped"]]
-    meanings = said["meanings"]
+    description = describe_record(values, script)
+    index = description["summary"].index("contact_time") + 1
+    description["summary"][index:index] = list(RUN_NUMBERS)
+    description["contact_columns"] = [
+        name for name in CONTACT_COLUMNS if name not in description["damped"]
+    ]
+    meanings = description["meanings"]
     meanings["summary"] |= {name: list(entry) for name, entry in RUN_NUMBERS.items()}
     meanings["contacts"] = {
         name: list(entry) for name, entry in CONTACT_COLUMNS.items() if entry[1]
     }
     meanings["points"] = {name: list(entry) for name, entry in POINT_COLUMNS.items()}
-    return said
+    return description

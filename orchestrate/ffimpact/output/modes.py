@@ -39,10 +39,10 @@ def write_modes(folder: Path) -> None:
         ).tocsc()[free][:, free]
         for name in ("stiffness", "mass")
     )
-    size, wanted = stiffness.shape[0], int(count + rigid)
+    size, total = stiffness.shape[0], int(count + rigid)
     # The recorded stiffness is K + shift M.
-    if 2 * wanted < size:
-        values, shapes = eigsh(stiffness, wanted, mass, sigma=0, tol=1e-12)
+    if 2 * total < size:
+        values, shapes = eigsh(stiffness, total, mass, sigma=0, tol=1e-12)
     else:
         values, shapes = eigh(stiffness.toarray(), mass.toarray())
     order = np.argsort(values)

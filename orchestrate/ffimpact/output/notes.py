@@ -62,8 +62,8 @@ def settled(warnings: Iterable[str], notes: Iterable[str]) -> dict[str, list[str
     notes.
     """
     warnings = list(warnings)
-    behind = {each for one in warnings for each in BEHIND.get(name(one), ())}
+    behind = {note for warning in warnings for note in BEHIND.get(name(warning), ())}
     return {
-        "warnings": [one for one in warnings if name(one) not in behind],
-        "notes": [*notes, *(one for one in warnings if name(one) in behind)],
+        "warnings": [warning for warning in warnings if name(warning) not in behind],
+        "notes": [*notes, *(warning for warning in warnings if name(warning) in behind)],
     }

@@ -101,8 +101,8 @@ class Contents(dict):
     the names that exist.
     """
 
-    def __init__(self, said: dict, path: Path):
-        super().__init__({name: _contents(value, path) for name, value in said.items()})
+    def __init__(self, entries: dict, path: Path):
+        super().__init__({name: _contents(value, path) for name, value in entries.items()})
         self.path = path
 
     def __missing__(self, name: str):
@@ -115,7 +115,7 @@ class Contents(dict):
 def _contents(value, path: Path):
     """Returns a value of a file, with the tables in it as Contents."""
     if isinstance(value, list):
-        return [_contents(one, path) for one in value]
+        return [_contents(item, path) for item in value]
     return Contents(value, path) if isinstance(value, dict) else value
 
 
@@ -149,13 +149,13 @@ def content(path: Path) -> str:
     """
     folder = path.parent.parent if path.parent.name == "fields" else path.parent
     with reading(path):
-        found = path.read_bytes()
+        data = path.read_bytes()
         files = (read_json(folder / "summary.json").get("provenance") or {}).get("files", {})
-        if hashlib.sha256(found).hexdigest() != files.get(
-            path.relative_to(folder).as_posix(), hashlib.sha256(found).hexdigest()
+        if hashlib.sha256(data).hexdigest() != files.get(
+            path.relative_to(folder).as_posix(), hashlib.sha256(data).hexdigest()
         ):
             raise ValueError("it is not as the run has written it")
-        return found.decode()
+        return data.decode()
 
 
 def files_of(folder: Path) -> dict[str, str]:
@@ -261,22 +261,22 @@ def read_answers(folder: Path) -> Answers:
     speed = max(
         float(
             np.linalg.norm(
-                [history[f"v{axis}{of}"] - seen[:, i] for i, axis in enumerate(axes)], axis=0
+                [history[f"v{axis}{suffix}"] - seen[:, i] for i, axis in enumerate(axes)], axis=0
             ).max()
         )
-        for of in bodies
+        for suffix in bodies
     )
     # Change of the kinetic energy from the frame of the scene to the moving frame.
     shared = mass * (seen * (seen / 2 - common)).sum(axis=1)
     energy = float((mechanical_energy(history) + shared).max())
     last = np.array([summary.get(f"rebound_v{axis}", 0.0) for axis in axes])
     at = last if frame is None else frame
-    found = summary | {
+    extended = summary | {
         "largest_energy": energy,
         "energy_final": summary["energy_final"] + mass * float(at @ (at / 2 - last)),
     }
     return Answers(
-        found, used, max(speed, (1 if held else STILL) * math.sqrt(2 * energy / mass)), history
+        extended, used, max(speed, (1 if held else STILL) * math.sqrt(2 * energy / mass)), history
     )
 
 
@@ -284,10 +284,15 @@ def _frame(used: dict, like: np.ndarray, bodies: int) -> np.ndarray | None:
     """Returns the velocity of the obstacles of a scene [m/s], None if there are none."""
     if "body" not in used:
         return None if bodies > 1 else np.zeros_like(like)
-    obstacles = [one.get("velocity", np.zeros_like(like)) for one in used.get("obstacle", [])]
+    obstacles = [
+        obstacle.get("velocity", np.zeros_like(like)) for obstacle in used.get("obstacle", [])
+    ]
     # For bodies of revolution the velocity is a number, along the axis.
     return (
-        np.mean([[0.0, one] if np.isscalar(one) else one for one in obstacles], axis=0)
+        np.mean(
+            [[0.0, velocity] if np.isscalar(velocity) else velocity for velocity in obstacles],
+            axis=0,
+        )
         if obstacles
         else None
     )
@@ -320,7 +325,9 @@ def held_bodies(used: Mapping) -> set[str]:
     used.
     """
     tables = used.get("body", [])
-    holding = [any("release" not in one for one in body.get("support", [])) for body in tables]
+    holding = [
+        any("release" not in support for support in body.get("support", [])) for body in tables
+    ]
     return {f"_{b}" if len(tables) > 1 else "" for b, holds in enumerate(holding, 1) if holds}
 
 
@@ -349,10 +356,10 @@ def numbers(summary: Mapping) -> list[str]:
 def read_json(path: Path) -> dict:
     """Returns the content of a file, {} if it is missing or damaged."""
     try:
-        said = json.loads(path.read_text("utf-8")) if path.is_file() else {}
+        data = json.loads(path.read_text("utf-8")) if path.is_file() else {}
     except (OSError, ValueError, RecursionError):
         return {}
-    return said if isinstance(said, dict) else {}
+    return data if isinstance(data, dict) else {}
 
 
 def write_json(path: Path, content: dict) -> None:
@@ -360,5 +367,5 @@ def write_json(path: Path, content: dict) -> None:
 
 
 def why(error: Exception) -> str:
-    said = str(error) if isinstance(error, ValueError) else f"{type(error).__name__}: {error}"
-    return getattr(error, "strerror", None) or said
+    message = str(error) if isinstance(error, ValueError) else f"{type(error).__name__}: {error}"
+    return getattr(error, "strerror", None) or message

@@ -169,10 +169,10 @@ def split(cells: bytes, n: int) -> Skin:
     shares = np.rint(n * places).astype(int)[None].repeat(len(nodes), axis=0)  # (cells, points, 3)
     owners = np.where(shares > 0, nodes[:, None, :3], -1)
     order = np.argsort(owners, axis=2)
-    known = np.concatenate(
-        [np.take_along_axis(each, order, axis=2) for each in (owners, shares)], axis=2
+    keys = np.concatenate(
+        [np.take_along_axis(array, order, axis=2) for array in (owners, shares)], axis=2
     ).reshape(-1, 6)
-    _, first, which = np.unique(known, axis=0, return_index=True, return_inverse=True)
+    _, first, which = np.unique(keys, axis=0, return_index=True, return_inverse=True)
     return Skin(
         nodes[first // len(values)],
         values[first % len(values)],
@@ -186,15 +186,17 @@ def lattice(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     the middles of 01, 12, 20, and the triangles (n * n, 3).
     """
     points = [(i, j) for j in range(n + 1) for i in range(n + 1 - j)]
-    place = {each: k for k, each in enumerate(points)}
+    number = {point: k for k, point in enumerate(points)}
     b, c = np.array(points).T / n
     a = 1 - b - c
     values = np.stack(
         [a * (2 * a - 1), b * (2 * b - 1), c * (2 * c - 1), 4 * a * b, 4 * b * c, 4 * c * a], axis=1
     )
-    up = [(place[i, j], place[i + 1, j], place[i, j + 1]) for i, j in points if i + j < n]
+    up = [(number[i, j], number[i + 1, j], number[i, j + 1]) for i, j in points if i + j < n]
     down = [
-        (place[i + 1, j], place[i + 1, j + 1], place[i, j + 1]) for i, j in points if i + j < n - 1
+        (number[i + 1, j], number[i + 1, j + 1], number[i, j + 1])
+        for i, j in points
+        if i + j < n - 1
     ]
     return np.stack([a, b, c], axis=1), values, np.array(up + down)
 
@@ -254,13 +256,15 @@ def series(pvd: Path) -> list[tuple[float, Path]]:
     text = content(pvd)
     with reading(pvd):
         sets = xml.fromstring(text).iterfind("Collection/DataSet")
-        return sorted((float(each.get("timestep")), pvd.parent / each.get("file")) for each in sets)
+        return sorted(
+            (float(entry.get("timestep")), pvd.parent / entry.get("file")) for entry in sets
+        )
 
 
 def between(times: np.ndarray, values: Sequence[np.ndarray], t: float) -> np.ndarray:
     """Returns the value at t of `values` at `times`: linear between them, constant beyond the
     ends.
     """
-    place = np.interp(t, times, np.arange(len(times)))
-    low, share = int(place), place % 1
+    position = np.interp(t, times, np.arange(len(times)))
+    low, share = int(position), position % 1
     return (1 - share) * values[low] + share * values[min(low + 1, len(values) - 1)]

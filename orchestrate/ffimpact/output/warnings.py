@@ -136,8 +136,8 @@ class Evidence:
 
     def near(self, extreme: Sequence[float]) -> str:
         """The place of an extreme (value, time, X, Y, Z)."""
-        place = ", ".join(f"{x:g}" for x in extreme[2 : 2 + self.facts["dimension"]])
-        return f" near X = ({place}) m"
+        coordinates = ", ".join(f"{x:g}" for x in extreme[2 : 2 + self.facts["dimension"]])
+        return f" near X = ({coordinates}) m"
 
     def obstacle(self, number: int) -> str:
         """The name of an obstacle."""
@@ -181,11 +181,11 @@ class Evidence:
 
 def sentences(evidence: Evidence) -> dict[str, list[str]]:
     """The `warnings` and `notes` of summary.json."""
-    found: dict[str, list[str]] = {"warnings": [], "notes": []}
+    messages: dict[str, list[str]] = {"warnings": [], "notes": []}
     for rule in RULES:
         for kind, text in rule(evidence):
-            found["warnings" if kind == "warning" else "notes"].append(text)
-    return found
+            messages["warnings" if kind == "warning" else "notes"].append(text)
+    return messages
 
 
 def warn(text: str) -> Sentence:
@@ -282,15 +282,15 @@ def _shape(e: Evidence) -> Iterator[Sentence]:
 
 
 def _overlap(e: Evidence) -> Iterator[Sentence]:
-    first, of, other = e.facts["overlap"], e.facts["overlap_of"], e.facts["overlap_with"]
+    first, body, other = e.facts["overlap"], e.facts["overlap_of"], e.facts["overlap_with"]
     if first[1] < 0:
         return
-    another = other >= 0 and other != of
-    instead = "set self_contact of the body, " if other == of and e.facts["named"] else ""
-    if another or (other >= 0 and e.bodies[of]["self_contact"]):
+    another = other >= 0 and other != body
+    instead = "set self_contact of the body, " if other == body and e.facts["named"] else ""
+    if another or (other >= 0 and e.bodies[body]["self_contact"]):
         instead = "take a file in which this part is contact boundary, "
     who = (
-        f"{e.bodies[of]['name']} and {e.bodies[other]['name']} pass through each other"
+        f"{e.bodies[body]['name']} and {e.bodies[other]['name']} pass through each other"
         if another
         else f"{e.body} passes through itself"
     )
@@ -350,11 +350,11 @@ def _contact(e: Evidence) -> Iterator[Sentence]:
             none = " and ".join(["the bodies"] if len(e.bodies) > 1 else ["the body", "the plane"])
             yield warn(f"no contact: {none} have not come into contact by the end_time")
         return
-    used, wanted = facts["penalty_used"], facts["penalty"]
-    if facts["explicit"] and used < wanted * (1 - 1e-9):
+    used, requested = facts["penalty_used"], facts["penalty"]
+    if facts["explicit"] and used < requested * (1 - 1e-9):
         yield warn(
             f"explicit penalty: {rounded(used)} Pa/m are used in place of the requested "
-            f"{rounded(wanted)} Pa/m: with a stiffer penalty single nodes "
+            f"{rounded(requested)} Pa/m: with a stiffer penalty single nodes "
             "bounce faster than the waves in the bodies: take "
             f"{e.finer('a smaller contact_mesh_size')}, or integrator=energy-momentum"
         )
@@ -396,7 +396,7 @@ def _peak(e: Evidence) -> Iterator[Sentence]:
         _mean_over(step[peak:], force[peak:], width),
         _mean_over(step[peak::-1], force[peak::-1], width),
     )
-    fastest = max([e.facts["impact_speed"], *(-one.before.normal for one in e.intervals)])
+    fastest = max([e.facts["impact_speed"], *(-interval.before.normal for interval in e.intervals)])
     hard = fastest > HARD * e.slowest_wave
     if (
         (e.record["front_transit"] or not hard)

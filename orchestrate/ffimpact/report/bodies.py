@@ -99,7 +99,7 @@ def title(scene: dict[str, Value]) -> str:
         materials.setdefault(material(body), []).append(body["name"])
     lines = [
         as_written(scene["title"]),
-        *(f"{', '.join(ends(of, '...'))}: {words}" for words, of in materials.items()),
+        *(f"{', '.join(ends(names, '...'))}: {words}" for words, names in materials.items()),
     ]
     return "\n".join(lines)
 
@@ -199,10 +199,10 @@ def energies(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fig
             2, sharex=True, figsize=(5.6, 4.6), height_ratios=[3, 1]
         )
         balance.set_xlabel("time [ms]")
-    for body, (axes, (name, of), colour) in enumerate(
+    for body, (axes, (name, suffix), colour) in enumerate(
         zip(own, bodies.items(), COLOURS * len(bodies))
     ):
-        kinetic, elastic = history[f"kinetic{of}"], history[f"elastic{of}"]
+        kinetic, elastic = history[f"kinetic{suffix}"], history[f"elastic{suffix}"]
         axes.plot(t, kinetic + elastic, color=colour, label=name)
         axes.plot(t, kinetic, color=colour, linestyle="--", linewidth=1.0, label="kinetic")
         axes.plot(t, elastic, color=colour, linestyle=DOTS, linewidth=1.0, label="elastic")
@@ -275,15 +275,17 @@ def velocities(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.F
     moving = [
         name
         for name in components
-        if any(np.any(history.get(name + of, 0)) for of in bodies.values())
+        if any(np.any(history.get(name + body_suffix, 0)) for body_suffix in bodies.values())
     ] or ["vy"]
     figure, grid = panels(len(moving), 2.8)
     for axes, name in zip(grid, moving):
         axes.axhline(0, color=GREY, linewidth=0.6)
-        for body, ((called, of), colour) in enumerate(zip(bodies.items(), COLOURS * len(bodies))):
+        for body, ((called, suffix), colour) in enumerate(
+            zip(bodies.items(), COLOURS * len(bodies))
+        ):
             axes.plot(
                 1e3 * history["t"],
-                history[name + of],
+                history[name + suffix],
                 color=colour,
                 linewidth=width(body) if len(bodies) > 1 else None,
                 label=called if len(bodies) > 1 else None,
@@ -304,7 +306,7 @@ def forces(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figur
         lines[f"friction force {unit}"] = {"": "friction_force"}
     own = {
         f"force along {component} {unit}": {
-            name: f"force_{component}{of}" for name, of in bodies.items()
+            name: f"force_{component}{suffix}" for name, suffix in bodies.items()
         }
         for component in "xyz"
         if len(bodies) > 1
@@ -341,11 +343,11 @@ def shapes(
 ) -> plt.Figure:
     """Draws all bodies with the obstacles at up to SHAPES instants, coloured by a field [MPa]."""
     picked = evenly(series, SHAPES)
-    found = [deformed(vtu.read(path), is_half(scene), field) for _, path in picked]
+    bodies = [deformed(vtu.read(path), is_half(scene), field) for _, path in picked]
     rigid = obstacles_of(scene)
-    left, right, low, high = view = down_the_slope(limits(found), rigid)
-    columns = 3 if right - left < 3 * (high - low) else 2
-    moves = any(one.velocity.any() for one in rigid)
+    x_min, x_max, y_min, y_max = view = down_the_slope(limits(bodies), rigid)
+    columns = 3 if x_max - x_min < 3 * (y_max - y_min) else 2
+    moves = any(obstacle.velocity.any() for obstacle in rigid)
     label += (
         " in the plane z = 0"
         if scene["script"] in (dimension.SOLID.script, *dimension.SOLID.cases)
@@ -353,11 +355,11 @@ def shapes(
     )
 
     def behind(axes: plt.Axes, times: list[float], places: list[np.ndarray]) -> None:
-        for t, at in zip(times, [[place] for place in places]) if moves else [(0.0, places)]:
+        for t, at in zip(times, [[shift] for shift in places]) if moves else [(0.0, places)]:
             draw_obstacles(axes, rigid, view, t, at)
 
     return side_by_side(
-        found, [t for t, _ in picked], view, min(columns, len(found)), behind, label
+        bodies, [t for t, _ in picked], view, min(columns, len(bodies)), behind, label
     )
 
 
@@ -365,20 +367,25 @@ def obstacles_of(scene: dict[str, Value]) -> list[Obstacle]:
     """Returns the rigid obstacles of a scene as used."""
     if not are_several(scene):
         return [PLANE]
-    of = dimension.of(scene)
+    scene_dimension = dimension.of_scene(scene)
     return obstacles.read(
-        models.tables(scene, "obstacle", of), of, scene.get("end_time") or 0.0, Path()
+        models.tables(scene, "obstacle", scene_dimension),
+        scene_dimension,
+        scene.get("end_time") or 0.0,
+        Path(),
     )
 
 
-def limits(found: list[Body]) -> tuple[float, float, float, float]:
+def limits(bodies: list[Body]) -> tuple[float, float, float, float]:
     """Returns the left, right, lower and upper end [m] of a picture that contains all bodies, with
     a margin.
     """
-    low, high = (np.array([end(body.points, axis=0) for body in found]) for end in (np.min, np.max))
-    (left, bottom), (right, top) = low.min(axis=0), high.max(axis=0)
-    margin = 0.06 * max(right - left, top - bottom)
-    return left - margin, right + margin, bottom - margin, top + margin
+    low, high = (
+        np.array([end(body.points, axis=0) for body in bodies]) for end in (np.min, np.max)
+    )
+    (x_min, y_min), (x_max, y_max) = low.min(axis=0), high.max(axis=0)
+    margin = 0.06 * max(x_max - x_min, y_max - y_min)
+    return x_min - margin, x_max + margin, y_min - margin, y_max + margin
 
 
 def down_the_slope(
@@ -387,12 +394,12 @@ def down_the_slope(
     """Extends a view [m] downwards by up to half its height, until no surface of an obstacle
     crosses its lower end. Without this a slope would end within the picture.
     """
-    left, right, low, high = view
-    for lower in low - (high - low) * np.linspace(0, 0.5, 11) if rigid else ():
-        edge = np.stack([np.linspace(left, right, GRID), np.full(GRID, lower)], axis=-1)
-        gap = np.min([one.gap_in_plane(edge, 0.0) for one in rigid], axis=0)
+    x_min, x_max, y_min, y_max = view
+    for lower in y_min - (y_max - y_min) * np.linspace(0, 0.5, 11) if rigid else ():
+        edge = np.stack([np.linspace(x_min, x_max, GRID), np.full(GRID, lower)], axis=-1)
+        gap = np.min([obstacle.gap_in_plane(edge, 0.0) for obstacle in rigid], axis=0)
         if gap.min() > 0 or gap.max() < 0:
-            return left, right, lower, high
+            return x_min, x_max, lower, y_max
     return view
 
 
@@ -406,21 +413,21 @@ def draw_obstacles(
     """Draws the obstacles at time t [s] in grey within the limits `view` [m], once for each shift
     in `places` [m]. Returns the artists.
     """
-    left, right, low, high = view
+    x_min, x_max, y_min, y_max = view
     if not rigid:
         return []
-    count = 2 if [one.kind for one in rigid] == ["plane"] else GRID  # gap is linear
-    x, y = np.linspace(left, right, count), np.linspace(low, high, count)
+    count = 2 if [obstacle.kind for obstacle in rigid] == ["plane"] else GRID  # gap is linear
+    x, y = np.linspace(x_min, x_max, count), np.linspace(y_min, y_max, count)
     points = np.stack(np.meshgrid(x, y), axis=-1)
-    gap = np.min([one.gap_in_plane(points.reshape(-1, 2), t) for one in rigid], axis=0).reshape(
-        points.shape[:2]
-    )
+    gap = np.min(
+        [obstacle.gap_in_plane(points.reshape(-1, 2), t) for obstacle in rigid], axis=0
+    ).reshape(points.shape[:2])
     if not gap.min() < 0 < gap.max():
         return []
     drawn = [
         axes.contourf(x, y, gap, levels=[gap.min(), 0], colors=["#d0d0d0"]),
         axes.contour(x, y, gap, levels=[0], colors=[BLACK], linewidths=0.8),
     ]
-    for one in drawn:
-        one.set(offsets=places, offset_transform=AffineDeltaTransform(axes.transData))
+    for artist in drawn:
+        artist.set(offsets=places, offset_transform=AffineDeltaTransform(axes.transData))
     return drawn

@@ -52,17 +52,17 @@ def main(argv: list[str]) -> int:
     )
     options = parser.parse_args(argv)
     scenes, folder = [scene.load(name) for name in options.scenes], result_folder(options.out)
-    if len({each.name for each in scenes}) < max(2, len(scenes)):
+    if len({candidate.name for candidate in scenes}) < max(2, len(scenes)):
         raise BadInput("compare: two or more different scenes are needed")
     results, failed = {}, None
-    for each in progress.in_turn("compare", scenes):
+    for loaded in progress.in_turn("compare", scenes):
         try:
-            result = run(each, overrides(options.set), folder / each.name)
-            results[each.name] = result
+            result = run(loaded, overrides(options.set), folder / loaded.name)
+            results[loaded.name] = result
             report.draw(result)
             print(report.report(result) + "\n")
         except Failure as failure:
-            print(f"{each.name}: failed: {failure}\n")
+            print(f"{loaded.name}: failed: {failure}\n")
             failed = failed or failure
     if len(results) > 1:
         path = folder / ("-and-".join(results) + ".png")
@@ -116,21 +116,21 @@ def draw(results: dict[str, Record], path: Path) -> None:
                 linestyle=(2 * k, (2, 2 * len(results) - 2)),
             )
             energy.plot(t, h["elastic"] / start, color=colour, linewidth=0.9)
-            for of, body in zip(suffixes(h), body_names(used)):
-                if of and colour == BLUE:  # labels the bodies of the first run only
+            for suffix, body in zip(suffixes(h), body_names(used)):
+                if suffix and colour == BLUE:  # labels the bodies of the first run only
                     velocity.annotate(
                         body,
-                        (t[-1], h[f"vy{of}"][-1]),
+                        (t[-1], h[f"vy{suffix}"][-1]),
                         xytext=(-4, 4),
                         textcoords="offset points",
                         ha="right",
                     )
-                velocity.plot(t, h[f"vy{of}"], color=colour, linestyle="--")
-                if np.any(h[f"vx{of}"]):
-                    velocity.plot(t, h[f"vx{of}"], color=colour)
+                velocity.plot(t, h[f"vy{suffix}"], color=colour, linestyle="--")
+                if np.any(h[f"vx{suffix}"]):
+                    velocity.plot(t, h[f"vx{suffix}"], color=colour)
                     velocity.plot(
                         t,
-                        -result.summary[f"reach{of}"] * h[f"spin{of}"],
+                        -result.summary[f"reach{suffix}"] * h[f"spin{suffix}"],
                         color=colour,
                         linestyle=":",
                     )
@@ -150,7 +150,9 @@ def draw(results: dict[str, Record], path: Path) -> None:
             ylim=(0, None),
             xlabel="time [ms]",
         )
-        stated = any(numbers_of_the_paper(each.scene, "contact_time") for each in results.values())
+        stated = any(
+            numbers_of_the_paper(record.scene, "contact_time") for record in results.values()
+        )
         _key(
             force,
             {"end of the contact": ":", "by the paper": "-."}

@@ -140,11 +140,11 @@ def draw(
                 ylim=(0, None) if words != ALONG else (None, None),
             )
         if "history" in shown:
-            of, width = (
+            suffix, width = (
                 f"_{body}" if len(names) > 1 else "",
                 "contact radius" if ball else "half-width",
             )
-            _history(panels["history"], history, own, instants, of, width)
+            _history(panels["history"], history, own, instants, suffix, width)
         if len(names) > 1:
             panels["pressure"].set_title(f"{names[0]} on {names[1]}" if alone else names[body - 1])
         if maps:
@@ -228,12 +228,12 @@ def radial(
     total, turned, slid = (
         np.bincount(at, weights) for weights in (load, load * state, load * (points.slides > 0))
     )
-    found = np.unique(at)
+    cells = np.unique(at)
     own = _columns(
-        t=times[found // count],
-        s=(found % count + 0.5) * width,
-        pressure=total[found] / area[found % count],
-        state=np.where(slid > total / 2, np.sign(turned), 0.0)[found],
+        t=times[cells // count],
+        s=(cells % count + 0.5) * width,
+        pressure=total[cells] / area[cells % count],
+        state=np.where(slid > total / 2, np.sign(turned), 0.0)[cells],
     )
     return own, words, states
 
@@ -243,14 +243,14 @@ def _history(
     history: dict[str, np.ndarray],
     own: np.recarray,
     instants: np.ndarray,
-    of: str,
+    suffix: str,
     width: str,
 ) -> None:
     """Draws the half-width of the contact (label `width`) [mm] over time and, on the right axis,
     the largest pressure [MPa] at the instants [s], as in the other panels. Both are left out
     without contact.
     """
-    half_width, other = history[f"contact_half_width{of}"], axes.twinx()
+    half_width, other = history[f"contact_half_width{suffix}"], axes.twinx()
     largest = np.full(len(instants), np.nan)
     np.fmax.at(largest, np.searchsorted(instants, own.t), 1e-6 * own.pressure)
     for where, t, values, colour, label in (
@@ -350,10 +350,10 @@ def _in_plane(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return places @ two[0], places @ two[1]
 
 
-def _instants(table: np.recarray, most: int = INSTANTS) -> list[tuple[float, np.recarray, tuple]]:
-    """Returns (t, rows, colour) for up to `most` times."""
+def _instants(table: np.recarray, limit: int = INSTANTS) -> list[tuple[float, np.recarray, tuple]]:
+    """Returns (t, rows, colour) for up to `limit` times."""
     times = np.unique(table.t)
-    picked = evenly(times, most + 2)[1:-1] if len(times) > most else times
+    picked = evenly(times, limit + 2)[1:-1] if len(times) > limit else times
     return [
         (t, table[table.t == t], colour)
         for t, colour in zip(picked, plt.get_cmap("plasma")(np.linspace(0, 0.85, len(picked))))
@@ -424,10 +424,10 @@ def _over_time(
     """
     places, between = np.unique(own.s), _between(np.unique(own.s))
     places = np.sort(np.concatenate([places, *between]))  # blank rows between contacts
-    found = np.full((len(places), len(instants)), np.nan)
-    found[np.searchsorted(places, own.s), np.searchsorted(instants, own.t)] = values
+    matrix = np.full((len(places), len(instants)), np.nan)
+    matrix[np.searchsorted(places, own.s), np.searchsorted(instants, own.t)] = values
     return axes.pcolormesh(
-        1e3 * instants, 1e3 * places, found, shading="nearest", rasterized=True, **colours
+        1e3 * instants, 1e3 * places, matrix, shading="nearest", rasterized=True, **colours
     )
 
 

@@ -45,7 +45,7 @@ def draw(folder: Path) -> list[Path]:
             if snapshots and "Z" in table.dtype.names:
                 drawn["solid"] = solid.draw(snapshots, table, scene)
         if (folder / "contacts.csv").exists():
-            bounces, rigid = impacts.read(folder), [as_written(one["name"]) for one in scene.get("obstacle", [])] or ["plane"]
+            bounces, rigid = impacts.read(folder), [as_written(obstacle["name"]) for obstacle in scene.get("obstacle", [])] or ["plane"]
             drawn["bounces"] = impacts.draw(bounces, names, rigid)
             drawn["height"] = impacts.heights(history, bounces, names) if scene.get("until") == "rest" else None
         if (folder / "modes.csv").exists():

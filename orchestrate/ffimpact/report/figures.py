@@ -141,7 +141,7 @@ def save(figure: plt.Figure, path: Path) -> None:
     """Writes the figure to a file and closes it."""
     if not figure.get_layout_engine():
         figure.set_layout_engine("constrained")
-    for axes in (one for panel in figure.axes for one in (panel, *panel.child_axes)):
+    for axes in (part for panel in figure.axes for part in (panel, *panel.child_axes)):
         for axis in (axes.xaxis, axes.yaxis):
             if type(axis.get_major_locator()) is AutoLocator:
                 axis.set_major_locator(MaxNLocator(NUMBERS, steps=(1, 2, 2.5, 5, 10)))
@@ -152,26 +152,26 @@ def save(figure: plt.Figure, path: Path) -> None:
     plt.close(figure)
 
 
-def material(one: dict[str, Value]) -> str:
+def material(body: dict[str, Value]) -> str:
     """Returns the law of a body with its parameters, E, nu, density and viscosities. For a rigid
     body it returns mass or density.
     """
-    if one.get("rigid"):
+    if body.get("rigid"):
         return (
-            f"rigid, m = {one['mass']:g} kg"
-            if "mass" in one
-            else f"rigid, ρ = {one['density']:g} kg/m³"
+            f"rigid, m = {body['mass']:g} kg"
+            if "mass" in body
+            else f"rigid, ρ = {body['density']:g} kg/m³"
         )
-    own = "" if one.get("law_parameters", "none") == "none" else f" ({one['law_parameters']})"
+    own = "" if body.get("law_parameters", "none") == "none" else f" ({body['law_parameters']})"
     viscosities = "".join(
-        f", {sign} = {one[name]:.3g} Pa s"
+        f", {sign} = {body[name]:.3g} Pa s"
         for name, sign in (("viscosity", "η"), ("bulk_viscosity", "ζ"))
-        if one.get(name)
+        if body.get(name)
     )
-    if one.get("relaxation_modulus"):
-        viscosities += f", G = {1e-6 * one['relaxation_modulus']:.3g} MPa for τ = {one['relaxation_time']:.3g} s"
-    law = LAWS.get(one["law"], one["law"])
-    return f"{law}{own}, E = {1e-6 * one['young']:g} MPa, ν = {one['nu']:g}, ρ = {one['density']:g} kg/m³{viscosities}"
+    if body.get("relaxation_modulus"):
+        viscosities += f", G = {1e-6 * body['relaxation_modulus']:.3g} MPa for τ = {body['relaxation_time']:.3g} s"
+    law = LAWS.get(body["law"], body["law"])
+    return f"{law}{own}, E = {1e-6 * body['young']:g} MPa, ν = {body['nu']:g}, ρ = {body['density']:g} kg/m³{viscosities}"
 
 
 def as_written(text: str) -> str:
@@ -252,7 +252,7 @@ def numbers_of_the_paper(
     With `any_law` it includes numbers for other laws, which are then part of the words. Returns
     nothing for a mesh of the user.
     """
-    found = []
+    numbers = []
     free = ("law", over) if any_law else (over,)
     for run in (
         literature.published(scene.get("script"), scene, free) if not scene.get("mesh") else []
@@ -262,8 +262,8 @@ def numbers_of_the_paper(
             law = (
                 "" if over == "law" or when["law"] == scene.get("law") else f", {LAWS[when['law']]}"
             )
-            found.append((when.get(over), run["numbers"][key]["value"], run["source"] + law))
-    return found
+            numbers.append((when.get(over), run["numbers"][key]["value"], run["source"] + law))
+    return numbers
 
 
 def legend(axes: plt.Axes, shown: Callable[[list], list] = list, **how) -> None:
@@ -291,8 +291,8 @@ def least(values: np.ndarray, largest: float) -> str:
     """Returns a suffix for the name of a curve that is hardly distinguishable from 0: its largest
     absolute value. Otherwise it is empty.
     """
-    most = np.abs(values).max()
-    return f" (up to {float(f'{most:.1g}'):g})" if 0 < most < 0.01 * largest else ""
+    peak = np.abs(values).max()
+    return f" (up to {float(f'{peak:.1g}'):g})" if 0 < peak < 0.01 * largest else ""
 
 
 def end_of_contact(
@@ -409,10 +409,12 @@ def _liveliest(history: dict[str, np.ndarray]) -> tuple[int, int] | None:
     intervals = np.split(touching, np.flatnonzero(np.diff(touching) > 1) + 1)
     width = min(
         (t[touching[-1]] - t[touching[0]]) / 12,
-        max(t[each[-1]] - t[each[0]] for each in intervals) / 3,
+        max(t[interval[-1]] - t[interval[0]] for interval in intervals) / 3,
     )
     change = np.diff(history["sliding_fraction"]) * np.minimum(force[1:], force[:-1])
-    up, travelled = (np.concatenate([[0], np.cumsum(each)]) for each in (change, np.abs(change)))
+    up, travelled = (
+        np.concatenate([[0], np.cumsum(values)]) for values in (change, np.abs(change))
+    )
     ends = np.minimum(np.searchsorted(t, t + width), len(t) - 1)
     lively = travelled[ends] - travelled - np.abs(up[ends] - up)  # total variation minus net change
     idle = np.cumsum(force == 0)
@@ -479,17 +481,17 @@ def rigid_rolling(t: np.ndarray, scene: dict[str, Value]) -> tuple[np.ndarray, n
     initial velocity v0 and no spin, it slides with v0 - mu_d g t and rolls from t = v0/(3 mu_d g)
     on with 2/3 v0.
     """
-    given = lambda name: scene.get(name, 0)  # noqa: E731
-    pull = given("friction_dynamic") * given("gravity")
+    value = lambda name: scene.get(name, 0)  # noqa: E731
+    pull = value("friction_dynamic") * value("gravity")
     if (
         pull <= 0
-        or given("angle") != 0
-        or any(map(given, ("height", "body_force_x", "body_force_y")))
+        or value("angle") != 0
+        or any(map(value, ("height", "body_force_x", "body_force_y")))
     ):
         return None
-    slip = scene["speed"] + given("spin") * scene["radius"]
+    slip = scene["speed"] + value("spin") * scene["radius"]
     gained = np.sign(slip) * pull * np.minimum(t, abs(slip) / (3 * pull))
-    return scene["speed"] - gained, 2 * gained - given("spin") * scene["radius"]
+    return scene["speed"] - gained, 2 * gained - value("spin") * scene["radius"]
 
 
 @dataclass(frozen=True)
@@ -525,7 +527,7 @@ def flight(
     row = lambda t: int(np.argmin(np.abs(history["t"] - t)))  # noqa: E731
     impact = history["vy"][0] < 0 or scene.get("height", 0) > 0
     if impact:
-        lowest = min(series, key=lambda each: history["y"][row(each[0])])
+        lowest = min(series, key=lambda state: history["y"][row(state[0])])
         picked = [
             (series[0], "touch", BLUE),
             (lowest, "lowest", ORANGE),
@@ -570,12 +572,12 @@ def flight(
                 + " (backwards)" * bool(after > 90.05)
             )
         room = 1.2 * scene["radius"]  # space for the times beside the outlines
-    left, right = axes.get_xlim()
+    x_min, x_max = axes.get_xlim()
     high = axes.get_ylim()[1] + (0 if impact else 0.2 * scene["radius"])
     axes.axhline(0, color=BLACK, linewidth=0.8)
     axes.axhspan(-0.3 * scene["radius"], 0, color="#d0d0d0", linewidth=0)
     axes.set(
-        xlim=(left - room, right + room),
+        xlim=(x_min - room, x_max + room),
         ylim=(-0.3 * scene["radius"], high),
         aspect="equal",
         xlabel="x [m]",
@@ -614,8 +616,8 @@ def _draw_flight(
             va="center",
         )
     waits = np.linspace(0, 2 * sign * pause, 50)
-    way = np.array([fly(pose, wait, row, history, scene).centre for wait in waits])
-    axes.plot(*way.T, color=BLACK, linewidth=0.8, linestyle=":")
+    centres = np.array([fly(pose, wait, row, history, scene).centre for wait in waits])
+    axes.plot(*centres.T, color=BLACK, linewidth=0.8, linestyle=":")
 
 
 def pose_at(t: float, path: Path, history: dict[str, np.ndarray]) -> Pose:
@@ -657,11 +659,11 @@ def fly(
         [scene.get("body_force_x", 0), scene.get("body_force_y", 0) - scene.get("gravity", 0)]
     )
     turn = rotation(history["spin"][row] * wait)
-    place = pose.centre + velocity * wait + pull * wait**2 / 2
+    centre = pose.centre + velocity * wait + pull * wait**2 / 2
     outline, diameter = (
-        (points - pose.centre) @ turn.T + place for points in (pose.outline, pose.diameter)
+        (points - pose.centre) @ turn.T + centre for points in (pose.outline, pose.diameter)
     )
-    return Pose(pose.t + wait, place, outline, diameter)
+    return Pose(pose.t + wait, centre, outline, diameter)
 
 
 def _draw_pose(axes: plt.Axes, pose: Pose, colour, line, label: str | None) -> None:
@@ -670,13 +672,13 @@ def _draw_pose(axes: plt.Axes, pose: Pose, colour, line, label: str | None) -> N
     axes.plot(*pose.diameter[0], color=colour, marker="o", markersize=4)
 
 
-def evenly(items: Sequence, most: int) -> list:
-    """Returns up to `most` of the items, evenly spaced from the first to the last."""
-    return [items[k] for k in np.unique(np.linspace(0, len(items) - 1, most).round().astype(int))]
+def evenly(items: Sequence, limit: int) -> list:
+    """Returns up to `limit` of the items, evenly spaced from the first to the last."""
+    return [items[k] for k in np.unique(np.linspace(0, len(items) - 1, limit).round().astype(int))]
 
 
 def side_by_side(
-    found: list["Body"],
+    bodies: list["Body"],
     times: list[float],
     view: tuple[float, float, float, float],
     columns: int,
@@ -688,28 +690,28 @@ def side_by_side(
     `label` at the colour bar. All share one panel, because drawing a panel takes as long as drawing
     a body.
     """
-    left, right, low, high = view
-    rows, inch = -(-len(found) // columns), (right - left) * columns / 6.5  # [m] per inch
-    step = np.array([right - left + 0.1 * inch, high - low + 0.3 * inch])
+    x_min, x_max, y_min, y_max = view
+    rows, inch = -(-len(bodies) // columns), (x_max - x_min) * columns / 6.5  # [m] per inch
+    step = np.array([x_max - x_min + 0.1 * inch, y_max - y_min + 0.3 * inch])
     figure, axes = plt.subplots(figsize=(7.5, rows * step[1] / inch + 0.4), subplot_kw=BARE)
     axes.set_axis_off()
     axes.set(
-        xlim=(left, right + (columns - 1) * step[0]),
-        ylim=(low - (rows - 1) * step[1], low + step[1]),
+        xlim=(x_min, x_max + (columns - 1) * step[0]),
+        ylim=(y_min - (rows - 1) * step[1], y_min + step[1]),
         aspect="equal",
     )
     # The colour scale ends at the 0.5 % and 99.5 % quantiles of all nodes and includes 0, so that a
     # single spot does not dominate it.
     low_stress, high_stress = np.quantile(
-        np.concatenate([body.stress for body in found]), [0.005, 0.995]
+        np.concatenate([body.stress for body in bodies]), [0.005, 0.995]
     )
     ends = min(0.0, low_stress), high_stress or 1.0
-    places = [step * (k % columns, -(k // columns)) for k in range(len(found))]
+    places = [step * (k % columns, -(k // columns)) for k in range(len(bodies))]
     behind(axes, times, places)
-    for body, t, place in zip(found, times, places):
-        picture = draw_body(axes, body, ends, place)
+    for body, t, shift in zip(bodies, times, places):
+        picture = draw_body(axes, body, ends, shift)
         axes.text(
-            *place + ((left + right) / 2, high), f"{1e3 * t:.2f} ms", ha="center", va="bottom"
+            *shift + ((x_min + x_max) / 2, y_max), f"{1e3 * t:.2f} ms", ha="center", va="bottom"
         )
     scale_bar(axes, 0.25 / columns)
     figure.colorbar(
@@ -725,17 +727,17 @@ def scale_bar(axes: plt.Axes, share: float = 0.25) -> None:
     """Draws a scale bar below axes in m without ticks. Its length is 1, 2 or 5 times a power of ten
     and at most `share` of the width.
     """
-    left, right = axes.get_xlim()
-    wanted = share * (right - left)
+    x_min, x_max = axes.get_xlim()
+    longest = share * (x_max - x_min)
     size = max(
         length
         for digit in (1, 2, 5)
-        if (length := digit * 10.0 ** np.floor(np.log10(wanted))) <= wanted
+        if (length := digit * 10.0 ** np.floor(np.log10(longest))) <= longest
     )
     # x in m, y in typographic points: nine points below the axes.
     below = axes.get_xaxis_transform() + ScaledTranslation(0, -9 / 72, axes.figure.dpi_scale_trans)
     axes.plot(
-        [left, left + size],
+        [x_min, x_min + size],
         [0, 0],
         color=BLACK,
         linewidth=2.0,
@@ -745,7 +747,7 @@ def scale_bar(axes: plt.Axes, share: float = 0.25) -> None:
     )
     factor, unit = (1e6, "μm") if size < 1e-3 else (1e3, "mm") if size < 1 else (1, "m")
     axes.text(
-        left + size + share / 16 * (right - left),
+        x_min + size + share / 16 * (x_max - x_min),
         0,
         f"{factor * size:.3g} {unit}",
         fontsize=SMALL,
@@ -753,7 +755,7 @@ def scale_bar(axes: plt.Axes, share: float = 0.25) -> None:
         va="center",
         transform=below,
     )
-    axes.set_xlim(left, right)
+    axes.set_xlim(x_min, x_max)
 
 
 @dataclass(frozen=True)
@@ -793,13 +795,13 @@ def deformed(snapshot: vtu.Snapshot, half: bool, field: str = "von_mises") -> Bo
 
 
 def draw_body(
-    axes: plt.Axes, body: Body, ends: tuple[float, float], place: np.ndarray = ORIGIN
+    axes: plt.Axes, body: Body, ends: tuple[float, float], shift: np.ndarray = ORIGIN
 ) -> TriMesh:
-    """Draws the body, shifted by `place` [m], and coloured by its stress on a scale with the given
+    """Draws the body, shifted by `shift` [m], and coloured by its stress on a scale with the given
     `ends` [MPa].
     """
     picture = axes.tripcolor(
-        *(body.points + place).T,
+        *(body.points + shift).T,
         body.triangles,
         body.stress,
         shading="gouraud",

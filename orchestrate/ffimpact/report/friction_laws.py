@@ -66,13 +66,13 @@ def tabulate(folder: Path, values: dict[str, parameters.Value]) -> pd.DataFrame:
         raise Unreadable(
             f"{folder} cannot be written: {error.strerror}; choose another --out"
         ) from None
-    code, said = freefem.run(
+    code, message = freefem.run(
         program, "edp/friction-laws.edp", values | {"out": folder}, folder / "log.txt"
     )
     if code != 0:
         raise Failure(
-            said or f"FreeFem++ stopped with exit code {code}; see {folder / 'log.txt'}",
-            code=code if said else 1,
+            message or f"FreeFem++ stopped with exit code {code}; see {folder / 'log.txt'}",
+            code=code if message else 1,
         )
     return pd.read_csv(folder / "laws.csv")
 
@@ -146,8 +146,11 @@ def _curve(
     jump between them.
     """
     stick = points[points.side == "stick"]
-    left, right = points[points.size_ < stick.size_.min()], points[points.size_ > stick.size_.max()]
-    for part in (left, stick, right):
+    negative, positive = (
+        points[points.size_ < stick.size_.min()],
+        points[points.size_ > stick.size_.max()],
+    )
+    for part in (negative, stick, positive):
         axes.plot(
             part.size_,
             part.ratio,
@@ -156,7 +159,7 @@ def _curve(
             linewidth=width,
             label=label if part is stick else None,
         )
-    for inner, outer in ((stick.iloc[0], left.iloc[-1]), (stick.iloc[-1], right.iloc[0])):
+    for inner, outer in ((stick.iloc[0], negative.iloc[-1]), (stick.iloc[-1], positive.iloc[0])):
         if abs(inner.ratio - outer.ratio) > 0.05:
             axes.plot(
                 [outer.size_] * 2,

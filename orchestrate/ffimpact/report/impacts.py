@@ -171,16 +171,16 @@ def with_flights(history: dict[str, np.ndarray]) -> Contents:
     for name in filled:
         if "force" in name:
             filled[name][flies[step] & (share > 0)] = 0
-    for of in (
+    for suffix in (
         "",
         *(name.removeprefix("kinetic") for name in history if name.startswith("kinetic_")),
     ):
         gained = np.zeros(len(t) - 1)
-        for axis in (axis for axis in "xyz" if axis + of in history):
-            change = np.diff(history[f"v{axis}{of}"])
-            filled[axis + of] -= bend * (change * np.diff(t))[step]
-            gained += change * np.diff(history[f"momentum_{axis}{of}"])
-        for name in ("kinetic", "external_work") if of == "" else (f"kinetic{of}",):
+        for axis in (axis for axis in "xyz" if axis + suffix in history):
+            change = np.diff(history[f"v{axis}{suffix}"])
+            filled[axis + suffix] -= bend * (change * np.diff(t))[step]
+            gained += change * np.diff(history[f"momentum_{axis}{suffix}"])
+        for name in ("kinetic", "external_work") if suffix == "" else (f"kinetic{suffix}",):
             filled[name] -= bend * gained[step]
     return Contents(filled, history.path)
 
@@ -200,10 +200,10 @@ def heights(history: dict[str, np.ndarray], table: np.recarray, names: list[str]
         axes.plot(
             impacts.start, np.interp(impacts.start, t, above), "o", color=colour, markersize=3
         )
-        for one in impacts[:TOLD]:
+        for impact in impacts[:TOLD]:
             axes.annotate(
-                f"{one.restitution:.2f}",
-                (one.start, np.interp(one.start, t, above)),
+                f"{impact.restitution:.2f}",
+                (impact.start, np.interp(impact.start, t, above)),
                 (0, -4),
                 textcoords="offset points",
                 ha="center",
@@ -253,7 +253,7 @@ def vibration(table: np.recarray, history: dict[str, np.ndarray], per: str) -> p
     """
     if np.isnan(table.energy).all():
         return None
-    most = np.nanmax(table.energy)
+    largest = np.nanmax(table.energy)
     figure, (top, below) = plt.subplots(2, 1, figsize=(6.4, 5), sharex=True)
     frequencies = np.linspace(0, 1.05 * table.frequency.max(), 600)
     top.plot(
@@ -268,7 +268,7 @@ def vibration(table: np.recarray, history: dict[str, np.ndarray], per: str) -> p
         ("strain_energy", GREEN, "^"),
         ("energy", "black", "o"),
     ):
-        shown = table[table[name] > 1e-6 * most]
+        shown = table[table[name] > 1e-6 * largest]
         below.plot(
             1e-3 * shown.frequency,
             shown[name],
@@ -278,7 +278,12 @@ def vibration(table: np.recarray, history: dict[str, np.ndarray], per: str) -> p
             label=name.replace("_", " "),
         )
     below.vlines(
-        1e-3 * table.frequency, 1e-6 * most, table.energy, color="#bbbbbb", linewidth=0.6, zorder=0
+        1e-3 * table.frequency,
+        1e-6 * largest,
+        table.energy,
+        color="#bbbbbb",
+        linewidth=0.6,
+        zorder=0,
     )
     below.set(ylabel=f"energy of a mode [J{per}]", xlabel="frequency [kHz]", yscale="log")
     legend(below)

@@ -17,13 +17,13 @@ def references(script: str, scene: dict[str, Value]) -> dict[str, list[dict]]:
     """Returns the published numbers whose conditions this scene fulfils: for each key of
     summary.json a list of {value, [error], source, [note]}.
     """
-    found: dict[str, list[dict]] = {}
+    numbers: dict[str, list[dict]] = {}
     for run in published(script, scene):
         for key, number in run["numbers"].items():
-            found.setdefault(key, []).append(
+            numbers.setdefault(key, []).append(
                 number | {k: run[k] for k in ("source", "note") if k in run}
             )
-    return found
+    return numbers
 
 
 def published(script: str, scene: dict[str, Value], whatever: Container[str] = ()) -> list[dict]:

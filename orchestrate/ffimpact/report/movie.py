@@ -39,7 +39,7 @@ from .figures import (
     per_metre,
 )
 
-__all__ = ["Motion", "PlaneStage", "SolidStage", "Stage", "main", "of", "write"]
+__all__ = ["Motion", "PlaneStage", "SolidStage", "Stage", "main", "stage_of", "write"]
 
 SECONDS = 8.0  # duration of the film [s]
 # Largest number of frames, 50 per second. Players show a GIF with a higher frame rate more slowly.
@@ -79,13 +79,13 @@ def main(argv: list[str]) -> int:
             "ffmpeg not found, which writes mp4; run: sudo apt-get install ffmpeg; or take --format gif"
         )
     form = options.format or ("mp4" if FFMpegWriter.isAvailable() else "gif")
-    given = scene.load(options.scene)
+    loaded = scene.load(options.scene)
     result = run(
-        given,
+        loaded,
         overrides(options.set) | {"fields": options.frames},
-        options.out or RESULTS / "movies" / given.name,
+        options.out or RESULTS / "movies" / loaded.name,
     )
-    film = result.folder / f"{given.name}.{form}"
+    film = result.folder / f"{loaded.name}.{form}"
     done = (
         result.reused
         and film.exists()
@@ -102,7 +102,7 @@ def write(film: Path, result: Record, frames: int) -> None:
     SECONDS seconds. An incomplete film is removed. Raises NotInstalled if ffmpeg fails.
     """
     with plt.rc_context(STYLE):
-        stage = of(result)
+        stage = stage_of(result)
         part = film.with_suffix(f".part{film.suffix}")
         writer = (FFMpegWriter if film.suffix == ".mp4" else PillowWriter)(fps=frames / SECONDS)
         try:
@@ -223,13 +223,13 @@ class PlaneStage(Stage):
 
     def __init__(self, result: Record, motion: Motion):
         self.motion, self.times = motion, motion.times
-        view = left, right, floor, top = bodies.limits(motion.bodies)
-        width = min(6.0, 4.8 * (right - left) / (top - floor))  # [inch]
-        self._lay_out(result, width, width * (top - floor) / (right - left))
+        view = x_min, x_max, y_min, y_max = bodies.limits(motion.bodies)
+        width = min(6.0, 4.8 * (x_max - x_min) / (y_max - y_min))  # [inch]
+        self._lay_out(result, width, width * (y_max - y_min) / (x_max - x_min))
         self.view, self.rigid = view, bodies.obstacles_of(result.scene)
         self.drawn = bodies.draw_obstacles(self.above, self.rigid, view, motion.times[0])
         self.above.set(
-            xlim=(left, right), ylim=(floor, top), aspect="equal", xlabel="x [m]", ylabel="y [m]"
+            xlim=(x_min, x_max), ylim=(y_min, y_max), aspect="equal", xlabel="x [m]", ylabel="y [m]"
         )
         # The end of the colour scale is a quantile, so that a single spot does not dominate it.
         self.largest = np.quantile([body.stress for body in motion.bodies], 0.999) or 1.0
@@ -250,9 +250,9 @@ class PlaneStage(Stage):
 
     def _move(self, t: float) -> None:
         body, line = self.motion.at(t)
-        if any(one.velocity.any() for one in self.rigid):
-            for each in self.drawn:
-                each.remove()
+        if any(obstacle.velocity.any() for obstacle in self.rigid):
+            for artist in self.drawn:
+                artist.remove()
             self.drawn = bodies.draw_obstacles(self.above, self.rigid, self.view, t)
         self.picture.remove()
         self.picture = draw_body(self.above, body, (0, self.largest))
@@ -292,7 +292,7 @@ class SolidStage(Stage):
             picture.set_data(image)
 
 
-def of(result: Record) -> Stage:
+def stage_of(result: Record) -> Stage:
     series = vtu.series(result.folder / "fields.pvd")
     if (
         series

@@ -175,7 +175,7 @@ def _scene(scene: dict[str, Value]) -> list[str]:
         ]
     return [
         *(f"{body['name']}: {body['shape']}, {_material(body)}" for body in scene["body"]),
-        *(f"{one['name']}: rigid {one['kind']}" for one in scene["obstacle"]),
+        *(f"{obstacle['name']}: rigid {obstacle['kind']}" for obstacle in scene["obstacle"]),
         words,
         *own,
     ]
@@ -192,8 +192,12 @@ def _material(body: dict[str, Value]) -> str:
 
 
 def _friction(contact: dict[str, Value]) -> str:
-    given = contact.get("friction_static")
-    return f", friction {given:g} static, {contact['friction_dynamic']:g} dynamic" if given else ""
+    friction = contact.get("friction_static")
+    return (
+        f", friction {friction:g} static, {contact['friction_dynamic']:g} dynamic"
+        if friction
+        else ""
+    )
 
 
 def marks(summary: dict) -> dict[str, str]:
@@ -215,21 +219,21 @@ def notices(summary: dict, verbose: bool = False) -> list[str]:
         (note for note in summary.get("notes", []) if notes.number(note) in mark),
         key=lambda note: list(mark).index(notes.number(note)),
     )
-    said = [("warning", sentence) for sentence in summary["warnings"]]
-    said += [(mark[notes.number(note)].strip(), note) for note in footnotes]
+    sentences = [("warning", sentence) for sentence in summary["warnings"]]
+    sentences += [(mark[notes.number(note)].strip(), note) for note in footnotes]
     if verbose:
-        return [f"  {kind:<10}{sentence}" for kind, sentence in said]
-    return [notes.line(f"  {kind:<10}", sentence) for kind, sentence in said]
+        return [f"  {kind:<10}{sentence}" for kind, sentence in sentences]
+    return [notes.line(f"  {kind:<10}", sentence) for kind, sentence in sentences]
 
 
 def _of_bodies(quantity: Quantity, scene: dict[str, Value], summary: dict) -> list[Quantity]:
     """Returns a row for each of several bodies if the summary has the number for each body."""
-    of = suffixes(summary)
-    if f"{quantity.key}{of[0]}" not in summary or of == [""]:
+    body_suffixes = suffixes(summary)
+    if f"{quantity.key}{body_suffixes[0]}" not in summary or body_suffixes == [""]:
         return [quantity]
     return [
         replace(quantity, key=quantity.key + suffix, label=f"{quantity.label}, {name}")
-        for suffix, name in zip(of, body_names(scene))
+        for suffix, name in zip(body_suffixes, body_names(scene))
     ]
 
 
@@ -238,9 +242,9 @@ def report(result: Record, verbose: bool = False) -> str:
     estimates, a line for each warning, and where to find more. If `verbose` it contains all numbers
     and full sentences.
     """
-    summary, scene, place = result.summary, result.scene, shown(result.folder)
+    summary, scene, folder = result.summary, result.scene, shown(result.folder)
     lines = [
-        f"{place}: " + ("finished earlier, same scene and code" if result.reused else "finished"),
+        f"{folder}: " + ("finished earlier, same scene and code" if result.reused else "finished"),
         *_scene(scene),
         *_numbers(result, verbose),
         *notices(summary, verbose),
@@ -251,7 +255,7 @@ def report(result: Record, verbose: bool = False) -> str:
     pictures = sorted((result.folder / "figures").glob("*.png"))
     if pictures:
         names = ",".join(picture.stem for picture in pictures)
-        lines.append(f"  figures   {place}/figures/{{{names}}}.png")
+        lines.append(f"  figures   {folder}/figures/{{{names}}}.png")
         if summary.get("contact_intervals") and scene.get("fields") and "contact" not in names:
             more = 4 * scene["fields"]
             lines.append(
@@ -259,9 +263,9 @@ def report(result: Record, verbose: bool = False) -> str:
                 f"fields = {more:g} keeps more"
             )
     if scene.get("fields"):
-        lines.append(f"  player    ffimpact view {shlex.quote(str(place))}")
+        lines.append(f"  player    ffimpact view {shlex.quote(str(folder))}")
     if not verbose:
-        lines.append(f"  more      {place}/summary.json, ffimpact run --verbose")
+        lines.append(f"  more      {folder}/summary.json, ffimpact run --verbose")
     return "\n".join(lines)
 
 
@@ -271,7 +275,7 @@ def _numbers(result: Record, verbose: bool) -> list[str]:
     """
     summary, scene = result.summary, result.scene
     script = summary["provenance"]["script"]
-    mark, bars, known = marks(summary), errors(result), _published(summary, scene)
+    mark, bars, published = marks(summary), errors(result), _published(summary, scene)
     quantities = [
         quantity
         for row in rows(dimension.per_metre(script))
@@ -292,7 +296,7 @@ def _numbers(result: Record, verbose: bool) -> list[str]:
     width, lines = max(24, *(len(quantity.label) + 1 for quantity in quantities)), []
     for quantity in quantities:
         text = quantity.text(summary[quantity.key], bars.get(quantity.key))
-        beside = [quantity.beside(number) for number in known.get(quantity.key, [])] or [""]
+        beside = [quantity.beside(number) for number in published.get(quantity.key, [])] or [""]
         marked = text + mark.get(quantity.key, "")
         lines.append(f"  {quantity.label:<{width}}{marked:<26}{beside[0]}".rstrip())
         lines += [f"  {'':<{width + 26}}{more}" for more in beside[1:]]

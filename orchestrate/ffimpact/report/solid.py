@@ -130,17 +130,17 @@ class Pressure:
         self.table, self.largest = table, float(table.pressure.max()) if len(table) else 0.0
         rows = np.stack([table[name] for name in ("X", "Y", "Z", "weight")], axis=1)
         self.points = rows[np.unique(rows[:, :3], axis=0, return_index=True)[1]]
-        known, self.source = self.points[:, :3], np.arange(len(self.points))
+        positions, self.source = self.points[:, :3], np.arange(len(self.points))
         for axis in axes:
-            known = np.vstack([known, known * np.where(np.arange(3) == axis, -1, 1)])
+            positions = np.vstack([positions, positions * np.where(np.arange(3) == axis, -1, 1)])
             self.source = np.concatenate([self.source, self.source])
-        self.near, self.share = np.zeros(len(vertices), bool), np.zeros((0, len(known)))
-        if len(known):
+        self.near, self.share = np.zeros(len(vertices), bool), np.zeros((0, len(positions)))
+        if len(positions):
             shares = self.points[self.source, 3] / 2 ** len(axes)
             h = np.sqrt(shares.max())
-            low, high = known.min(axis=0) - 2 * h, known.max(axis=0) + 2 * h
+            low, high = positions.min(axis=0) - 2 * h, positions.max(axis=0) + 2 * h
             self.near = ((vertices > low) & (vertices < high)).all(axis=1)
-            square = ((vertices[self.near, None] - known) ** 2).sum(axis=2) / h**2
+            square = ((vertices[self.near, None] - positions) ** 2).sum(axis=2) / h**2
             weight = np.where(square < 4, np.exp(-square), 0) * shares
             self.share = weight / np.maximum(
                 weight.sum(axis=1, keepdims=True), np.pi * h**2 * (1 - np.exp(-4))
@@ -150,9 +150,9 @@ class Pressure:
         now = self.table[self.table.t == self._instant(t)]
         load = dict(zip(zip(now.X, now.Y, now.Z), now.pressure))
         values = np.array([load.get((x, y, z), 0.0) for x, y, z, _ in self.points])
-        found = np.zeros(len(self.near))
-        found[self.near] = self.share @ values[self.source] if len(values) else 0.0
-        return found
+        pressure = np.zeros(len(self.near))
+        pressure[self.near] = self.share @ values[self.source] if len(values) else 0.0
+        return pressure
 
     def _instant(self, t: float) -> float:
         """Returns the time in the table that equals `t` within the digits that are written, or nan
@@ -216,12 +216,12 @@ class Views:
         self.low, self.high = ends[:, 0].min(axis=0), ends[:, 1].max(axis=0)
 
     def _sight(self, t: float, solid: vtu.Solid, pressure: np.ndarray) -> Sight:
-        place = solid.points + solid.fields["displacement"]
+        positions = solid.points + solid.fields["displacement"]
         return Sight(
             t,
-            self.cut.at(place),
+            self.cut.at(positions),
             1e-6 * self.cut.at(solid.fields["von_mises"]),
-            self.outside.at(place),
+            self.outside.at(positions),
             1e-6 * pressure,
         )
 
@@ -290,18 +290,18 @@ class Views:
                 diffuse=0.55,
             )
             centre, size = (self.low + self.high) / 2, self.high - self.low
-            for one in self.rigid if t is not None else []:
+            for obstacle in self.rigid if t is not None else []:
                 low, span = self.low - 0.08 * size.max(), size + 0.16 * size.max()
                 box = pyvista.ImageData(
                     dimensions=(GRID,) * 3, origin=low, spacing=span / (GRID - 1)
                 )
-                gap = one.gap(box.points - one.velocity * t)
+                gap = obstacle.gap(box.points - obstacle.velocity * t)
                 if gap.min() < 0 < gap.max():
                     plotter.add_mesh(
                         box.contour([0.0], scalars=gap),
                         color=GROUND,
                         opacity=0.5,
-                        lighting=one.kind != "plane",
+                        lighting=obstacle.kind != "plane",
                         show_scalar_bar=False,
                     )
             plotter.camera_position = [

@@ -103,11 +103,14 @@ def run(
             "freefem": program.version,
             "gmsh": _gmsh(scene, mesh_file),
         }
-        asked_for = {"asked": scene.asked, "estimate": estimate and _hash(ESTIMATING)}
-        asked = asked_for | provenance | {"mesh": mesh_file and _sha256(mesh_file)}
-        if force or unfinished(stage) != asked:
+        request_entries = {
+            "asked": scene.decisive_entries,
+            "estimate": estimate and _hash(ESTIMATING),
+        }
+        request = request_entries | provenance | {"mesh": mesh_file and _sha256(mesh_file)}
+        if force or unfinished(stage) != request:
             clear(stage)
-            write_json(stage / "checkpoint.json", asked)
+            write_json(stage / "checkpoint.json", request)
 
         try:
             with Solver(
@@ -122,7 +125,7 @@ def run(
                     read_answers,
                     solve.scaled,
                 )
-                found = estimates.settle(*settled) if estimate else {}
+                estimated = estimates.settle(*settled) if estimate else {}
         except Failure as failure:
             # A script that reaches its end, with success or failure, removes its checkpoint.
             if checkpoints(stage):
@@ -130,15 +133,15 @@ def run(
             # Failures of these three kinds leave no files.
             elif failure.code not in (TooLong.code, BadInput.code, Unreadable.code):
                 failure.folder = failed_beside(folder) if finished else folder
-                _keep_failed(stage, failure, scene, provenance | asked_for)
+                _keep_failed(stage, failure, scene, provenance | request_entries)
                 _put(stage, failure.folder, scene, mesh_file)
             raise
-        provenance |= asked_for | {
+        provenance |= request_entries | {
             "git": commit(),
             "mesh": _sha256(mesh_file or stage / scene.mesh_name) if scene.meshed else None,
         }
         _tell_accuracy(stage / "scene.toml", scene.values["accuracy"])
-        _finish(stage, scene, found | {"total_seconds": time.monotonic() - started}, provenance)
+        _finish(stage, scene, estimated | {"total_seconds": time.monotonic() - started}, provenance)
         _put(stage, folder, scene, mesh_file)
     return Record(folder, read_summary(folder), reused=False)
 
@@ -147,8 +150,8 @@ def states(scene: Scene) -> dict[str, Value]:
     """Returns the default of the entry `fields` if the scene leaves it open, else nothing. For a
     case of the paper, `fields` = 0 counts as open.
     """
-    given = scene.given.get("fields")
-    left_open = given is None if scene.bodies else not given
+    fields = scene.content.get("fields")
+    left_open = fields is None if scene.bodies else not fields
     return {"fields": STATES} if left_open else {}
 
 
@@ -161,35 +164,35 @@ def _put(stage: Path, folder: Path, scene: Scene, mesh_file: Path | None) -> Non
     replace(stage, folder, _same_scene(folder, scene, mesh_file))
 
 
-def _tell_accuracy(path: Path, asked: float) -> None:
-    """Adds the requested accuracy `asked` as a comment to scene.toml, if finer runs used another
+def _tell_accuracy(path: Path, accuracy: float) -> None:
+    """Adds the requested `accuracy` as a comment to scene.toml, if finer runs used another
     accuracy.
     """
     used = read_scene(path.parent)["accuracy"]
-    if not math.isclose(used, asked):
-        why = f"   # requested: {asked:g}; mesh and steps are those of this value, for the estimated error\n"
+    if not math.isclose(used, accuracy):
+        why = f"   # requested: {accuracy:g}; mesh and steps are those of this value, for the estimated error\n"
         path.write_text(
             re.sub(r"(?m)^(accuracy = \S+)\n", rf"\1{why}", path.read_text("utf-8"), count=1),
             "utf-8",
         )
 
 
-def _finish(stage: Path, scene: Scene, found: dict, provenance: dict) -> None:
-    """Adds the results `found` of the error estimate and the provenance to summary.json. The
+def _finish(stage: Path, scene: Scene, estimated: dict, provenance: dict) -> None:
+    """Adds the results `estimated` of the error estimate and the provenance to summary.json. The
     complete file is put in place by a rename, as the last step.
     """
     summary = read_summary(stage)
-    found |= notes.settled(
-        *(summary.get(kind, []) + found.get(kind, []) for kind in ("warnings", "notes"))
+    estimated |= notes.settled(
+        *(summary.get(kind, []) + estimated.get(kind, []) for kind in ("warnings", "notes"))
     )
-    found["skipped"] = found.get("skipped", []) + [
+    estimated["skipped"] = estimated.get("skipped", []) + [
         name
         for name in summary["skipped"]
-        if name != "error estimate" or not found.get("estimated_error")
+        if name != "error estimate" or not estimated.get("estimated_error")
     ]
     summary |= (
         {"estimated_error": None, "released": list(scene.released)}
-        | found
+        | estimated
         | {"provenance": provenance | {"files": files_of(stage)}}
     )
     (stage / "summary.json").unlink()
@@ -204,7 +207,7 @@ def _keep_failed(stage: Path, failure: Failure, scene: Scene, provenance: dict) 
     (stage / "summary.json").unlink(missing_ok=True)
     if not (stage / "scene.toml").exists():
         (stage / USED).exists() or (stage / USED).write_text(
-            to_toml(scene.with_files_in(stage, scene.given)), "utf-8"
+            to_toml(scene.with_files_in(stage, scene.content)), "utf-8"
         )
         os.replace(stage / USED, stage / "scene.toml")
     record = {"status": FAILURES.get(failure.code, "crashed"), "message": str(failure)} | read_json(
@@ -259,17 +262,17 @@ def imported(name: str, package: Path = PACKAGE) -> set[str]:
     directly or indirectly, at any place in their code. The modules are given as paths in the
     package without .py.
     """
-    found, open_ones = set(), {name}
+    modules, open_ones = set(), {name}
     while open_ones:
-        found.add(module := open_ones.pop())
+        modules.add(module := open_ones.pop())
         for dots, source, listed in re.findall(
             r"(?m)^\s*from (\.+)([\w.]*) import (\([^)]*\)|.*)",
             (package / f"{module}.py").read_text("utf-8"),
         ):
             room = Path(module).parents[len(dots) - 1] / source.replace(".", "/")
             names = {str(room), *(str(room / name) for name in re.findall(r"\w+", listed))}
-            open_ones |= {name for name in names if (package / f"{name}.py").exists()} - found
-    return found
+            open_ones |= {name for name in names if (package / f"{name}.py").exists()} - modules
+    return modules
 
 
 def _hash(modules: Iterable[str], files: Iterable[Path] = ()) -> str:
@@ -293,10 +296,10 @@ def _same_scene(folder: Path, scene: Scene, mesh_file: Path | None) -> bool:
             same_mesh = provenance["mesh"] == _sha256(mesh_file)
         else:
             same_mesh = provenance["gmsh"] == _gmsh(scene, None)
-        same_script, asked = provenance["script"] == scene.script, provenance["asked"]
+        same_script, request = provenance["script"] == scene.script, provenance["asked"]
     except (FileNotFoundError, ValueError, KeyError, TypeError):  # it has no such record
         return False
-    return same_mesh and same_script and asked == scene.asked
+    return same_mesh and same_script and request == scene.decisive_entries
 
 
 # ---- the mesh
@@ -309,16 +312,16 @@ def _sizes_left_to(mesh_file: Path | str | None, scene: Scene) -> dict[str, Valu
     return dict.fromkeys(SIZES, 0) if mesh_file and not scene.bodies else {}
 
 
-def _mesh_path(given: Path) -> Path:
+def _mesh_path(mesh_file: Path) -> Path:
     try:
-        path = given.resolve()
+        path = mesh_file.resolve()
         # Reading a pipe or a device might never end.
         if path.exists() and not path.is_file():
-            raise BadInput(f"mesh: {given} is no file")
+            raise BadInput(f"mesh: {mesh_file} is no file")
     # For example a loop of links, or a name that is too long.
     except (OSError, RuntimeError) as error:
         raise BadInput(
-            f"mesh: {given} cannot be read: {getattr(error, 'strerror', None) or error}"
+            f"mesh: {mesh_file} cannot be read: {getattr(error, 'strerror', None) or error}"
         ) from None
     return path
 

@@ -90,9 +90,9 @@ class Solver(AbstractContextManager):
         if not any((self.stage / name).exists() for name in ("summary.json", "checkpoint")):
             shutil.rmtree(self.stage / estimate.COARSE, ignore_errors=True)
 
-    def __call__(self, given: dict[str, Value], where: Path) -> None:
-        """Runs the scene, with the values `given`, in the folder `where`: from its checkpoint if
-        there is one, and not at all if it has finished. Raises Failure.
+    def __call__(self, overrides: dict[str, Value], where: Path) -> None:
+        """Runs the scene, with `overrides`, in the folder `where`: from its checkpoint if there is
+        one, and not at all if it has finished. Raises Failure.
         """
         self.number += 1
         display = Display(
@@ -102,36 +102,36 @@ class Solver(AbstractContextManager):
             "main run" if where == self.stage else f"{where.name} run",
             self.number,
         )
-        taken, exit_code, said = self._taken(given, where), 0, ""
+        taken, exit_code, message = self._taken(overrides, where), 0, ""
         if not taken:
             evaluate(where)  # what a run has left that was killed before it was evaluated
         if taken or not (where / "summary.json").exists():
             with ExitStack() as leaving:
-                process = taken or self._started(given, where, leaving, display)
-                exit_code, said = process.end(display.show)
+                process = taken or self._started(overrides, where, leaving, display)
+                exit_code, message = process.end(display.show)
         if (where / USED).exists() and (where / "scene.toml").exists():
             os.replace(where / USED, where / "scene.toml")
         evaluate(where)
-        _check(where, exit_code, said)
+        _check(where, exit_code, message)
         display.at("ready", 1.0)
 
     def _started(
         self,
-        given: dict[str, Value],
+        overrides: dict[str, Value],
         where: Path,
         leaving: ExitStack,
         display: "Display | None" = None,
     ) -> freefem.Process:
-        """Starts the scene, with the values `given`, in the folder `where`. The process is ended
-        when `leaving` is closed.
+        """Starts the scene, with `overrides`, in the folder `where`. The process is ended when
+        `leaving` is closed.
         """
-        scene, goes_on = self.scene.override(given), (where / "checkpoint").exists()
+        scene, goes_on = self.scene.override(overrides), (where / "checkpoint").exists()
         if not goes_on:
             if where != self.stage:
                 shutil.rmtree(where, ignore_errors=True)
             where.mkdir(exist_ok=True)
             if not (where / "checkpoint.json").exists():  # marks the folder as ours
-                write_json(where / "checkpoint.json", scene.asked)
+                write_json(where / "checkpoint.json", scene.decisive_entries)
         if display:
             display.at("mesh")
         flags, used, scene_toml = prepare(scene, where, self.foreign, self.scene)
@@ -154,34 +154,34 @@ class Solver(AbstractContextManager):
         settle() then raises it again.
         """
         where = self.stage / estimate.COARSE
-        given = self.scaled(
+        overrides = self.scaled(
             self.scene.values | self.scene.sizes, used, estimate.COARSER, self.own_mesh
         )
         if not (where / "summary.json").exists():
             with suppress(Failure):
-                self.beside = where, given, self._started(given, where, self.leaving)
+                self.beside = where, overrides, self._started(overrides, where, self.leaving)
 
-    def _taken(self, given: dict[str, Value], where: Path) -> freefem.Process | None:
+    def _taken(self, overrides: dict[str, Value], where: Path) -> freefem.Process | None:
         """Returns the process of the coarser run if the request is for this run, else None. If the
         request is for another run, the coarser run is ended and its folder removed.
         """
         if not self.beside:
             return None
-        place, values, process = self.beside
+        folder, values, process = self.beside
         self.beside = None
-        if (place, values) == (where, given):
+        if (folder, values) == (where, overrides):
             return process
         self.leaving.close()
-        shutil.rmtree(place)
+        shutil.rmtree(folder)
         return None
 
 
-def _check(stage: Path, exit_code: int, said: str) -> None:
+def _check(stage: Path, exit_code: int, message: str) -> None:
     """Raises Failure unless FreeFem++ ended with exit code 0 and left a finished summary and a
     finite history. The exit code 0 alone does not prove success.
 
     The failure has the exit code of the process. Its message is that of the failure.json that the
-    script wrote, or else `said`.
+    script wrote, or else `message`.
     """
     if exit_code == 0:
         try:
@@ -197,9 +197,9 @@ def _check(stage: Path, exit_code: int, said: str) -> None:
                 )
         return
     log = (stage / "log.txt").read_text(errors="replace")
-    said = read_json(stage / "failure.json").get("message") or said
-    if exit_code in FAILURES and said:
-        raise of_code(exit_code, said)
+    message = read_json(stage / "failure.json").get("message") or message
+    if exit_code in FAILURES and message:
+        raise of_code(exit_code, message)
     if exit_code == -signal.SIGXFSZ:
         raise Unreadable(
             "out: a file of the run is larger than files may be here; raise ulimit -f, or ask for fewer fields or steps"
@@ -221,12 +221,12 @@ def _check(stage: Path, exit_code: int, said: str) -> None:
 
 def _tail(stage: Path) -> str:
     lines = [line.strip() for line in (stage / "log.txt").read_text(errors="replace").splitlines()]
-    said = (
+    ending = (
         [line for line in lines if line and not line.startswith("progress ")]
         or lines[-1:]
         or ["nothing"]
     )
-    return "end of its log: " + " | ".join(said[-4:])
+    return "end of its log: " + " | ".join(ending[-4:])
 
 
 # ---- progress of the runs
@@ -263,7 +263,7 @@ class Display:
             return
         seconds, steps = forecast(self.seen)
         low, high = (
-            each * sum(self.line.costs.values()) / self.line.costs[self.part] for each in seconds
+            bound * sum(self.line.costs.values()) / self.line.costs[self.part] for bound in seconds
         )
         if self.foretold < low < math.inf:
             self.foretold = AGAIN * (high if high < math.inf else low)
@@ -284,12 +284,14 @@ def forecast(
     seemed. If the completed fraction has not increased, a forecast is infinite.
     """
     (start, first), (now, at) = seen[0], seen[-1]
-    middle = seen[max(0, bisect.bisect(seen, (start + now) / 2, key=lambda one: one[0]) - 1)]
+    middle = seen[max(0, bisect.bisect(seen, (start + now) / 2, key=lambda state: state[0]) - 1)]
     seconds, steps = [], []
     for when, since in ((start, first), middle):
-        left = (1 - at.share) / (at.share - since.share) if at.share > since.share else math.inf
-        seconds.append(now - start + left * (now - when))
-        steps.append(at.steps + left * (at.steps - since.steps))
+        remaining = (
+            (1 - at.share) / (at.share - since.share) if at.share > since.share else math.inf
+        )
+        seconds.append(now - start + remaining * (now - when))
+        steps.append(at.steps + remaining * (at.steps - since.steps))
     return (min(seconds), max(seconds)), (min(steps), max(steps))
 
 
@@ -306,20 +308,22 @@ def between(low: float, high: float) -> str:
 
 def entry(scene: Scene, at: freefem.At, mesh_file: Path | None) -> str:
     """Returns the entry of the scene that makes the run long."""
-    given = scene.values | scene.sizes
+    values = scene.values | scene.sizes
     if at.apart > APART:
         return f"a stiff body beside a soft one, whose waves take {at.apart:.0f} times as long as those that set the steps (young, density)"
     if at.steps / at.share / USUAL.steps > at.unknowns / USUAL.unknowns:
         names = (
             "dt",
             "end_time",
-            *(["integrator"] if given["integrator"] == "central-difference" else []),
+            *(["integrator"] if values["integrator"] == "central-difference" else []),
         )
     elif mesh_file:
         return f"the mesh {mesh_file}"
     else:
         names = ("contact_mesh_size", "mesh_size")
-    name = next((name for name in names if given.get(name)), "accuracy")
+    name = next((name for name in names if values.get(name)), "accuracy")
     return (
-        f"{name} = {given[name]:g}" if isinstance(given[name], float) else f"{name} = {given[name]}"
+        f"{name} = {values[name]:g}"
+        if isinstance(values[name], float)
+        else f"{name} = {values[name]}"
     )

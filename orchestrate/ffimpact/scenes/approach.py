@@ -84,11 +84,11 @@ def meetings(scene: Scene) -> list[Meeting]:
     scene = replace(
         scene,
         bodies=[body.carried_along for body in scene.bodies],
-        obstacles=[one.carried_along for one in scene.obstacles],
+        obstacles=[obstacle.carried_along for obstacle in scene.obstacles],
     )
     obstacles = [-1 - k for k in range(len(scene.obstacles))]
     pairs = [(i, j) for i, others in enumerate(_near(scene)) for j in [*others, *obstacles]]
-    return [one for pair in pairs for one in _in_turn(scene, _meeting(scene, *pair))]
+    return [meeting for pair in pairs for meeting in _in_turn(scene, _meeting(scene, *pair))]
 
 
 def _near(scene: Scene) -> list[list[int]]:
@@ -103,14 +103,14 @@ def _near(scene: Scene) -> list[list[int]]:
     )
     reaches = np.array([body.outline.reach for body in scene.bodies])
     free = np.array([not body.driven and not body.supports for body in scene.bodies])
-    found = []
+    neighbours = []
     for i in range(len(scene.bodies)):
         r, v = places[i + 1 :] - places[i], ways[i + 1 :] - ways[i]
         speed = np.maximum((v * v).sum(axis=1), np.finfo(float).tiny)
         nearest = r + v * np.maximum(0.0, -(r * v).sum(axis=1) / speed)[:, None]
         within = np.linalg.norm(nearest, axis=1) <= 1.01 * (reaches[i] + reaches[i + 1 :])
-        found.append((i + 1 + np.flatnonzero(within | ~free[i] | ~free[i + 1 :])).tolist())
-    return found
+        neighbours.append((i + 1 + np.flatnonzero(within | ~free[i] | ~free[i + 1 :])).tolist())
+    return neighbours
 
 
 def _fall(scene: Scene) -> np.ndarray:
@@ -123,36 +123,38 @@ def _fall(scene: Scene) -> np.ndarray:
     return fall
 
 
-def _in_turn(scene: Scene, one: Meeting) -> list[Meeting]:
+def _in_turn(scene: Scene, meeting: Meeting) -> list[Meeting]:
     """Returns an onset of contact and, in the plane, those of the same pair that follow: the impact
     turns the rigid bodies, without friction, and other corners strike.
     """
-    found = [one]
-    while scene.dimension is PLANE_STRAIN and len(found) <= MORE and math.isfinite(one.time):
-        scene = _rebound(scene, one)
+    onsets = [meeting]
+    while scene.dimension is PLANE_STRAIN and len(onsets) <= MORE and math.isfinite(meeting.time):
+        scene = _rebound(scene, meeting)
         if scene is None:
             break
-        one = _meeting(scene, one.first, one.second)
-        found += [one] if math.isfinite(one.time) else []
-    return found
+        meeting = _meeting(scene, meeting.first, meeting.second)
+        onsets += [meeting] if math.isfinite(meeting.time) else []
+    return onsets
 
 
-def _rebound(scene: Scene, one: Meeting) -> Scene | None:
+def _rebound(scene: Scene, meeting: Meeting) -> Scene | None:
     """Returns the scene a little after an onset of contact, when the bodies have separated, without
     gravity and body forces. None if the impact does not turn the bodies.
     """
-    n = one.normal
-    point = _middle(one)
-    fall = _fall(scene) * one.time
+    n = meeting.normal
+    point = _middle(meeting)
+    fall = _fall(scene) * meeting.time
     # Velocity of the obstacle. Its position stays, so the body moves relative to it.
-    moves = scene.obstacles[-1 - one.second].velocity if one.second < 0 else np.zeros(len(n))
+    moves = (
+        scene.obstacles[-1 - meeting.second].velocity if meeting.second < 0 else np.zeros(len(n))
+    )
     hit, yields, closing = [], 0.0, 0.0
-    for sign, k in ((1, one.first), (-1, one.second)):
+    for sign, k in ((1, meeting.first), (-1, meeting.second)):
         if k < 0:
             closing += scene.obstacles[-1 - k].velocity @ n
             continue
         body = scene.bodies[k]
-        shape = one.outlines[0 if k == one.first else 1]
+        shape = meeting.outlines[0 if k == meeting.first else 1]
         lever, mass = _lever(shape, point, n), body.density * shape.area
         yields += (1 + lever**2 / shape.gyration) / mass
         closing -= sign * ((body.velocity + fall) @ n + body.spin * lever)
@@ -160,14 +162,14 @@ def _rebound(scene: Scene, one: Meeting) -> Scene | None:
     turning = max(abs(lever) / shape.reach for _, _, shape, lever, _ in hit)
     if closing <= 0 or turning < ECCENTRIC:
         return None
-    soon, bodies = 4 * MET * one.radius / (RESTITUTION * closing), list(scene.bodies)
+    soon, bodies = 4 * MET * meeting.radius / (RESTITUTION * closing), list(scene.bodies)
     for sign, k, shape, lever, mass in hit:
         body, push = bodies[k], sign * (1 + RESTITUTION) * closing / yields / mass
         velocity, spin = body.velocity + fall + push * n, body.spin + push * lever / shape.gyration
         bodies[k] = replace(
             body,
             position=shape.area_centre + (velocity - moves) * soon,
-            angle=body.angle + body.spin * one.time + spin * soon,
+            angle=body.angle + body.spin * meeting.time + spin * soon,
             velocity=velocity,
             spin=spin,
         )
@@ -177,14 +179,14 @@ def _rebound(scene: Scene, one: Meeting) -> Scene | None:
     return replace(scene, bodies=bodies, values=scene.values | still)
 
 
-def _middle(one: Meeting) -> np.ndarray:
+def _middle(meeting: Meeting) -> np.ndarray:
     """Returns the point of contact at an onset. For a face on another face it is the middle, so
     that a body set down flat does not turn.
     """
-    points = np.vstack([shape.points for shape in one.outlines if isinstance(shape, Outline)])
-    off = np.max([abs(shape.gap(points)) for shape in one.outlines], axis=0)
-    along = (points - points[off.argmin()]) @ one.normal
-    on = points[(off <= off.min() + MET * one.radius) & (abs(along) <= MET * one.radius)]
+    points = np.vstack([shape.points for shape in meeting.outlines if isinstance(shape, Outline)])
+    off = np.max([abs(shape.gap(points)) for shape in meeting.outlines], axis=0)
+    along = (points - points[off.argmin()]) @ meeting.normal
+    on = points[(off <= off.min() + MET * meeting.radius) & (abs(along) <= MET * meeting.radius)]
     return (on.min(axis=0) + on.max(axis=0)) / 2
 
 
@@ -193,17 +195,17 @@ def _meeting(scene: Scene, first: int, second: int) -> Meeting:
     other = scene.bodies[second] if second >= 0 else scene.obstacles[-1 - second]
     # Two bodies without supports fall alike, so that gravity does not change their relative
     # velocity.
-    falls = [not one.supports for one in (body, other) if isinstance(one, Body)]
+    falls = [not surface.supports for surface in (body, other) if isinstance(surface, Body)]
     pull = _fall(scene) * (falls[0] - (falls[1] if second >= 0 else 0))
     start = body.velocity - other.velocity
     radius = min(
         [body.outline.half_thickness, *([other.outline.half_thickness] if second >= 0 else [])]
     )
-    loaded = max(loaded_pull(one) for one in (body, other) if isinstance(one, Body))
+    loaded = max(loaded_pull(surface) for surface in (body, other) if isinstance(surface, Body))
     turning = sum(
-        one.outline.fastest(one.angle, one.spin) * one.outline.reach
-        for one in (body, other)
-        if isinstance(one, Body)
+        surface.outline.fastest(surface.angle, surface.spin) * surface.outline.reach
+        for surface in (body, other)
+        if isinstance(surface, Body)
     )
     t, never = _first_touch(body, other, start, pull, turning, radius)
     met = not math.isinf(t)
@@ -226,7 +228,7 @@ def _meeting(scene: Scene, first: int, second: int) -> Meeting:
             never and not driven,
         )
     along, across = _parts(pull, normal)
-    one = Meeting(
+    meeting = Meeting(
         first,
         second,
         outlines,
@@ -237,21 +239,21 @@ def _meeting(scene: Scene, first: int, second: int) -> Meeting:
         t,
         normal,
     )
-    one = replace(one, pressed=_pressed(scene, one))
+    meeting = replace(meeting, pressed=_pressed(scene, meeting))
     if isinstance(other, Obstacle) and other.drive:  # the surface of a turning obstacle slides
         away = np.linalg.norm(outlines[0].points - other.drive.pivot, axis=1).min()
-        one = replace(one, sliding=one.sliding + other.drive.fastest_turn * float(away))
+        meeting = replace(meeting, sliding=meeting.sliding + other.drive.fastest_turn * float(away))
     if scene.dimension is not PLANE_STRAIN:
-        return one
+        return meeting
     # `spun` [m/s] is the closing velocity of the points in contact, with that by spin.
-    point, spun = _middle(one), velocity @ normal
-    for sign, each, shape in zip((1, -1), (body, other), outlines):
+    point, spun = _middle(meeting), velocity @ normal
+    for sign, struck, shape in zip((1, -1), (body, other), outlines):
         if (
-            isinstance(each, Body)
+            isinstance(struck, Body)
             and abs(lever := _lever(shape, point, normal)) > ECCENTRIC * shape.reach
         ):
-            spun += sign * each.spin * lever
-    return replace(one, closing=float(abs(spun)))
+            spun += sign * struck.spin * lever
+    return replace(meeting, closing=float(abs(spun)))
 
 
 def loaded_pull(body: Body) -> float:
@@ -259,9 +261,9 @@ def loaded_pull(body: Body) -> float:
     thick. A pressure all around the body or a cavity has no resultant.
     """
     stress = [
-        one.largest
-        for one in body.loads
-        if one.kind == "traction" or (one.kind == "pressure" and one.part.name not in WHOLE)
+        load.largest
+        for load in body.loads
+        if load.kind == "traction" or (load.kind == "pressure" and load.part.name not in WHOLE)
     ]
     if isinstance(body.outline, Outline):
         width, content = 2 * body.outline.half_thickness, body.outline.area
@@ -270,16 +272,18 @@ def loaded_pull(body: Body) -> float:
     return sum(stress) * width / (body.density * content)
 
 
-def _pressed(scene: Scene, one: Meeting) -> float:
+def _pressed(scene: Scene, meeting: Meeting) -> float:
     """Returns the closing speed [m/s] of an impact with as wide a contact as the motion of a
     support makes. The support moves on by a depth [m] after the onset of contact.
 
     Half-widths b of discs: b^2 = 0.8 R depth under a support (R/10 deep), b^2 = 2 R^2 v/c in an
     impact (edp/core/input/sizes.idp). Of balls: b^2 = R depth and b = 1.31 R (v/c)^0.4.
     """
-    bodies = [scene.bodies[k] for k in (one.first, one.second) if k >= 0]
+    bodies = [scene.bodies[k] for k in (meeting.first, meeting.second) if k >= 0]
     ends = [support.path()[1] for body in bodies for support in body.supports if support.moves]
-    share = min(0.5, one.closing * max([0.0, *(end - one.time for end in ends)]) / one.radius)
+    share = min(
+        0.5, meeting.closing * max([0.0, *(end - meeting.time for end in ends)]) / meeting.radius
+    )
     bar_speed = min(math.sqrt(body.young / body.density) for body in bodies)
     return bar_speed * (0.4 * share if scene.dimension is PLANE_STRAIN else 0.5 * share**1.25)
 
@@ -299,21 +303,21 @@ def turned(scene: Scene) -> Scene:
     if scene.dimension is not PLANE_STRAIN:
         return scene
     met = meetings(scene)
-    found = list(scene.bodies)
+    bodies = list(scene.bodies)
     for k, body in enumerate(scene.bodies):
-        mine = [one for one in met if k in (one.first, one.second)]
+        mine = [meeting for meeting in met if k in (meeting.first, meeting.second)]
         if body.mesh or not body.outline.disc or not mine:
             continue
-        soonest = min(one.time for one in mine)
-        first = next(one for one in mine if one.time <= soonest * (1 + 1e-9))
+        soonest = min(meeting.time for meeting in mine)
+        first = next(meeting for meeting in mine if meeting.time <= soonest * (1 + 1e-9))
         outward = -first.normal if k == first.first else first.normal
-        found[k] = replace(
+        bodies[k] = replace(
             body,
             angle=math.atan2(outward[1], outward[0])
             + math.pi / 2
             - (body.spin * first.time if math.isfinite(first.time) else 0.0),
         )
-    return replace(scene, bodies=found)
+    return replace(scene, bodies=bodies)
 
 
 def refuse_nothing(scene: Scene, met: list[Meeting]) -> None:
@@ -324,8 +328,8 @@ def refuse_nothing(scene: Scene, met: list[Meeting]) -> None:
     driven = [
         f"{kind}.{k}"
         for kind, all_of in (("body", scene.bodies), ("obstacle", scene.obstacles))
-        for k, one in enumerate(all_of, 1)
-        if one.driven
+        for k, surface in enumerate(all_of, 1)
+        if surface.driven
     ]
     if driven and (scene.values["end_time"] == 0 or scene.values["until"] == "rest"):
         raise BadInput(
@@ -334,12 +338,12 @@ def refuse_nothing(scene: Scene, met: list[Meeting]) -> None:
             f"(accepted: an end_time > 0, until = 'impact')"
         )
     moving = [
-        *(one.velocity for one in [*scene.bodies, *scene.obstacles]),
+        *(surface.velocity for surface in [*scene.bodies, *scene.obstacles]),
         *(np.atleast_1d(body.spin) for body in scene.bodies),
     ]
     forces = [scene.values.get(name, 0.0) for name in ("gravity", "body_force_x", "body_force_y")]
     if (
-        not any(np.any(one) for one in moving)
+        not any(np.any(motion) for motion in moving)
         and not any(forces)
         and not driven
         and not any(body.supports or body.loads for body in scene.bodies)
@@ -349,25 +353,25 @@ def refuse_nothing(scene: Scene, met: list[Meeting]) -> None:
         )
     if (
         scene.values["end_time"] == 0
-        and all(one.never for one in met)
+        and all(onset.never for onset in met)
         and len(scene.bodies) + len(scene.obstacles) > 1
     ):
         raise BadInput(
             "end_time: 0 is the end of the contact, but no bodies ever come into contact: they miss each other and every obstacle "
             "(accepted: an end_time > 0, or velocities and positions that lead them together)"
         )
-    for one in met if scene.values["end_time"] == 0 and scene.values["until"] != "rest" else []:
-        body = scene.bodies[one.first]
+    for meeting in met if scene.values["end_time"] == 0 and scene.values["until"] != "rest" else []:
+        body = scene.bodies[meeting.first]
         if (
-            one.second < 0
-            and one.time == 0
-            and one.closing == 0
+            meeting.second < 0
+            and meeting.time == 0
+            and meeting.closing == 0
             and not np.any(body.spin)
-            and _fall(scene) @ one.normal < 0
+            and _fall(scene) @ meeting.normal < 0
         ):
             raise BadInput(
                 f"end_time: 0 is the end of the contact, but '{body.name}' is set down on "
-                f"'{scene.obstacles[-1 - one.second].name}' and does not leave it (accepted: an end_time > 0)"
+                f"'{scene.obstacles[-1 - meeting.second].name}' and does not leave it (accepted: an end_time > 0)"
             )
 
 
@@ -376,8 +380,8 @@ def refuse_sinking(scene: Scene, met: list[Meeting]) -> None:
     its boundary that is no contact boundary. It would pass through.
     """
     for k, body in enumerate(scene.bodies):
-        mine = [one for one in met if k in (one.first, one.second)]
-        first = min(mine, key=lambda one: one.time, default=None)
+        mine = [meeting for meeting in met if k in (meeting.first, meeting.second)]
+        first = min(mine, key=lambda meeting: meeting.time, default=None)
         if not first or not math.isfinite(first.time) or not body.sides:
             continue
         if 0 < scene.values["end_time"] < first.time:
@@ -395,9 +399,9 @@ def refuse_sinking(scene: Scene, met: list[Meeting]) -> None:
         if nearest[may_touch].min() > nearest.min() + near:
             partner = first.second if k == first.first else first.first
             name = (scene.bodies[partner] if partner >= 0 else scene.obstacles[-1 - partner]).name
-            place = ", ".join(f"{x:.3g}" for x in placed[gaps.argmin()])
+            position = ", ".join(f"{x:.3g}" for x in placed[gaps.argmin()])
             raise BadInput(
-                f"body.{k + 1}.file: '{body.name}' comes to '{name}' with ({place}) "
+                f"body.{k + 1}.file: '{body.name}' comes to '{name}' with ({position}) "
                 f"m, which is no contact boundary and would pass through the obstacle (accepted: a file whose "
                 f"label {mesh.FREE}, or physical group 'contact', is there, too)"
             )
@@ -418,8 +422,8 @@ def _at(
     freely.
     """
 
-    def flown(one: Body, velocity: np.ndarray) -> Shape:
-        return one.at(t, one.position + velocity * t + pull * t**2 / 2)
+    def flown(free_body: Body, velocity: np.ndarray) -> Shape:
+        return free_body.at(t, free_body.position + velocity * t + pull * t**2 / 2)
 
     if isinstance(other, Body):
         return flown(body, body.velocity), flown(other, other.velocity)

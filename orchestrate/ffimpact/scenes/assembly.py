@@ -126,18 +126,18 @@ def prepare(
             tomllib.loads(text),
             text,
         )
-    said = (like or scene).description(foreign)
+    description = (like or scene).description(foreign)
     if not scene.meshed:
-        return scene.values, said["used"], ""
+        return scene.values, description["used"], ""
     if foreign is not None:
         file.write_bytes(foreign)
     else:
         sizes = (
-            scene.values[name] or said["used"][name]
+            scene.values[name] or description["used"][name]
             for name in ("radius", "mesh_size", "contact_mesh_size")
         )
-        mesh.write(mesh.disc(*sizes, said["half"], said["touch_arc"]), file)
-    return scene.values | {"mesh": file}, said["used"], ""
+        mesh.write(mesh.disc(*sizes, description["half"], description["touch_arc"]), file)
+    return scene.values | {"mesh": file}, description["used"], ""
 
 
 def assemble(scene: Scene, rule: Rule | None = None, met: list[Meeting] | None = None) -> Assembly:
@@ -176,10 +176,10 @@ def assemble(scene: Scene, rule: Rule | None = None, met: list[Meeting] | None =
         (pair.first, pair.second): float(own["penalty"]) for pair, own in zip(scene.pairs, pairs)
     }
     rises = [
-        one.rise_on(penalties.get(both, values["penalty"]), scene.bodies, values["exponent"])
-        for both, one in ask.fronts.items()
+        strike.rise_on(penalties.get(both, values["penalty"]), scene.bodies, values["exponent"])
+        for both, strike in ask.fronts.items()
     ]
-    front = [(min(one.tau for one in ask.fronts.values()), max(rises))] if rises else []
+    front = [(min(strike.tau for strike in ask.fronts.values()), max(rises))] if rises else []
     return Assembly(
         together,
         regions,
@@ -221,9 +221,11 @@ def _solids(
     """
     folded = FOLDED[copies(scene)]
     accuracy = float(scene.values["accuracy"])
-    meshes = [solids.mesh_of(body, one, folded, accuracy) for body, one in zip(scene.bodies, sizes)]
+    meshes = [
+        solids.mesh_of(body, size, folded, accuracy) for body, size in zip(scene.bodies, sizes)
+    ]
     meshes = [_reached(scene, k, made) for k, made in enumerate(meshes)]
-    count = sum(solid_mesh.unknowns(one.cells, scene.values["degree"]) for one in meshes)
+    count = sum(solid_mesh.unknowns(made.cells, scene.values["degree"]) for made in meshes)
     if count > solid_mesh.MOST_UNKNOWNS:
         raise BadInput(
             f"mesh_size: the bodies have {count} unknowns (accepted: up to {solid_mesh.MOST_UNKNOWNS}; larger mesh_size, "
@@ -231,11 +233,11 @@ def _solids(
         )
     centres = side_by_side(meshes, 1)
     surfaces = [
-        (k, *(centre + one.centre), *one.axis, one.radius)
+        (k, *(centre + patch.centre), *patch.axis, patch.radius)
         for k, (made, centre) in enumerate(zip(meshes, centres))
-        for one in made.curved
+        for patch in made.curved
     ]
-    spheres, cylinders = ([one for one in surfaces if len(one) == size] for size in (5, 8))
+    spheres, cylinders = ([line for line in surfaces if len(line) == size] for size in (5, 8))
     return (
         meshes,
         centres,
@@ -261,8 +263,8 @@ class Asker:
         """The flat strikes by contact pair. If a pair has several, the one with the smallest
         elements.
         """
-        found = sorted(fronts(self.scene, self.met), key=lambda front: -front.tau)
-        return {(front.meeting.first, front.meeting.second): front for front in found}
+        strikes = sorted(fronts(self.scene, self.met), key=lambda front: -front.tau)
+        return {(front.meeting.first, front.meeting.second): front for front in strikes}
 
     def open_front(self, pair: Pair) -> Front | None:
         """Returns the front of a pair that strikes flat and whose penalty is automatic, else
@@ -288,19 +290,23 @@ class Asker:
         """Returns the radius [m] of an obstacle at the first contact with a body, 0 at a sharp
         corner. It is infinite if the radius is not below half the radius of the pair.
         """
-        one = self.first_met.get((first, second))
-        if second >= 0 or one is None:
+        meeting = self.first_met.get((first, second))
+        if second >= 0 or meeting is None:
             return math.inf
-        body, obstacle = one.outlines
+        body, obstacle = meeting.outlines
         radius = obstacle.radius_at(
-            body.points[obstacle.gap(body.points).argmin()], ASIDE * one.radius
+            body.points[obstacle.gap(body.points).argmin()], ASIDE * meeting.radius
         )
-        return radius if radius < one.radius / 2 else math.inf
+        return radius if radius < meeting.radius / 2 else math.inf
 
     @cached_property
     def first_met(self) -> dict[tuple[int, int], Meeting]:
         """The first onset of contact of each pair that may come into contact."""
-        return {(one.first, one.second): one for one in reversed(self.met) if not one.never}
+        return {
+            (meeting.first, meeting.second): meeting
+            for meeting in reversed(self.met)
+            if not meeting.never
+        }
 
     @cached_property
     def largest(self) -> tuple[float, ...]:
@@ -308,14 +314,14 @@ class Asker:
         across the normal [m/s2]. Round-off is removed, because a mesh changes with every digit.
         """
         return tuple(
-            float(f"{max((getattr(one, name) for one in self.met), default=0.0):.6g}")
+            float(f"{max((getattr(meeting, name) for meeting in self.met), default=0.0):.6g}")
             for name in ("closing", "sliding", "pressing", "pulling")
         )
 
     @cached_property
     def pressed(self) -> float:
         """The closing speed [m/s] of impacts with as wide a contact as moving supports make."""
-        return float(f"{max((one.pressed for one in self.met), default=0.0):.6g}")
+        return float(f"{max((meeting.pressed for meeting in self.met), default=0.0):.6g}")
 
     def disc(
         self, bodies: list[Body], radius: float, slides: bool, presses: bool = True
@@ -330,12 +336,12 @@ class Asker:
         along = max(along, self.pressed) if presses else along
         pressing = pressing if self.met else max(loaded_pull(body) for body in self.scene.bodies)
         soft = min(bodies, key=lambda body: body.young)
-        asked = {
+        request = {
             name: self.scene.values[name]
             for name in ("accuracy", "accuracy_of", "end_time", "until")
         }
         young = soft.young / (STIFF if soft.rigid else 1)
-        asked |= {
+        request |= {
             "exponent": self.scene.contact["exponent"],
             "young": young,
             "nu": soft.nu,
@@ -348,13 +354,13 @@ class Asker:
             "gravity": pressing,
         }
         if slides:
-            asked |= {
+            request |= {
                 "speed": math.hypot(along, across),
                 "angle": math.degrees(math.atan2(along, across)),
                 "spin": max(float(np.linalg.norm(body.spin)) for body in bodies),
                 "body_force_x": pulling,
             }
-        return asked
+        return request
 
 
 def contact_values(
@@ -364,26 +370,26 @@ def contact_values(
     softest of the bodies and the smallest radius. `least` [m] is the radius of an obstacle.
     """
     radius = min([least, *(body.outline.half_thickness for body in bodies)])
-    given = [body.contact_mesh_size for body in bodies]
-    more = {"contact_mesh_size": min(*given, radius)} if min(given) > 0 else {}
-    found = dict(contact)
-    if left := [name for name in ("penalty", "slip_velocity") if contact[name] == "auto"]:
+    sizes = [body.contact_mesh_size for body in bodies]
+    more = {"contact_mesh_size": min(*sizes, radius)} if min(sizes) > 0 else {}
+    values = dict(contact)
+    if automatic := [name for name in ("penalty", "slip_velocity") if contact[name] == "auto"]:
         used = ask.answer(bodies, radius, slides=True, exponent=contact["exponent"], **more)["used"]
-        found |= {name: used[name] for name in left}
+        values |= {name: used[name] for name in automatic}
         # The slow motion of a support slips slowly, even if it makes a wide contact.
-        if "slip_velocity" in left and ask.pressed > 0:
+        if "slip_velocity" in automatic and ask.pressed > 0:
             used = ask.answer(
                 bodies, radius, slides=True, presses=False, exponent=contact["exponent"], **more
             )["used"]
-            found["slip_velocity"] = used["slip_velocity"]
+            values["slip_velocity"] = used["slip_velocity"]
     if contact["friction_dynamic"] == "auto":
-        found["friction_dynamic"] = contact["friction_static"]
-    if found["friction_dynamic"] > found["friction_static"]:
+        values["friction_dynamic"] = contact["friction_static"]
+    if values["friction_dynamic"] > values["friction_static"]:
         raise BadInput(
-            f"{path}.friction_dynamic: {found['friction_dynamic']:g} is larger than friction_static "
-            f"{found['friction_static']:g} (accepted: 0 to friction_static)"
+            f"{path}.friction_dynamic: {values['friction_dynamic']:g} is larger than friction_static "
+            f"{values['friction_static']:g} (accepted: 0 to friction_static)"
         )
-    return found
+    return values
 
 
 def pair_values(pair: Pair, ask: Asker, values: dict[str, Value]) -> dict[str, Value]:
@@ -408,17 +414,17 @@ def with_open_penalties(scene: Scene, ask: "Asker") -> list[Pair]:
     """Returns the pairs of the scene, and those whose automatic penalty differs: flat strikes, and
     a body with an obstacle that is smaller than the contact of the body on a plane.
     """
-    said = {(pair.first, pair.second) for pair in scene.pairs}
+    listed = {(pair.first, pair.second) for pair in scene.pairs}
     small = [
-        (one.first, one.second)
-        for one in ask.met
-        if 0 < ask.small(one.first, one.second) < math.inf
+        (meeting.first, meeting.second)
+        for meeting in ask.met
+        if 0 < ask.small(meeting.first, meeting.second) < math.inf
     ]
     differ = dict.fromkeys([*small, *ask.fronts]) if scene.contact["penalty"] == "auto" else {}
     pairs = scene.pairs + [
         Pair(*both, {}, f"obstacle.{-both[1]}" if both[1] < 0 else "contact")
         for both in differ
-        if both not in said
+        if both not in listed
     ]
     return sorted(pairs, key=lambda pair: (pair.first, pair.second))
 
@@ -437,22 +443,26 @@ def used_tables(
         ]
 
     bodies = []
-    for given, body, size in zip(scene.given["body"], scene.bodies, sizes):
+    for body_table, body, size in zip(scene.content["body"], scene.bodies, sizes):
         used = (
             {"name": body.name}
-            | given
+            | body_table
             | ({} if body.rigid else {key: getattr(body, key) for key in MATERIAL})
         )
         used |= {"density": body.density} if body.rigid and not body.mass else {}
         used |= {"mesh_size": size.bulk, "contact_mesh_size": size.contact} if size else {}
-        used |= {"file": str((scene.folder / given["file"]).resolve())} if "file" in given else {}
+        used |= (
+            {"file": str((scene.folder / body_table["file"]).resolve())}
+            if "file" in body_table
+            else {}
+        )
         bodies.append(used)
     obstacles = [
-        {"name": one.name} | {key: value for key, value in given.items() if key not in OWN}
-        for given, one in zip(scene.given.get("obstacle", []), scene.obstacles)
+        {"name": obstacle.name} | {key: value for key, value in table.items() if key not in OWN}
+        for table, obstacle in zip(scene.content.get("obstacle", []), scene.obstacles)
     ]
     contact = {key: values[key] for key in scene.contact}
-    contact |= {"self_contact": scene.given.get("contact", {}).get("self_contact", "auto")}
+    contact |= {"self_contact": scene.content.get("contact", {}).get("self_contact", "auto")}
     contact |= {"pair": [{"bodies": names(pair)} | own for pair, own in zip(scene.pairs, pairs)]}
     top = {"title": scene.title, "script": scene.script, "dimension": scene.dimension.name}
     if scene.dimension is SOLID:
@@ -464,11 +474,11 @@ def used_tables(
     )
 
 
-def _of_body(k: int, ask: Asker, **given: Value) -> dict:
+def _of_body(k: int, ask: Asker, **values: Value) -> dict:
     """Returns the values of the rule for a disc or ball as thick as body k."""
     body = ask.scene.bodies[k]
     try:
-        return ask.answer([body], body.outline.half_thickness, **given)["used"]
+        return ask.answer([body], body.outline.half_thickness, **values)["used"]
     except BadInput as error:
         raise BadInput(
             f"body.{k + 1}.{error} (of a {'disc' if ask.scene.dimension is PLANE_STRAIN else 'ball'} as thick as "
@@ -481,7 +491,7 @@ def element_sizes(k: int, ask: Asker) -> Sizes:
     each contact pair.
     """
     body = ask.scene.bodies[k]
-    given = {
+    sizes = {
         name: value
         for name, value in (
             ("mesh_size", body.mesh_size),
@@ -489,8 +499,10 @@ def element_sizes(k: int, ask: Asker) -> Sizes:
         )
         if value
     }
-    bulk = float(_of_body(k, ask, **given)["mesh_size"])
-    hits = [_hit(body, k, one, ask) for one in ask.met if k in (one.first, one.second)]
+    bulk = float(_of_body(k, ask, **sizes)["mesh_size"])
+    hits = [
+        _hit(body, k, meeting, ask) for meeting in ask.met if k in (meeting.first, meeting.second)
+    ]
     mine = [front for front in ask.fronts.values() if k in front.sizes]
     if body.rigid and not body.mesh_size:
         # A rigid body does not deform. This size only keeps its outline round.
@@ -504,41 +516,43 @@ def element_sizes(k: int, ask: Asker) -> Sizes:
     return Sizes(bulk, min(bulk, contact), near, max([0.0, *(slack for *_, slack in hits)]))
 
 
-def _hit(body: Body, k: int, one: Meeting, ask: Asker) -> tuple[float, np.ndarray, float]:
+def _hit(body: Body, k: int, meeting: Meeting, ask: Asker) -> tuple[float, np.ndarray, float]:
     """Returns, for an onset of contact of body k, the element size [m] at the contact, points (n,
     axes) of its outline there, and half their distance [m].
     """
-    bodies = [ask.scene.bodies[j] for j in (one.first, one.second) if j >= 0]
-    straight = ask.answer(bodies, one.radius)
+    bodies = [ask.scene.bodies[j] for j in (meeting.first, meeting.second) if j >= 0]
+    straight = ask.answer(bodies, meeting.radius)
     arc, size = straight["touch_arc"], float(straight["used"]["contact_mesh_size"])
     depth, small = (
-        one.radius * (1 - math.cos(min(arc, math.pi / 2))),
-        ask.small(one.first, one.second),
+        meeting.radius * (1 - math.cos(min(arc, math.pi / 2))),
+        ask.small(meeting.first, meeting.second),
     )
     points, spacing = body.outline.samples(size)
-    near = _near(body, k, one, depth, points)
+    near = _near(body, k, meeting, depth, points)
     # Width near contact over that of a disc: above 1 for flat faces, below 1 for corners and pegs.
-    wider = body.outline.width(near, spacing) / (2 * arc * one.radius)
+    wider = body.outline.width(near, spacing) / (2 * arc * meeting.radius)
     if small > 0:  # a sharp corner has radius 0, and no element size resolves it
         wider = min(
-            max(1.0, wider), wider / NARROW, POINTED * small / (2 / math.pi * arc * one.radius)
+            max(1.0, wider), wider / NARROW, POINTED * small / (2 / math.pi * arc * meeting.radius)
         )
     if small > 0 and wider < 1:
-        size = max(SMALLEST * one.radius / wider, size)
+        size = max(SMALLEST * meeting.radius / wider, size)
         points, spacing = body.outline.samples(size * wider)
-        near = _near(body, k, one, min(depth, small), points)
-    slide = (ask.answer(bodies, one.radius, slides=True)["touch_arc"] - arc) * one.radius
+        near = _near(body, k, meeting, min(depth, small), points)
+    slide = (ask.answer(bodies, meeting.radius, slides=True)["touch_arc"] - arc) * meeting.radius
     if slide > 0:
         near = points[nearest(points, near) <= slide]
     return size * (wider if small > 0 else max(1.0, wider)), near, spacing / 2
 
 
-def _near(body: Body, k: int, one: Meeting, depth: float, points: np.ndarray) -> np.ndarray:
+def _near(body: Body, k: int, meeting: Meeting, depth: float, points: np.ndarray) -> np.ndarray:
     """Returns those of the `points` of body k whose gap at the onset of contact exceeds the
     smallest gap by `depth` [m] at most. For a disc on a plane `depth` is the gap at touch_arc from
     its lowest point.
     """
-    gaps = one.gaps(k, body.outline.carried(one.outlines[0 if k == one.first else 1], points))
+    gaps = meeting.gaps(
+        k, body.outline.carried(meeting.outlines[0 if k == meeting.first else 1], points)
+    )
     return points[gaps <= gaps.min() + depth]
 
 
@@ -598,7 +612,7 @@ def side_by_side(meshes: list[mesh.Mesh | solid_mesh.SolidMesh], along: int) -> 
     """Returns centres (bodies, axes) [m] on an axis (0: x, 1: y), from 0 on, for meshes about their
     centres. Their distance from each other is BETWEEN times the largest extent.
     """
-    boxes = [np.array([one.points.min(axis=0), one.points.max(axis=0)]) for one in meshes]
+    boxes = [np.array([made.points.min(axis=0), made.points.max(axis=0)]) for made in meshes]
     between = BETWEEN * max(np.ptp(box, axis=0).max() for box in boxes)
     centres = np.zeros((len(boxes), boxes[0].shape[1]))
     for k in range(1, len(boxes)):
@@ -612,9 +626,9 @@ def stack(meshes: list[mesh.Mesh] | list[solid_mesh.SolidMesh], centres: np.ndar
     """Returns all bodies as one mesh, and the number (t,) of the body of each triangle or
     tetrahedron.
     """
-    first = np.cumsum([0, *(len(one.points) for one in meshes)])
+    first = np.cumsum([0, *(len(made.points) for made in meshes)])
     points, cells, sides, labels = zip(
-        *([getattr(one, part.name) for part in fields(one)[:4]] for one in meshes)
+        *([getattr(made, part.name) for part in fields(made)[:4]] for made in meshes)
     )
     together = type(meshes[0])(
         np.vstack([own + centre for own, centre in zip(points, centres)]),
@@ -668,26 +682,28 @@ def data_file(
     lines += rounds
     files = [
         (k, 1 if body.mesh else 2)
-        for k, (given, body) in enumerate(zip(scene.given["body"], scene.bodies))
-        if "file" in given
+        for k, (table, body) in enumerate(zip(scene.content["body"], scene.bodies))
+        if "file" in table
     ]
     lines += [("files", len(files)), *files]
     lines += [("obstacles", len(scene.obstacles))]
     lines += [
         (
-            one.name,
-            "circle" if one.kind == "sphere" and scene.dimension is not SOLID else one.kind,
-            len(one.numbers),
-            *one.numbers,
-            *one.velocity,
+            obstacle.name,
+            "circle"
+            if obstacle.kind == "sphere" and scene.dimension is not SOLID
+            else obstacle.kind,
+            len(obstacle.numbers),
+            *obstacle.numbers,
+            *obstacle.velocity,
         )
-        for one in scene.obstacles
+        for obstacle in scene.obstacles
     ]
     lines += [
         ("pairs", len(pairs)),
         *((pair.first, pair.second, *own.values()) for pair, own in zip(scene.pairs, pairs)),
     ]
-    lines += [("front", *one) for one in front]
+    lines += [("front", *strike) for strike in front]
     damped = [
         (k, *(getattr(body, name) for name in DAMPING))
         for k, body in enumerate(scene.bodies)
@@ -698,6 +714,7 @@ def data_file(
     lines += [("rigid", len(stiff)), *stiff] if stiff else []
     lines += conditions
     return "".join(
-        " ".join(repr(float(one)) if isinstance(one, float) else str(one) for one in line) + "\n"
+        " ".join(repr(float(entry)) if isinstance(entry, float) else str(entry) for entry in line)
+        + "\n"
         for line in lines
     )

@@ -84,8 +84,8 @@ class Body:
         """Whether a support moves the body, or a prescribed stress loads it (a gas does not
         count).
         """
-        return any(one.moves for one in self.supports) or any(
-            one.kind != "gas" for one in self.loads
+        return any(support.moves for support in self.supports) or any(
+            load.kind != "gas" for load in self.loads
         )
 
     @property
@@ -93,11 +93,11 @@ class Body:
         """The body with the mean velocity of its support on the way to the displacement farthest
         from the start. A body without supports is unchanged.
         """
-        ways = [one.path() for one in self.supports]
+        ways = [support.path() for support in self.supports]
         if not ways:
             return self
-        way, when = max(ways, key=lambda one: float(np.linalg.norm(one[0])))
-        velocity = way / when if when > 0 else np.zeros_like(self.velocity)
+        displacement, when = max(ways, key=lambda path: float(np.linalg.norm(path[0])))
+        velocity = displacement / when if when > 0 else np.zeros_like(self.velocity)
         return replace(self, velocity=velocity, spin=0 * self.spin)
 
     @property
@@ -106,12 +106,12 @@ class Body:
         axes), about its centre and not turned, and whether each is contact boundary (f,).
         """
         geometry = isinstance(self.outline, Solid) and self.outline.geometry
-        found = geometry.coarse if geometry else self.mesh
-        if not found:
+        file_mesh = geometry.coarse if geometry else self.mesh
+        if not file_mesh:
             return None
-        outer = found.labels != mesh.AXIS
-        corners = found.faces if isinstance(found, SolidMesh) else found.edges
-        return found.points[corners[outer]], found.labels[outer] == mesh.FREE
+        outer = file_mesh.labels != mesh.AXIS
+        corners = file_mesh.faces if isinstance(file_mesh, SolidMesh) else file_mesh.edges
+        return file_mesh.points[corners[outer]], file_mesh.labels[outer] == mesh.FREE
 
     @property
     def placed(self) -> Outline | Solid:
@@ -134,8 +134,8 @@ def read(
     return gathered([partial(_body, table, top, folder, dimension) for table in tables])
 
 
-def _body(table: models.Body, top: models.Top, folder: Path, of: Dimension) -> Body:
-    geometry: ModuleType = GEOMETRY[of]
+def _body(table: models.Body, top: models.Top, folder: Path, dimension: Dimension) -> Body:
+    geometry: ModuleType = GEOMETRY[dimension]
     outline, body_mesh = geometry.shape(table, folder)
     if not outline.half_thickness >= SHORTEST:
         raise BadInput(
@@ -144,15 +144,15 @@ def _body(table: models.Body, top: models.Top, folder: Path, of: Dimension) -> B
     bulk, contact = _sizes(table, None if body_mesh else top)
     if body_mesh and (sizes := [key for key in SIZES if getattr(table, key)]):
         raise BadInput(
-            f"{table.at(sizes[0])}: '{table.given(sizes[0])}' for a mesh from a file, "
+            f"{table.at(sizes[0])}: '{table.value_text(sizes[0])}' for a mesh from a file, "
             f"which has its own element sizes (accepted: {', '.join(SIZES)} where gmsh makes "
             f"the mesh: of a shape, or of a geometry, {', '.join(GEOMETRIES)})"
         )
-    if not table.rigid and (found := [key for key in ("mass", "inertia") if key in table]):
+    if not table.rigid and (refused := [key for key in ("mass", "inertia") if key in table]):
         raise BadInput(
-            f"{table.at(found[0])}: is of a rigid body (accepted: with rigid = true, or density)"
+            f"{table.at(refused[0])}: is of a rigid body (accepted: with rigid = true, or density)"
         )
-    material = _rigid(table, top, of, outline) if table.rigid else _material(table, top)
+    material = _rigid(table, top, dimension, outline) if table.rigid else _material(table, top)
     end_time = top.end_time or 0.0
     return Body(
         table.name or table.entry.replace(".", ""),
@@ -162,12 +162,14 @@ def _body(table: models.Body, top: models.Top, folder: Path, of: Dimension) -> B
         **material,
         mesh_size=bulk,
         contact_mesh_size=contact,
-        supports=read_supports(table.support or [], of, end_time),
-        loads=read_loads(table.load or [], of, end_time),
+        supports=read_supports(table.support or [], dimension, end_time),
+        loads=read_loads(table.load or [], dimension, end_time),
     )
 
 
-def _rigid(table: models.Body, top: models.Top, of: Dimension, outline: Outline | Solid) -> dict:
+def _rigid(
+    table: models.Body, top: models.Top, dimension: Dimension, outline: Outline | Solid
+) -> dict:
     """Returns the material entries of a rigid body. Its `young` is set later, by stiffened()."""
     for key in ("law", "young", "nu", *OPTIONAL, "support"):
         if key in table:
@@ -186,19 +188,19 @@ def _rigid(table: models.Body, top: models.Top, of: Dimension, outline: Outline 
             f"{parameters.PARAMETERS['density'].accepted}, or mass)"
         )
     density = mass / content if mass else table.density or top.density
-    found = {key: parameters.PARAMETERS[key].default for key in OPTIONAL}
-    return found | {
+    defaults = {key: parameters.PARAMETERS[key].default for key in OPTIONAL}
+    return defaults | {
         "law": "svk",
         "young": 1.0,
         "nu": 0.0,
         "density": float(density),
         "rigid": True,
         "mass": mass,
-        "moments": _moments(table, of),
+        "moments": _moments(table, dimension),
     }
 
 
-def _moments(table: models.Body, of: Dimension) -> tuple[float, ...]:
+def _moments(table: models.Body, dimension: Dimension) -> tuple[float, ...]:
     """Returns the moments of the entry `inertia`, 0 where there is no such entry.
 
     In the plane this is the polar moment of inertia. In space the entry holds moments about the
@@ -207,17 +209,17 @@ def _moments(table: models.Body, of: Dimension) -> tuple[float, ...]:
     """
     if "inertia" not in table:
         return (0.0,) * 6
-    if of is AXISYMMETRIC:
+    if dimension is AXISYMMETRIC:
         raise BadInput(
             f"{table.at('inertia')}: no body of revolution turns in its scene (accepted: without inertia)"
         )
-    if of is PLANE_STRAIN:
+    if dimension is PLANE_STRAIN:
         return (float(table.inertia), *(0.0,) * 5)
     about = np.array(table.inertia)
     own = about.sum() / 2 - about
     if not (own > 0).all():
         raise BadInput(
-            f"{table.at('inertia')}: '{table.given('inertia')}' has one that is no less than the others together "
+            f"{table.at('inertia')}: '{table.value_text('inertia')}' has one that is no less than the others together "
             f"(accepted: moments about x, y, z of a body that is nowhere flat)"
         )
     turn = tumbling.rotation(solids.motion(table)["angle"])
@@ -232,22 +234,22 @@ def _moments(table: models.Body, of: Dimension) -> tuple[float, ...]:
     )
 
 
-def stiffened(found: list[Body], penalty: Value, path: str) -> list[Body]:
+def stiffened(bodies: list[Body], penalty: Value, path: str) -> list[Body]:
     """Returns the bodies of a scene with `young` of the rigid ones.
 
     It is STIFF times the largest `young` of the other bodies. If all bodies are rigid it is STIFF
     times the penalty times the largest half thickness. Raises BadInput if the penalty is automatic
     then.
     """
-    if not any(body.rigid for body in found):
-        return found
-    soft = max((body.young for body in found if not body.rigid), default=0.0)
+    if not any(body.rigid for body in bodies):
+        return bodies
+    soft = max((body.young for body in bodies if not body.rigid), default=0.0)
     if not soft and penalty == "auto":
         raise BadInput(
             f"{path}: 'auto' follows from a body that deforms, and all are rigid (accepted: a number, Pa/m^m)"
         )
-    young = STIFF * (soft or float(penalty) * max(body.outline.half_thickness for body in found))
-    return [replace(body, young=young) if body.rigid else body for body in found]
+    young = STIFF * (soft or float(penalty) * max(body.outline.half_thickness for body in bodies))
+    return [replace(body, young=young) if body.rigid else body for body in bodies]
 
 
 def _material(table: models.Body, top: models.Top) -> dict[str, Value]:
@@ -257,7 +259,7 @@ def _material(table: models.Body, top: models.Top) -> dict[str, Value]:
     A viscosity of the body replaces a loss at the top of the file, and a loss of the body a
     viscosity there.
     """
-    found = {}
+    values = {}
     missing = [
         key for key in MATERIAL if key not in table and key not in top and key not in OPTIONAL
     ]
@@ -275,15 +277,15 @@ def _material(table: models.Body, top: models.Top) -> dict[str, Value]:
             {"viscosity": "loss", "loss": "viscosity"}.get(key),
         )
         common = rule.default if key not in top or other and other in table else getattr(top, key)
-        found[key] = getattr(table, key) if key in table else common
-    if found["relaxation_modulus"] == 0 and "relaxation_modulus" in table:
-        found["relaxation_time"] = 0.0
-    if (found["relaxation_modulus"] > 0) != (found["relaxation_time"] > 0):
+        values[key] = getattr(table, key) if key in table else common
+    if values["relaxation_modulus"] == 0 and "relaxation_modulus" in table:
+        values["relaxation_time"] = 0.0
+    if (values["relaxation_modulus"] > 0) != (values["relaxation_time"] > 0):
         raise BadInput(
-            f"{table.at('relaxation_time')}: {found['relaxation_time']:g} s with relaxation_modulus "
-            f"{found['relaxation_modulus']:g} Pa (accepted: both above 0, or none)"
+            f"{table.at('relaxation_time')}: {values['relaxation_time']:g} s with relaxation_modulus "
+            f"{values['relaxation_modulus']:g} Pa (accepted: both above 0, or none)"
         )
-    return found
+    return values
 
 
 def _sizes(table: models.Body, top: models.Top | None) -> tuple[float, float]:
@@ -293,7 +295,7 @@ def _sizes(table: models.Body, top: models.Top | None) -> tuple[float, float]:
     own = [getattr(table, key) for key in SIZES]
     common = [getattr(top, key) if top else None for key in SIZES]
     bulk, contact = (
-        float(one if one is not None else other or 0.0) for one, other in zip(own, common)
+        float(size if size is not None else other or 0.0) for size, other in zip(own, common)
     )
     if 0 < bulk < contact:
         raise BadInput(

@@ -87,7 +87,9 @@ class Support:
     def moves(self) -> bool:
         """Whether any component is moved."""
         return not all(
-            one.is_constant for one, fixed in zip(self.motion, self.fixed) if fixed or self.normal
+            function.is_constant
+            for function, fixed in zip(self.motion, self.fixed)
+            if fixed or self.normal
         )
 
     def path(self) -> tuple[np.ndarray, float]:
@@ -112,77 +114,82 @@ class Load:
     def largest(self) -> float:
         """The largest stress of the load [Pa]."""
         return max(
-            [abs(self.gas[0]), *(float(abs(one.knots[:, 1]).max()) for one in self.functions)]
+            [
+                abs(self.gas[0]),
+                *(float(abs(function.knots[:, 1]).max()) for function in self.functions),
+            ]
         )
 
 
-def inlined(given: dict, folder: Path, of: Dimension) -> dict:
+def inlined(content: dict, folder: Path, dimension: Dimension) -> dict:
     """Returns the tables of a scene in which CSV files of supports, loads and driven obstacles are
     replaced by their content.
     """
     bodies = []
-    for b, body in enumerate(listed(given, "body"), 1):
+    for b, body in enumerate(listed(content, "body"), 1):
         changed = dict(body)
         for key, names in (("support", ("motion",)), ("load", ("traction", "pressure"))):
             if key in body:
                 changed[key] = [
-                    _with_tables(f"body.{b}.{key}.{k}", one, names, folder, of)
-                    for k, one in enumerate(
+                    _with_tables(f"body.{b}.{key}.{k}", table, names, folder, dimension)
+                    for k, table in enumerate(
                         listed({f"body.{b}.{key}": body[key]}, f"body.{b}.{key}"), 1
                     )
                 ]
         bodies.append(changed)
     obstacles = [
-        _with_tables(f"obstacle.{k}", one, ("motion", "rotation"), folder, of)
-        for k, one in enumerate(listed(given, "obstacle"), 1)
+        _with_tables(f"obstacle.{k}", table, ("motion", "rotation"), folder, dimension)
+        for k, table in enumerate(listed(content, "obstacle"), 1)
     ]
     return (
-        given
+        content
         | ({"body": bodies} if bodies else {})
         | ({"obstacle": obstacles} if obstacles else {})
     )
 
 
 def _with_tables(
-    path: str, table: dict, names: tuple[str, ...], folder: Path, of: Dimension
+    path: str, table: dict, names: tuple[str, ...], folder: Path, dimension: Dimension
 ) -> dict:
     changed = dict(table)
     for name in names:
         value = table.get(name)
         if isinstance(value, str) and value.lower().endswith(".csv"):
-            columns = "p" if name == "pressure" else "xyz"[: of.axes]
+            columns = "p" if name == "pressure" else "xyz"[: dimension.axes]
             changed[name] = time_functions.of_csv(f"{path}.{name}", folder / value, columns)
     return changed
 
 
 def read_supports(
-    tables: list[models.Support], of: Dimension, end_time: float
+    tables: list[models.Support], dimension: Dimension, end_time: float
 ) -> tuple[Support, ...]:
     """Returns the supports in the [[body.support]] tables of a body. Raises BadInput for whatever
     is wrong in them.
     """
-    return tuple(gathered([partial(_support, one, of, end_time) for one in tables]))
+    return tuple(gathered([partial(_support, table, dimension, end_time) for table in tables]))
 
 
-def read_loads(tables: list[models.Load], of: Dimension, end_time: float) -> tuple[Load, ...]:
+def read_loads(
+    tables: list[models.Load], dimension: Dimension, end_time: float
+) -> tuple[Load, ...]:
     """Returns the loads in the [[body.load]] tables of a body. Raises BadInput for whatever is
     wrong in them.
     """
-    return tuple(gathered([partial(_load, one, of, end_time) for one in tables]))
+    return tuple(gathered([partial(_load, table, dimension, end_time) for table in tables]))
 
 
-def _support(table: models.Support, of: Dimension, end_time: float) -> Support:
-    axes = "xyz"[: of.axes]
+def _support(table: models.Support, dimension: Dimension, end_time: float) -> Support:
+    axes = "xyz"[: dimension.axes]
     words = ("all", *axes, "normal")
     fix = table.fix or "all"
     if fix not in words:
         raise BadInput(f"{table.at('fix')}: {unknown(fix, words)}")
     fixed = tuple(fix in ("all", axis) for axis in axes)
-    motion = (time_functions.constant(0.0),) * of.axes
+    motion = (time_functions.constant(0.0),) * dimension.axes
     if table.motion is not None:
         motion = displacements(table.at("motion"), table.motion, axes, end_time)
-        for axis, one, held in zip(axes, motion, fixed):
-            if not (held or fix == "normal") and not one.is_zero:
+        for axis, function, held in zip(axes, motion, fixed):
+            if not (held or fix == "normal") and not function.is_zero:
                 raise BadInput(
                     f"{table.at('motion')}: moves along {axis}, which fix = '{fix}' leaves free "
                     f"(accepted: 0 there, or fix = 'all')"
@@ -196,7 +203,7 @@ def _support(table: models.Support, of: Dimension, end_time: float) -> Support:
     )
 
 
-def _load(table: models.Load, of: Dimension, end_time: float) -> Load:
+def _load(table: models.Load, dimension: Dimension, end_time: float) -> Load:
     kinds = [kind for kind in KINDS if kind in table]
     if len(kinds) != 1:
         raise BadInput(
@@ -212,13 +219,13 @@ def _load(table: models.Load, of: Dimension, end_time: float) -> Load:
         return Load(
             part, kind, (), (float(gauge), ambient, 1.0 if gas.exponent is None else gas.exponent)
         )
-    components = "p" if kind == "pressure" else "xyz"[: of.axes]
+    components = "p" if kind == "pressure" else "xyz"[: dimension.axes]
     return Load(part, kind, functions(table.at(kind), getattr(table, kind), components, end_time))
 
 
 def _part(table: models.Support | models.Load) -> Part:
-    entry, given = table.at("where"), table.where
-    if isinstance(given, str):
-        return Part(entry, given)
-    kind, *numbers = given.values()
-    return Part(entry, "", ALIAS.get(kind, kind), tuple(np.array(one) for one in numbers))
+    entry, where = table.at("where"), table.where
+    if isinstance(where, str):
+        return Part(entry, where)
+    kind, *numbers = where.values()
+    return Part(entry, "", ALIAS.get(kind, kind), tuple(np.array(vector) for vector in numbers))

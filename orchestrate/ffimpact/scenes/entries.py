@@ -31,53 +31,53 @@ SHAPE = (
 EVERYWHERE = ("penalty", "dt")  # entries that depend on every body
 
 
-def set_entry(given: dict, name: str, value: Value | list) -> dict:
+def set_entry(content: dict, name: str, value: Value | list) -> dict:
     """Returns the tables of a file with one entry set.
 
     Names are dotted: "body.2.young", "contact.pair.1.penalty", "body.1.velocity.2". Tables and
     components of a list are counted from 1. The value None removes the entry of a table: the
     program then chooses its value. Raises BadInput if the scene has no such table or component.
     """
-    changed = copy.deepcopy(given)
-    place, path = changed, ""
-    *way, last = name.split(".")
-    for step, following in zip(way, [*way[1:], last]):
+    changed = copy.deepcopy(content)
+    container, path = changed, ""
+    *parents, last = name.split(".")
+    for step, following in zip(parents, [*parents[1:], last]):
         path = f"{path}.{step}" if path else step
-        if isinstance(place, dict) and step not in place and path == "contact":
-            place[step] = {}
-        key = _key(place, step, path, name)
-        if key not in place if isinstance(place, dict) else False:
+        if isinstance(container, dict) and step not in container and path == "contact":
+            container[step] = {}
+        key = _key(container, step, path, name)
+        if key not in container if isinstance(container, dict) else False:
             raise BadInput(
-                f"{brief(name)}: there is no {brief(path)} in the scene (accepted: {', '.join(place)})"
+                f"{brief(name)}: there is no {brief(path)} in the scene (accepted: {', '.join(container)})"
             )
-        place = place[key]
-        if not isinstance(place, dict | list):
+        container = container[key]
+        if not isinstance(container, dict | list):
             raise BadInput(
-                f"{brief(name)}: {path} is '{brief(place)}' and has no entry {brief(following)}"
+                f"{brief(name)}: {path} is '{brief(container)}' and has no entry {brief(following)}"
             )
-    key = _key(place, last, name, name)
-    if value is None and isinstance(place, dict):
-        place.pop(key, None)
+    key = _key(container, last, name, name)
+    if value is None and isinstance(container, dict):
+        container.pop(key, None)
     else:
-        place[key] = value
+        container[key] = value
     return changed
 
 
-def release(given: dict, names: list[str]) -> tuple[str, ...]:
+def release(content: dict, names: list[str]) -> tuple[str, ...]:
     """Resets entries that depend on the changed entries `names` (FOLLOWS) to automatic: removes
-    them from the tables `given`. Returns one message for each.
+    them from the tables `content`. Returns one message for each.
 
     Coefficients of friction and sizes of a body depend on entries of the same table, penalty and
     step on those of every body.
     """
     places = [_table_of(name) for name in names]
-    said = []
-    for path, table in list(_tables(given)):
+    messages = []
+    for path, table in list(_tables(content)):
         for key in [
             key for key in parameters.FOLLOWS if key in table and (path, key) not in places
         ]:
             causes = parameters.FOLLOWS[key]
-            found = [
+            changed_names = [
                 name
                 for name, (where, entry) in zip(names, places)
                 if (where == path or key in EVERYWHERE)
@@ -88,27 +88,28 @@ def release(given: dict, names: list[str]) -> tuple[str, ...]:
                     and where.startswith("body.")
                 )
             ]
-            if found and table[key] not in ("auto", 0):
+            if changed_names and table[key] not in ("auto", 0):
                 value, name = table.pop(key), f"{path}.{key}".lstrip(".")
                 fixed = f"{value:g}" if isinstance(value, float) else brief(value)
-                said.append(
-                    f"{name} is reset to automatic: the value {fixed} of the scene belonged to its own {', '.join(found)}"
+                messages.append(
+                    f"{name} is reset to automatic: the value {fixed} of the scene belonged to "
+                    f"its own {', '.join(changed_names)}"
                 )
-    return tuple(said)
+    return tuple(messages)
 
 
 def _tables(value, path: str = "") -> Iterator[tuple[str, dict]]:
     """Yields all tables in a table or a list, with their dotted names."""
     if isinstance(value, dict):
         yield path, value
-    for key, one in (
+    for key, item in (
         value.items()
         if isinstance(value, dict)
         else enumerate(value, 1)
         if isinstance(value, list)
         else ()
     ):
-        yield from _tables(one, f"{path}.{key}".lstrip("."))
+        yield from _tables(item, f"{path}.{key}".lstrip("."))
 
 
 def _table_of(name: str) -> tuple[str, str]:
@@ -122,17 +123,19 @@ def _table_of(name: str) -> tuple[str, str]:
     return ".".join(parts[:depth]), ".".join(parts[depth : depth + 1])
 
 
-def _key(place: dict | list, step: str, path: str, name: str) -> str | int:
+def _key(container: dict | list, step: str, path: str, name: str) -> str | int:
     """Returns the key of one part of a dotted name; in a list it is the index from 0."""
     if not step:
         raise BadInput(
             f"{brief(name)}: has an empty part (accepted: names and numbers with single dots between them)"
         )
-    if isinstance(place, dict):
+    if isinstance(container, dict):
         return step
-    if not re.fullmatch("[0-9]{1,6}", step) or not 1 <= int(step) <= len(place):
+    if not re.fullmatch("[0-9]{1,6}", step) or not 1 <= int(step) <= len(container):
         before = path.removesuffix(f".{step}")
-        numbers = f"{before}.1 to {before}.{len(place)}" if len(place) > 1 else f"{before}.1"
+        numbers = (
+            f"{before}.1 to {before}.{len(container)}" if len(container) > 1 else f"{before}.1"
+        )
         raise BadInput(
             f"{brief(name)}: there is no {brief(path)} in the scene (accepted: {numbers})"
         )

@@ -23,18 +23,18 @@ def scaled(
     if not scene.bodies:
         return estimate.other(values, used, factor, own_mesh)
     kept = ("penalty", "slip_velocity", "friction_dynamic")
-    found = {f"contact.{name}": used["contact"][name] for name in kept}
+    entries = {f"contact.{name}": used["contact"][name] for name in kept}
     if used["contact"].get("pair"):
-        found["contact.pair"] = _pairs(scene, used["contact"]["pair"], factor)
-    for k, (body, given) in enumerate(zip(scene.bodies, used["body"]), 1):
+        entries["contact.pair"] = _pairs(scene, used["contact"]["pair"], factor)
+    for k, (body, table) in enumerate(zip(scene.bodies, used["body"]), 1):
         if not body.mesh:
-            bulk = min(factor * given["mesh_size"], body.outline.half_thickness)
-            contact = min(bulk, factor * given["contact_mesh_size"])
-            found |= {f"body.{k}.mesh_size": bulk, f"body.{k}.contact_mesh_size": contact}
+            bulk = min(factor * table["mesh_size"], body.outline.half_thickness)
+            contact = min(bulk, factor * table["contact_mesh_size"])
+            entries |= {f"body.{k}.mesh_size": bulk, f"body.{k}.contact_mesh_size": contact}
     if used["dt"] > 0:
-        found["dt"] = factor * used["dt"]
-    found["accuracy"] = estimate.loosened(used["accuracy"], factor)
-    return found | estimate.output(factor)
+        entries["dt"] = factor * used["dt"]
+    entries["accuracy"] = estimate.loosened(used["accuracy"], factor)
+    return entries | estimate.output(factor)
 
 
 def _pairs(scene: Scene, used: list[dict], factor: float) -> list[dict]:
@@ -42,16 +42,16 @@ def _pairs(scene: Scene, used: list[dict], factor: float) -> list[dict]:
     strike is automatic, it changes so that the front rises in `factor` times the time. The
     estimated error is then that of elements and penalty together (front.py).
     """
-    given = {(pair.first, pair.second) for pair in scene.pairs if "penalty" in pair.values}
-    if scene.contact["penalty"] != "auto" or len(used) == len(given):
+    fixed_pairs = {(pair.first, pair.second) for pair in scene.pairs if "penalty" in pair.values}
+    if scene.contact["penalty"] != "auto" or len(used) == len(fixed_pairs):
         return used
-    found = [front.meeting for front in fronts(scene, meetings(scene))]
+    onsets = [front.meeting for front in fronts(scene, meetings(scene))]
     # The index -1 is obstacle 0.
-    others = [one.name for one in [*scene.bodies, *reversed(scene.obstacles)]]
+    others = [surface.name for surface in [*scene.bodies, *reversed(scene.obstacles)]]
     flat = [
-        [others[one.first], others[one.second]]
-        for one in found
-        if (one.first, one.second) not in given
+        [others[meeting.first], others[meeting.second]]
+        for meeting in onsets
+        if (meeting.first, meeting.second) not in fixed_pairs
     ]
     softer = factor ** scene.contact["exponent"]
     return [

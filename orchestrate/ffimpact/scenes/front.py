@@ -71,7 +71,7 @@ class Front:
     def _pressure(self, bodies: list[Body]) -> float:
         """Returns rho c v [Pa], with the impedances rho c of two bodies in series."""
         impedances = [bodies[k].density * wave_speed(bodies[k]) for k in self.sizes]
-        return self.meeting.closing / sum(1 / one for one in impedances)
+        return self.meeting.closing / sum(1 / impedance for impedance in impedances)
 
 
 def fronts(scene: Scene, met: list[Meeting]) -> list[Front]:
@@ -80,10 +80,10 @@ def fronts(scene: Scene, met: list[Meeting]) -> list[Front]:
     """
     if scene.values["until"] == "rest":
         return []
-    strikes = [one for one in met if math.isfinite(one.time) and one.closing > 0]
-    found = [front for one in strikes if (front := _front(scene, one))]
+    strikes = [meeting for meeting in met if math.isfinite(meeting.time) and meeting.closing > 0]
+    landings = [front for meeting in strikes if (front := _front(scene, meeting))]
     end = scene.values["end_time"]
-    return [front for front in found if end <= front.meeting.time + BRIEF * front.transit]
+    return [front for front in landings if end <= front.meeting.time + BRIEF * front.transit]
 
 
 def wave_speed(body: Body) -> float:
@@ -92,22 +92,24 @@ def wave_speed(body: Body) -> float:
     return math.sqrt(body.young * (1 - nu) / ((1 + nu) * (1 - 2 * nu) * body.density))
 
 
-def _front(scene: Scene, one: Meeting) -> Front | None:
+def _front(scene: Scene, meeting: Meeting) -> Front | None:
     """Returns the front at an onset of contact, None if no body lands flat."""
-    bodies = {k: scene.bodies[k] for k in (one.first, one.second) if k >= 0}
-    sizes = {k: body.mesh_size or _size(scene, one, k) for k, body in bodies.items()}  # [m]
+    bodies = {k: scene.bodies[k] for k in (meeting.first, meeting.second) if k >= 0}
+    sizes = {k: body.mesh_size or _size(scene, meeting, k) for k, body in bodies.items()}  # [m]
     crossed = tuple(
-        k for k, body in bodies.items() if not body.rigid and _lands_flat(one, k, body, sizes[k])
+        k
+        for k, body in bodies.items()
+        if not body.rigid and _lands_flat(meeting, k, body, sizes[k])
     )
     if not crossed:
         return None
     tau = min(sizes[k] / wave_speed(bodies[k]) for k in crossed)
-    transit = min(_length(one, k) / wave_speed(bodies[k]) for k in crossed)
+    transit = min(_length(meeting, k) / wave_speed(bodies[k]) for k in crossed)
     alike = {k: tau * wave_speed(body) for k, body in bodies.items()}
-    return Front(one, tau, transit, alike, crossed)
+    return Front(meeting, tau, transit, alike, crossed)
 
 
-def _size(scene: Scene, one: Meeting, k: int) -> float:
+def _size(scene: Scene, meeting: Meeting, k: int) -> float:
     """Returns the element size [m] of body k: that of the mesh file, or the size that the accuracy
     requires.
 
@@ -121,30 +123,30 @@ def _size(scene: Scene, one: Meeting, k: int) -> float:
         return (content / len(cells) / ELEMENT[axes]) ** (1 / axes)
     accuracy = scene.values["accuracy"] / (1 if scene.values["accuracy_of"] == "promised" else 2)
     least = (UNKNOWNS[axes] * content / MOST_UNKNOWNS[axes]) ** (1 / axes)
-    wanted = max(least, PER_ACCURACY * accuracy * _length(one, k))
-    return min(body.outline.half_thickness / 2, wanted)
+    required = max(least, PER_ACCURACY * accuracy * _length(meeting, k))
+    return min(body.outline.half_thickness / 2, required)
 
 
-def _shape(one: Meeting, k: int) -> Shape:
+def _shape(meeting: Meeting, k: int) -> Shape:
     """Returns the shape of body k at the onset of contact."""
-    return one.outlines[0 if k == one.first else 1]
+    return meeting.outlines[0 if k == meeting.first else 1]
 
 
-def _length(one: Meeting, k: int) -> float:
+def _length(meeting: Meeting, k: int) -> float:
     """Returns the length [m] of body k along the contact normal."""
-    return float(np.ptp(_shape(one, k).points @ one.normal))
+    return float(np.ptp(_shape(meeting, k).points @ meeting.normal))
 
 
-def _lands_flat(one: Meeting, k: int, body: Body, size: float) -> bool:
+def _lands_flat(meeting: Meeting, k: int, body: Body, size: float) -> bool:
     """Whether at least the share FLAT of the width of body k lands while the front passes an
     element of the given size [m].
     """
     points, spacing = body.outline.samples(min(size, body.outline.half_thickness / 2))
-    moved = body.outline.carried(_shape(one, k), points)
-    gaps = one.gaps(k, moved)
-    landing = moved[gaps <= gaps.min() + one.closing * size / wave_speed(body)]
+    moved = body.outline.carried(_shape(meeting, k), points)
+    gaps = meeting.gaps(k, moved)
+    landing = moved[gaps <= gaps.min() + meeting.closing * size / wave_speed(body)]
     walls = moved[moved[:, 0] > 0] if isinstance(body.outline, TubeOutline) else moved
-    width = min(np.ptp(walls @ axis) for axis in _tangents(one.normal))
+    width = min(np.ptp(walls @ axis) for axis in _tangents(meeting.normal))
     return len(landing) > 1 and bool(body.outline.width(landing, spacing) >= FLAT * width)
 
 

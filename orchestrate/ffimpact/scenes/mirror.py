@@ -23,17 +23,17 @@ def copies(scene) -> int:
     """
     if scene.dimension is not SOLID:
         return 1
-    asked = scene.given.get("symmetry", "auto")
+    symmetry = scene.content.get("symmetry", "auto")
     across_z = _broken(scene, 2)
     across_x = across_z or _broken(scene, 0)
-    if asked == "auto":
+    if symmetry == "auto":
         return 1 if across_z else 2 if across_x else 4
-    why = {"full": "", "half": across_z, "quarter": across_x}[asked]
+    why = {"full": "", "half": across_z, "quarter": across_x}[symmetry]
     if why:
         raise BadInput(
-            f"symmetry: {asked}, but {why} (accepted: auto|full{'' if across_z else '|half'})"
+            f"symmetry: {symmetry}, but {why} (accepted: auto|full{'' if across_z else '|half'})"
         )
-    return COPIES[asked]
+    return COPIES[symmetry]
 
 
 def _broken(scene, axis: int) -> str:
@@ -43,55 +43,59 @@ def _broken(scene, axis: int) -> str:
     plane = f"the plane {AXES[axis]} = 0"
     if axis == 0 and scene.values["body_force_x"]:
         return "body_force_x pushes along x"
-    for one in scene.bodies:
-        if why := _of_body(one, axis, plane):
-            return f"'{one.name}' {why}"
-    for one in scene.obstacles:
-        if _of_obstacle(one, axis):
-            return f"'{one.name}' is not its own mirror image in {plane}"
+    for body in scene.bodies:
+        if why := _of_body(body, axis, plane):
+            return f"'{body.name}' {why}"
+    for obstacle in scene.obstacles:
+        if _of_obstacle(obstacle, axis):
+            return f"'{obstacle.name}' is not its own mirror image in {plane}"
     return ""
 
 
-def _of_body(one: Body, axis: int, plane: str) -> str:
+def _of_body(body: Body, axis: int, plane: str) -> str:
     normal = np.eye(3)[axis]
-    if one.position[axis] != 0:
+    if body.position[axis] != 0:
         return f"has its centre off {plane}"
-    if one.velocity[axis] != 0:
+    if body.velocity[axis] != 0:
         return f"moves along {AXES[axis]}"
-    if np.delete(one.spin, axis).any():  # a reflection keeps an axial vector along the normal
+    if np.delete(body.spin, axis).any():  # a reflection keeps an axial vector along the normal
         return f"spins out of {plane}"
-    if any(one.moments):
+    if any(body.moments):
         return "has moments of inertia of its own"
-    if one.mesh or one.outline.geometry:
+    if body.mesh or body.outline.geometry:
         return "is a file's"
-    if not one.outline.shape.is_mirrored(one.placed.rotation.T @ normal):
+    if not body.outline.shape.is_mirrored(body.placed.rotation.T @ normal):
         return f"is not its own mirror image in {plane}"
-    return _of_conditions(one, axis, plane)
+    return _of_conditions(body, axis, plane)
 
 
-def _of_conditions(one: Body, axis: int, plane: str) -> str:
+def _of_conditions(body: Body, axis: int, plane: str) -> str:
     """Returns which support or load of a body has no mirror image or acts along the axis, "" if
     none.
     """
-    for kind, listed in (("support", one.supports), ("load", one.loads)):
-        if not all(each.part.is_mirrored(axis, one.placed.rotation) for each in listed):
+    for kind, listed in (("support", body.supports), ("load", body.loads)):
+        if not all(condition.part.is_mirrored(axis, body.placed.rotation) for condition in listed):
             return f"has a {kind} that is not its own mirror image in {plane}"
     moved = [
-        (each.fixed[axis] or each.normal) and not each.motion[axis].is_constant
-        for each in one.supports
+        (support.fixed[axis] or support.normal) and not support.motion[axis].is_constant
+        for support in body.supports
     ]
-    pushed = [each.kind == "traction" and not each.functions[axis].is_zero for each in one.loads]
+    pushed = [load.kind == "traction" and not load.functions[axis].is_zero for load in body.loads]
     if any(moved) or any(pushed):
         return f"has a {'support' if any(moved) else 'load'} that acts along {AXES[axis]}"
     return ""
 
 
-def _of_obstacle(one: Obstacle, axis: int) -> bool:
-    if one.drive and (not one.drive.way[axis].is_zero or not one.drive.turn.is_constant):
+def _of_obstacle(obstacle: Obstacle, axis: int) -> bool:
+    if obstacle.drive and (
+        not obstacle.drive.translation[axis].is_zero or not obstacle.drive.turn.is_constant
+    ):
         return True
-    if one.kind == "surface":
+    if obstacle.kind == "surface":
         return True
-    if one.kind == "implicit":
-        return one.velocity[axis] != 0 or not implicit.is_mirrored(one.numbers[2:], axis, 3)
-    across = one.numbers[3 + axis] if one.kind == "plane" else one.numbers[axis]
-    return across != 0 or one.velocity[axis] != 0
+    if obstacle.kind == "implicit":
+        return obstacle.velocity[axis] != 0 or not implicit.is_mirrored(
+            obstacle.numbers[2:], axis, 3
+        )
+    across = obstacle.numbers[3 + axis] if obstacle.kind == "plane" else obstacle.numbers[axis]
+    return across != 0 or obstacle.velocity[axis] != 0

@@ -48,8 +48,8 @@ class Obstacle:
         """The obstacle as if its motion took it to its farthest position at constant velocity."""
         if not self.drive:
             return self
-        way, when = farthest(self.drive.way)
-        return replace(self, velocity=way / when if when > 0 else 0 * self.velocity)
+        translation, when = farthest(self.drive.translation)
+        return replace(self, velocity=translation / when if when > 0 else 0 * self.velocity)
 
     def gap(self, points: np.ndarray) -> np.ndarray:
         """Returns the signed distances (n,) [m] of points (n, axes) from the obstacle at the start,
@@ -114,11 +114,11 @@ class Obstacle:
 
 @dataclass(frozen=True)
 class Drive:
-    """The prescribed motion of an obstacle: a translation `way` [m], and a rotation `turn` [rad] about
+    """The prescribed motion of an obstacle: a `translation` [m], and a rotation `turn` [rad] about
     an axis (3,) through `pivot`.
     """
 
-    way: tuple[TimeFunction, ...]
+    translation: tuple[TimeFunction, ...]
     turn: TimeFunction
     pivot: np.ndarray
     axis: np.ndarray
@@ -133,9 +133,9 @@ class Drive:
         at the start.
         """
         axes = points.shape[1]
-        way = np.array([one(t) - one(0.0) for one in self.way])
+        translation = np.array([function(t) - function(0.0) for function in self.translation])
         back = tumbling.rotation(-self.axis * float(self.turn(t) - self.turn(0.0)))[:axes, :axes]
-        return self.pivot + (points - self.pivot - way) @ back.T
+        return self.pivot + (points - self.pivot - translation) @ back.T
 
 
 def read(tables: list[models.Obstacle], dimension: Dimension, end_time: float, folder: Path) -> list[Obstacle]:
@@ -145,12 +145,12 @@ def read(tables: list[models.Obstacle], dimension: Dimension, end_time: float, f
     return gathered([partial(_obstacle, table, dimension, end_time, folder) for table in tables])
 
 
-def settled(found: list[Obstacle], centre: np.ndarray, half: float) -> list[Obstacle]:
+def settled(obstacles: list[Obstacle], centre: np.ndarray, half: float) -> list[Obstacle]:
     """Returns the obstacles with the largest gradient and curvature of implicit ones in a box about
     `centre` of half size `half` [m], in which the bodies lie.
     """
-    return [replace(one, numbers=implicit.settled(f"obstacle.{k}", one.numbers[2:], centre, half)) if one.kind == "implicit" else one
-            for k, one in enumerate(found, 1)]
+    return [replace(obstacle, numbers=implicit.settled(f"obstacle.{k}", obstacle.numbers[2:], centre, half))
+            if obstacle.kind == "implicit" else obstacle for k, obstacle in enumerate(obstacles, 1)]
 
 
 def _obstacle(table: models.Obstacle, dimension: Dimension, end_time: float, folder: Path) -> Obstacle:
@@ -160,7 +160,7 @@ def _obstacle(table: models.Obstacle, dimension: Dimension, end_time: float, fol
                     np.array(table.velocity or [0.0] * dimension.axes), _drive(table, dimension, end_time))
 
 
-def _drive(table: models.Obstacle, of: Dimension, end_time: float) -> Drive | None:
+def _drive(table: models.Obstacle, dimension: Dimension, end_time: float) -> Drive | None:
     """Returns the motion of the entries motion, rotation, pivot and axis, or None without them."""
     if not any(key in table for key in DRIVE):
         return None
@@ -169,21 +169,23 @@ def _drive(table: models.Obstacle, of: Dimension, end_time: float) -> Drive | No
             raise BadInput(f"{table.at(key)}: stands without {needs} (accepted: with it)")
     if "velocity" in table:
         raise BadInput(f"{table.at('velocity')}: stands beside motion or rotation (accepted: one of them)")
-    if of is AXISYMMETRIC and "rotation" in table:
+    if dimension is AXISYMMETRIC and "rotation" in table:
         raise BadInput(f"{table.at('rotation')}: nothing turns in a scene of revolution (accepted: motion)")
-    if "axis" in table and of is not SOLID:
+    if "axis" in table and dimension is not SOLID:
         raise BadInput(f"{table.at('axis')}: is of three dimensions (accepted: without it, about z)")
     none = time_functions.constant(0.0)
-    way = (none,) * of.axes if table.motion is None else displacements(table.at("motion"), table.motion, "xyz"[:of.axes], end_time)
-    if of is AXISYMMETRIC and not way[0].is_zero:
+    translation = ((none,) * dimension.axes if table.motion is None
+                   else displacements(table.at("motion"), table.motion, "xyz"[:dimension.axes], end_time))
+    if dimension is AXISYMMETRIC and not translation[0].is_zero:
         raise BadInput(f"{table.at('motion')}.1: leaves the axis of revolution (accepted: 0)")
     degrees = none if table.rotation is None else displacements(table.at("rotation"), table.rotation, "r", end_time)[0]
     turn = replace(degrees, knots=degrees.knots * [1.0, np.pi / 180, np.pi / 180])
     axis = np.array(table.axis or [0.0, 0.0, 1.0])
     if not axis.any():
-        raise BadInput(f"{table.at('axis')}: '{table.given('axis')}' has no direction (accepted: other than 0)")
-    centre = getattr(table, "centre", None) or getattr(table, "point", None) or [0.0] * of.axes
-    return Drive(way, turn, np.array(table.pivot or centre), axis / np.linalg.norm(axis))
+        raise BadInput(f"{table.at('axis')}: '{table.value_text('axis')}' has no direction (accepted: other than 0)")
+    centre = (getattr(table, "centre", None) or getattr(table, "point", None)
+              or [0.0] * dimension.axes)
+    return Drive(translation, turn, np.array(table.pivot or centre), axis / np.linalg.norm(axis))
 
 
 def _plane(table: models.Plane, dimension: Dimension) -> tuple[float, ...]:
@@ -192,10 +194,10 @@ def _plane(table: models.Plane, dimension: Dimension) -> tuple[float, ...]:
             raise BadInput(f"{table.at(key)}: is missing (accepted: {Vector().accepted_in(dimension)})")
     point, normal = np.array(table.point), np.array(table.normal)
     if not normal.any():
-        raise BadInput(f"{table.at('normal')}: '{table.given('normal')}' has no direction (accepted: {placeholder(dimension.axes)} "
+        raise BadInput(f"{table.at('normal')}: '{table.value_text('normal')}' has no direction (accepted: {placeholder(dimension.axes)} "
                        f"other than 0)")
     if dimension is AXISYMMETRIC and normal[0] != 0:
-        raise BadInput(f"{table.at('normal')}: '{table.given('normal')}' is not along the axis of revolution (accepted: [0, 1] or "
+        raise BadInput(f"{table.at('normal')}: '{table.value_text('normal')}' is not along the axis of revolution (accepted: [0, 1] or "
                        f"[0, -1])")
     normal = normal / abs(normal).max()                    # its squares do not underflow
     return *map(float, point), *map(float, normal / np.linalg.norm(normal))
@@ -228,7 +230,7 @@ def _circle(table: models.Circle | models.Sphere | models.Bowl, dimension: Dimen
 def _implicit(table: models.Implicit, dimension: Dimension) -> tuple[float, ...]:
     code = implicit.program(table.at("distance"), table.distance, "xyz"[:dimension.axes])
     if dimension is AXISYMMETRIC and not implicit.is_mirrored(code, 0, 2):
-        raise BadInput(f"{table.at('distance')}: '{table.given('distance')}' is not the same for x and -x, as of revolution "
+        raise BadInput(f"{table.at('distance')}: '{table.value_text('distance')}' is not the same for x and -x, as of revolution "
                        f"(accepted: with x^2 or abs(x))")
     return 1.0, 1.0, *code
 

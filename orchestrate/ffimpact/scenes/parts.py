@@ -27,7 +27,7 @@ def sections(
     bodies: Sequence[Body],
     meshes: Sequence[Mesh | SolidMesh],
     obstacles: Sequence,
-    of: Dimension,
+    dimension: Dimension,
     copies: int,
 ) -> Lines:
     """Returns the lines of functions, driven obstacles, supports and loads; empty if the scene has
@@ -39,37 +39,38 @@ def sections(
     functions: list[TimeFunction] = []
     supports, loads, first = [], [], 0
     for k, (body, made) in enumerate(zip(bodies, meshes)):
-        surface = _Surface(body, made, of, copies)
+        surface = _Surface(body, made, dimension, copies)
         for support in body.supports:
-            found = surface.elements(support.part)
-            fixed = surface.fixed(support, found)
-            _refuse_touching(support.part, surface.placed(found), k, bodies, obstacles)
+            elements = surface.elements(support.part)
+            fixed = surface.fixed(support, elements)
+            _refuse_touching(support.part, surface.placed(elements), k, bodies, obstacles)
             numbers = _numbered(
-                functions, [one if held else None for one, held in zip(support.motion, fixed)]
+                functions,
+                [function if held else None for function, held in zip(support.motion, fixed)],
             )
             supports.append(
                 (
                     k,
                     *map(int, fixed),
-                    *[0] * (3 - of.axes),
+                    *[0] * (3 - dimension.axes),
                     support.release,
                     *numbers,
-                    len(found),
-                    *(first + found),
+                    len(elements),
+                    *(first + elements),
                 )
             )
         _refuse_all_held(body, surface)
         filled: set[int] = set()  # elements of the cavities that have a gas already
         for load in body.loads:
-            found = surface.elements(load.part)
+            elements = surface.elements(load.part)
             if load.kind == "gas":
-                surface.refuse_open(load.part, found)
-                if filled & set(found.tolist()):
+                surface.refuse_open(load.part, elements)
+                if filled & set(elements.tolist()):
                     raise BadInput(
                         f"{load.part.entry}: there is a gas in this cavity of '{body.name}' already "
                         f"(accepted: one gas a cavity)"
                     )
-                filled |= set(found.tolist())
+                filled |= set(elements.tolist())
             numbers = _numbered(functions, list(load.functions))
             loads.append(
                 (
@@ -78,65 +79,72 @@ def sections(
                     *numbers,
                     *load.gas[:2],
                     load.gas[2],
-                    len(found),
-                    *(first + found),
+                    len(elements),
+                    *(first + elements),
                 )
             )
         first += len(made.sides)
     drives = []
-    for k, one in enumerate(obstacles):
-        if one.drive:
-            numbers = _numbered(functions, list(one.drive.way))[:3]
-            turn = _numbered(functions, [one.drive.turn])[0]
+    for k, obstacle in enumerate(obstacles):
+        if obstacle.drive:
+            numbers = _numbered(functions, list(obstacle.drive.translation))[:3]
+            turn = _numbered(functions, [obstacle.drive.turn])[0]
             drives.append(
-                (k, *numbers, turn, *one.drive.pivot, *[0.0] * (3 - of.axes), *one.drive.axis)
+                (
+                    k,
+                    *numbers,
+                    turn,
+                    *obstacle.drive.pivot,
+                    *[0.0] * (3 - dimension.axes),
+                    *obstacle.drive.axis,
+                )
             )
     lines: Lines = []
     if functions:
         lines += [
             ("functions", len(functions)),
-            *((len(one.knots), *one.knots.ravel().tolist()) for one in functions),
+            *((len(function.knots), *function.knots.ravel().tolist()) for function in functions),
         ]
     lines += [("drives", len(drives)), *drives] if drives else []
     lines += [("supports", len(supports)), *supports] if supports else []
     return lines + ([("loads", len(loads)), *loads] if loads else [])
 
 
-def _numbered(functions: list[TimeFunction], given: list[TimeFunction | None]) -> list[int]:
+def _numbered(functions: list[TimeFunction], added: list[TimeFunction | None]) -> list[int]:
     """Appends time functions to `functions`, which are those of scene.dat, and returns their
     numbers in it. The number -1 stands for 0 at all times.
     """
     numbers = []
-    for one in given:
-        needed = one is not None and not one.is_zero
+    for function in added:
+        needed = function is not None and not function.is_zero
         numbers.append(len(functions) if needed else -1)
-        functions += [one] if needed else []
-    return numbers + [-1] * (3 - len(given))
+        functions += [function] if needed else []
+    return numbers + [-1] * (3 - len(added))
 
 
 class _Surface:
     """The boundary elements of a body's mesh."""
 
-    def __init__(self, body: Body, made: Mesh | SolidMesh, of: Dimension, copies: int):
-        self.body, self.made, self.of, self.copies = body, made, of, copies
+    def __init__(self, body: Body, made: Mesh | SolidMesh, dimension: Dimension, copies: int):
+        self.body, self.made, self.dimension, self.copies = body, made, dimension, copies
         # `axes` transforms the mesh to the body's own axes, `turn` to its orientation at the start.
-        turn = rotation(body.angle) if of is PLANE_STRAIN else np.eye(of.axes)
-        self.axes = body.at(0.0, np.zeros(3)).rotation if of is SOLID else np.eye(2)
+        turn = rotation(body.angle) if dimension is PLANE_STRAIN else np.eye(dimension.axes)
+        self.axes = body.at(0.0, np.zeros(3)).rotation if dimension is SOLID else np.eye(2)
         self.turn = turn
         self.own = made.points @ self.axes
 
-    def placed(self, found: np.ndarray) -> np.ndarray:
+    def placed(self, elements: np.ndarray) -> np.ndarray:
         """Returns the corners (f, axes, axes) [m] of boundary elements at the start."""
-        return (self.made.points @ self.turn.T + self.body.position)[self.made.sides[found]]
+        return (self.made.points @ self.turn.T + self.body.position)[self.made.sides[elements]]
 
     @property
     def own_labels(self) -> np.ndarray:
         """Whether each element (f,) is on the boundary of the body, and not on a plane or axis of
         symmetry.
         """
-        if self.of is AXISYMMETRIC:
+        if self.dimension is AXISYMMETRIC:
             return self.made.labels != mesh.AXIS
-        if self.of is SOLID and self.copies > 1:
+        if self.dimension is SOLID and self.copies > 1:
             corners = self.made.points[self.made.sides] + self.body.position
             folded = [
                 abs(corners[:, :, axis]).max(axis=1) > ON_SIDE * np.ptp(self.own)
@@ -151,13 +159,13 @@ class _Surface:
         """
         on = self.own_labels
         if part.kind:
-            found = on & part.contains(self.placed(np.arange(len(on))).mean(axis=1))
-            if not found.any():
+            inside = on & part.contains(self.placed(np.arange(len(on))).mean(axis=1))
+            if not inside.any():
                 raise BadInput(
                     f"{part.entry}: no boundary element of '{self.body.name}' has its middle in the region "
                     f"(accepted: a region that holds a part of its boundary at the start)"
                 )
-            return np.flatnonzero(found)
+            return np.flatnonzero(inside)
         sides = self.sides()
         if part.name not in sides:
             raise BadInput(
@@ -170,23 +178,27 @@ class _Surface:
         """Returns the elements of every side and group of the body by name."""
         on, corners = self.own_labels, self.own[self.made.sides]
         extent = np.ptp(self.own, axis=0).max()
-        found = {}
+        sides = {}
         for name, (axis, end) in SIDES.items():
-            if axis < self.of.axes:
-                most = (self.own.max if end else self.own.min)(axis=0)[axis]
-                found[name] = on & (abs(corners[:, :, axis] - most).max(axis=1) <= ON_SIDE * extent)
+            if axis < self.dimension.axes:
+                extreme = (self.own.max if end else self.own.min)(axis=0)[axis]
+                sides[name] = on & (
+                    abs(corners[:, :, axis] - extreme).max(axis=1) <= ON_SIDE * extent
+                )
         inner = np.zeros(len(on), dtype=bool)
-        if self.of is not AXISYMMETRIC or not (self.made.labels == mesh.AXIS).any():
-            for one in mesh.inner_outlines(self.made.points, self.made.sides):
-                inner[one] = True
-        elif self.of is AXISYMMETRIC:
+        if self.dimension is not AXISYMMETRIC or not (self.made.labels == mesh.AXIS).any():
+            for outline in mesh.inner_outlines(self.made.points, self.made.sides):
+                inner[outline] = True
+        elif self.dimension is AXISYMMETRIC:
             inner = self._cavities()
-        found |= {"all": on, "outer": on & ~inner, "inner": on & inner}
-        if self.of is AXISYMMETRIC:
-            found["axis"] = self.made.labels == mesh.AXIS
+        sides |= {"all": on, "outer": on & ~inner, "inner": on & inner}
+        if self.dimension is AXISYMMETRIC:
+            sides["axis"] = self.made.labels == mesh.AXIS
         groups = getattr(self.made, "groups", None) or {}
-        found |= {name: on & np.isin(np.arange(len(on)), one) for name, one in groups.items()}
-        return {name: np.flatnonzero(one) for name, one in found.items() if one.any()}
+        sides |= {
+            name: on & np.isin(np.arange(len(on)), numbers) for name, numbers in groups.items()
+        }
+        return {name: np.flatnonzero(mask) for name, mask in sides.items() if mask.any()}
 
     def _cavities(self) -> np.ndarray:
         """Returns which elements (f,) of half a section bound cavities.
@@ -199,23 +211,23 @@ class _Surface:
             self.made.sides[surface, 0]
         ]
         reach = {
-            one: self.made.points[self.made.sides[surface[piece == one]]][:, :, 0].max()
-            for one in np.unique(piece)
+            number: self.made.points[self.made.sides[surface[piece == number]]][:, :, 0].max()
+            for number in np.unique(piece)
         }
-        outer = max(reach, key=lambda one: reach[one])
+        outer = max(reach, key=lambda number: reach[number])
         inner = np.zeros(len(self.made.sides), dtype=bool)
         inner[surface[piece != outer]] = True
         return inner
 
-    def fixed(self, support: Support, found: np.ndarray) -> tuple[bool, ...]:
+    def fixed(self, support: Support, elements: np.ndarray) -> tuple[bool, ...]:
         """Returns which components a support fixes. For fix = "normal" this is the component normal
         to the part. Raises BadInput if the part is not normal to x, y or z.
         """
         if not support.normal:
             return support.fixed
-        corners = self.placed(found)
+        corners = self.placed(elements)
         along = corners[:, 1:] - corners[:, :1]
-        if self.of is SOLID:
+        if self.dimension is SOLID:
             normals = np.cross(along[:, 0], along[:, 1])
         else:
             normals = along[:, 0] @ np.array([[0.0, -1.0], [1.0, 0.0]])
@@ -224,25 +236,29 @@ class _Surface:
         if abs(normals[:, axis] - 1).max() > ALONG:
             raise BadInput(
                 f"{support.part.entry.rpartition('.')[0]}.fix: 'normal', but the part is not flat across x, y or z "
-                f"(accepted: all, {', '.join('xyz'[: self.of.axes])}, or a part that is)"
+                f"(accepted: all, {', '.join('xyz'[: self.dimension.axes])}, or a part that is)"
             )
-        return tuple(axis == k for k in range(self.of.axes))
+        return tuple(axis == k for k in range(self.dimension.axes))
 
-    def refuse_open(self, part: Part, found: np.ndarray) -> None:
+    def refuse_open(self, part: Part, elements: np.ndarray) -> None:
         """Raises BadInput if elements, together with planes or the axis of symmetry, do not enclose
         a cavity.
         """
-        sides = self.made.sides[found]
+        sides = self.made.sides[elements]
         ends = (
             sides
-            if self.of is not SOLID
+            if self.dimension is not SOLID
             else np.sort(sides[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
         )
-        once = ends.ravel() if self.of is not SOLID else ends
+        once = ends.ravel() if self.dimension is not SOLID else ends
         rims, count = np.unique(once, axis=0, return_counts=True)
         open_rims = self.made.points[rims[count == 1]] + self.body.position
         folded = (
-            (0,) if self.of is AXISYMMETRIC else FOLDED[self.copies] if self.of is SOLID else ()
+            (0,)
+            if self.dimension is AXISYMMETRIC
+            else FOLDED[self.copies]
+            if self.dimension is SOLID
+            else ()
         )
         extent = np.ptp(self.own)
         closed = np.zeros(len(open_rims), dtype=bool)
@@ -250,7 +266,7 @@ class _Surface:
             away = abs(open_rims[..., axis]).reshape(len(open_rims), -1)
             closed |= away.max(axis=1, initial=0.0) <= ON_SIDE * extent
         inner = self.sides().get("inner", np.array([], dtype=int))
-        if not closed.all() or not np.isin(found, inner).all():
+        if not closed.all() or not np.isin(elements, inner).all():
             raise BadInput(
                 f"{part.entry}: is no closed cavity of '{self.body.name}', which a gas is in "
                 f"(accepted: 'inner' of a body with a hole or cavity, or a closed part of it)"
@@ -265,7 +281,7 @@ def _refuse_touching(
     """
     points = corners.reshape(-1, corners.shape[2])
     near = ON_SIDE * bodies[k].outline.half_thickness
-    for other in [*(one for j, one in enumerate(bodies) if j != k), *obstacles]:
+    for other in [*(body for j, body in enumerate(bodies) if j != k), *obstacles]:
         gap = other.placed.gap(points) if isinstance(other, Body) else other.gap(points)
         if gap.min() <= near:
             raise BadInput(

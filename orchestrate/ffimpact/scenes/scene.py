@@ -79,16 +79,16 @@ class Pair:
 class Scene:
     """A scene as it was read.
 
-    `given` holds the tables of the file, `values` every parameter of a run and `contact` those of
+    `content` holds the tables of the file, `values` every parameter of a run and `contact` those of
     [contact]. Values that are left to the program (auto, 0) stay as they are. If `bodies` is empty
-    the scene is one of the paper's cases: then `values`, and with them `given`, hold EVERY
+    the scene is one of the paper's cases: then `values`, and with them `content`, hold EVERY
     parameter that edp/<script>.edp takes, in SI units.
     """
 
     name: str
     title: str
     script: str
-    given: dict
+    content: dict
     folder: Path
     values: dict[str, Value]
     dimension: Dimension | None = None
@@ -98,54 +98,57 @@ class Scene:
     pairs: list[Pair] = field(default_factory=list)
     released: tuple[str, ...] = ()  # messages about entries that override() reset to automatic
 
-    def override(self, given: dict[str, Value]) -> "Scene":
-        """Returns the scene with the entries `given` by dotted names (text or values). Entries that
+    def override(self, entries: dict[str, Value]) -> "Scene":
+        """Returns the scene with `entries` set by dotted names (text or values). Entries that
         depend on them are reset to automatic (release()). Raises BadInput for whatever is wrong
         then.
         """
-        if not given:
+        if not entries:
             return self
-        changed = self.given
-        for name, value in self.check(given).items():
+        changed = self.content
+        for name, value in self.check(entries).items():
             changed = set_entry(changed, name, value)
-        said = release(changed, list(given))
-        return replace(read(changed, self.folder, self.name), released=self.released + said)
+        messages = release(changed, list(entries))
+        return replace(read(changed, self.folder, self.name), released=self.released + messages)
 
-    def check(self, given: dict[str, Value]) -> dict[str, Value]:
-        """Returns the entries `given` by dotted names with converted values. Raises BadInput if the
+    def check(self, entries: dict[str, Value]) -> dict[str, Value]:
+        """Returns `entries`, by dotted names, with converted values. Raises BadInput if the
         scene has no such entry, or if the entry would change nothing.
         """
         if not self.bodies:
-            return parameters.check(given, self.script)
-        found, changed = {name: toml_value(value) for name, value in given.items()}, self.given
-        for name, value in found.items():
+            return parameters.check(entries, self.script)
+        converted, changed = (
+            {name: toml_value(value) for name, value in entries.items()},
+            self.content,
+        )
+        for name, value in converted.items():
             changed = set_entry(changed, name, value)
         # A value at the top of the file applies only to bodies without a value of their own.
-        for name in found:
+        for name in converted:
             if name in (*MATERIAL, *SIZES) and all(
                 name in body for body in listed(changed, "body")
             ):
                 raise BadInput(
                     f"{name}: changes nothing, as every body has its own (accepted: body.1.{name} and so on)"
                 )
-        return found
+        return converted
 
     @property
-    def asked(self) -> dict:
+    def decisive_entries(self) -> dict:
         """The entries that decide the results, apart from the script, and the sha256 of files. Two
         scenes for which they are equal are the same run.
         """
         files = [
-            str(given["file"])
+            str(table["file"])
             for key in ("body", "obstacle")
-            for given in self.given.get(key, [])
-            if "file" in given
+            for table in self.content.get(key, [])
+            if "file" in table
         ]
         meshes = {
             name: hashlib.sha256((self.folder / name).read_bytes()).hexdigest() for name in files
         }
         harmless = ("title", "script", *parameters.NOT_DECISIVE)
-        return {name: value for name, value in self.given.items() if name not in harmless} | {
+        return {name: value for name, value in self.content.items() if name not in harmless} | {
             "files": meshes
         }
 
@@ -160,8 +163,8 @@ class Scene:
         for key, named in (("body", self.bodies), ("obstacle", self.obstacles)):
             if tables.get(key):
                 changed[key] = [
-                    self._with_copy(where, one.name, table) if "file" in table else table
-                    for one, table in zip(named, tables[key])
+                    self._with_copy(where, surface.name, table) if "file" in table else table
+                    for surface, table in zip(named, tables[key])
                 ]
         return changed
 
@@ -190,18 +193,18 @@ class Scene:
         """The names of columns or of numbers (`what`). If there are several bodies, the names of
         quantities of one body have the suffixes _1, _2 ...
         """
-        said = describe_results(script=self.script)
-        bodies = len(self.bodies) or said["bodies"]
-        more = said["damped"] * self.damped + said["projected"] * (
-            what == "columns" and self._projected(said["plain_nu"])
+        description = describe_results(script=self.script)
+        bodies = len(self.bodies) or description["bodies"]
+        more = description["damped"] * self.damped + description["projected"] * (
+            what == "columns" and self._projected(description["plain_nu"])
         )
         return (
-            said[what]
+            description[what]
             + more
             + [
                 f"{name}_{b}"
                 for b in range(1, bodies + 1)
-                for name in said[f"body_{what}"] + more
+                for name in description[f"body_{what}"] + more
                 if bodies > 1
             ]
         )
@@ -276,18 +279,18 @@ class Scene:
                 raise BadInput(str(error).replace(file.name, str(path))) from None
 
 
-def read(given: dict, folder: Path, name: str) -> Scene:
+def read(content: dict, folder: Path, name: str) -> Scene:
     """Returns the scene in the tables of a file. Paths of other files are relative to `folder`.
     Raises BadInput for whatever is wrong in the tables.
     """
     folder = folder.absolute()  # finds files from any working folder
-    if {"body", "obstacle", "contact", "dimension"} & set(given):
-        return _of_tables(given, folder, name)
-    if not given:
+    if {"body", "obstacle", "contact", "dimension"} & set(content):
+        return _of_tables(content, folder, name)
+    if not content:
         raise BadInput(
             "says nothing (accepted: a scene, as the built-in ones in orchestrate/ffimpact/scenes)"
         )
-    script, title = given.get("script", "disc-plane"), given.get("title", name)
+    script, title = content.get("script", "disc-plane"), content.get("title", name)
     if not isinstance(title, str):
         raise BadInput(f"title: '{brief(title)}' is no text (accepted: text in quotes)")
     if script in dimension.SCRIPTS:
@@ -297,36 +300,37 @@ def read(given: dict, folder: Path, name: str) -> Scene:
     scripts = [word for word in SCRIPTS if word not in dimension.SCRIPTS]
     if script not in scripts:
         raise BadInput(f"script: {unknown(script, scripts)}")
-    set_here = {key: value for key, value in given.items() if key not in ("script", "title")}
+    set_here = {key: value for key, value in content.items() if key not in ("script", "title")}
     values = parameters.defaults(script) | parameters.check(set_here, script)
     _refuse_nu("nu", values["nu"], values["law"], values)
     return Scene(name, title, script, {"title": title, "script": script} | values, folder, values)
 
 
-def _of_tables(given: dict, folder: Path, name: str) -> Scene:
+def _of_tables(content: dict, folder: Path, name: str) -> Scene:
     """Returns the scene of tables with bodies."""
-    of = dimension.of(given)
-    given = conditions.inlined(given, folder, of)
-    tables = models.read(given, of)
+    scene_dimension = dimension.of_scene(content)
+    content = conditions.inlined(content, folder, scene_dimension)
+    tables = models.read(content, scene_dimension)
     if not tables.bodies:
         raise BadInput("body: is missing (accepted: one table [[body]] or more)")
     top = tables.top
-    if top.script not in (None, of.script):
+    if top.script not in (None, scene_dimension.script):
         raise BadInput(
-            f"script: '{top.given('script')}' is not that of [[body]] tables in dimension = '{of.name}' (accepted: {of.script})"
+            f"script: '{top.value_text('script')}' is not that of [[body]] tables in "
+            f"dimension = '{scene_dimension.name}' (accepted: {scene_dimension.script})"
         )
     all_bodies, all_obstacles, contact, values = gathered(
         [
-            lambda: bodies.read(tables.bodies, top, folder, of),
-            lambda: obstacles.read(tables.obstacles, of, top.end_time or 0.0, folder),
-            lambda: _parameters(tables.contact, CONTACT, of),
-            lambda: _parameters(top, RUN, of),
+            lambda: bodies.read(tables.bodies, top, folder, scene_dimension),
+            lambda: obstacles.read(tables.obstacles, scene_dimension, top.end_time or 0.0, folder),
+            lambda: _parameters(tables.contact, CONTACT, scene_dimension),
+            lambda: _parameters(top, RUN, scene_dimension),
         ]
     )
     for key in SIZES:
         if getattr(top, key) and all(body.mesh for body in all_bodies):
             raise BadInput(
-                f"{key}: '{brief(given[key])}' changes nothing, as the mesh of every body is "
+                f"{key}: '{brief(content[key])}' changes nothing, as the mesh of every body is "
                 f"that of its file, with its own element sizes (accepted: 0)"
             )
     centres = np.array([body.placed.area_centre for body in all_bodies])
@@ -345,29 +349,29 @@ def _of_tables(given: dict, folder: Path, name: str) -> Scene:
         tables.contact,
         contact.get("pairing", "closest-point"),
         all_bodies,
-        of,
+        scene_dimension,
         len(all_bodies) == 1 and not all_obstacles,
     ):
         pairs.setdefault((k, k), Pair(k, k, {}, "contact"))
-    found = Scene(
+    scene = Scene(
         name,
         top.title or name,
-        of.script,
-        given,
+        scene_dimension.script,
+        content,
         folder,
         values,
-        of,
+        scene_dimension,
         all_bodies,
         all_obstacles,
         contact,
         [pairs[both] for both in sorted(pairs)],
     )
-    _apart(found)
-    _refuse_integrator(found)
+    _apart(scene)
+    _refuse_integrator(scene)
     for k, body in enumerate(all_bodies, 1):
         _refuse_nu(f"body.{k}.nu" if len(all_bodies) > 1 else "nu", body.nu, body.law, values)
-    mirror.copies(found)
-    return found
+    mirror.copies(scene)
+    return scene
 
 
 def _refuse_nu(entry: str, nu: float, law: str, values: Mapping[str, Value]) -> None:
@@ -390,24 +394,28 @@ def _refuse_nu(entry: str, nu: float, law: str, values: Mapping[str, Value]) -> 
         raise BadInput(f"{entry}: {nu:g} is out of range (accepted: 0 to 0.4999, or 0.5: J = 1)")
 
 
-def _refuse_integrator(found: Scene) -> None:
+def _refuse_integrator(scene: Scene) -> None:
     """Raises BadInput if the work of supports and loads would not be exact with the integrator."""
-    accepted, asked = ("auto", "energy-momentum", "midpoint"), found.values["integrator"]
-    if asked not in accepted and any(body.supports or body.loads for body in found.bodies):
+    accepted, integrator = ("auto", "energy-momentum", "midpoint"), scene.values["integrator"]
+    if integrator not in accepted and any(body.supports or body.loads for body in scene.bodies):
         raise BadInput(
-            f"integrator: '{asked}' has no supports and loads (accepted with them: {'|'.join(accepted)})"
+            f"integrator: '{integrator}' has no supports and loads (accepted with them: {'|'.join(accepted)})"
         )
 
 
-def _parameters(table: models.Entries, keys: tuple[str, ...], of: Dimension) -> dict[str, Value]:
+def _parameters(
+    table: models.Entries, keys: tuple[str, ...], scene_dimension: Dimension
+) -> dict[str, Value]:
     """Returns the values of the parameters `keys` that the script takes; defaults where the table
     has no entry. Raises BadInput for an entry that the script does not take.
     """
-    gathered([partial(parameters.taken, key, of.script) for key in keys if key in table])
+    gathered(
+        [partial(parameters.taken, key, scene_dimension.script) for key in keys if key in table]
+    )
     rules = {
         key: parameters.PARAMETERS[key]
         for key in keys
-        if of.script in parameters.PARAMETERS[key].scripts
+        if scene_dimension.script in parameters.PARAMETERS[key].scripts
     }
     return {
         key: getattr(table, key) if key in table else rule.default for key, rule in rules.items()
@@ -419,15 +427,15 @@ def _names(all_bodies: list[Body], all_obstacles: list[Obstacle]) -> dict[str, i
     occurs twice.
     """
     index, where = {}, {}
-    for path, number, one in [
-        *((f"body.{k + 1}", k, one) for k, one in enumerate(all_bodies)),
-        *((f"obstacle.{k + 1}", -1 - k, one) for k, one in enumerate(all_obstacles)),
+    for path, number, surface in [
+        *((f"body.{k + 1}", k, body) for k, body in enumerate(all_bodies)),
+        *((f"obstacle.{k + 1}", -1 - k, obstacle) for k, obstacle in enumerate(all_obstacles)),
     ]:
-        if one.name in index:
+        if surface.name in index:
             raise BadInput(
-                f"{path}.name: '{brief(one.name)}' is the name of {where[one.name]} too (accepted: each name once)"
+                f"{path}.name: '{brief(surface.name)}' is the name of {where[surface.name]} too (accepted: each name once)"
             )
-        index[one.name], where[one.name] = number, path
+        index[surface.name], where[surface.name] = number, path
     return index
 
 
@@ -456,7 +464,7 @@ def _exceptions(tables: list[models.Pair], index: dict[str, int]) -> dict[tuple[
         both = _partners(table.entry, table.bodies, index)
         if both in pairs:
             raise BadInput(
-                f"{table.at('bodies')}: '{table.given('bodies')}' has a table already (accepted: one a pair)"
+                f"{table.at('bodies')}: '{table.value_text('bodies')}' has a table already (accepted: one a pair)"
             )
         pairs[both] = Pair(
             *both, {key: getattr(table, key) for key in OWN if key in table}, table.entry
@@ -465,51 +473,56 @@ def _exceptions(tables: list[models.Pair], index: dict[str, int]) -> dict[tuple[
 
 
 def _touching_themselves(
-    contact: models.Contact, pairing: str, all_bodies: list[Body], of: Dimension, alone: bool
+    contact: models.Contact,
+    pairing: str,
+    all_bodies: list[Body],
+    scene_dimension: Dimension,
+    alone: bool,
 ) -> list[int]:
     """Returns the bodies that may come into contact with themselves, by `self_contact`.
 
     "auto" takes bodies in the plane or of revolution that close at a bending strain below FOLDING.
     A body that is `alone`, without obstacles or other bodies, always may.
     """
-    asked = contact.self_contact or "auto"
-    if asked == "on" and pairing != "closest-point":
+    self_contact = contact.self_contact or "auto"
+    if self_contact == "on" and pairing != "closest-point":
         raise BadInput(
             f"{contact.at('self_contact')}: on, but pairing = '{pairing}' is between bodies "
             f"(accepted: auto|off, or pairing = 'closest-point')"
         )
     if alone:
         return [0]
-    if asked == "off" or pairing != "closest-point":
+    if self_contact == "off" or pairing != "closest-point":
         return []
-    flat = of is not SOLID
+    flat = scene_dimension is not SOLID
     return [
         k
         for k, body in enumerate(all_bodies)
-        if asked == "on" or (flat and body.outline.folding(of is AXISYMMETRIC) < FOLDING)
+        if self_contact == "on"
+        or (flat and body.outline.folding(scene_dimension is AXISYMMETRIC) < FOLDING)
     ]
 
 
-def _partners(path: str, given, index: dict[str, int]) -> tuple[int, int]:
+def _partners(path: str, names, index: dict[str, int]) -> tuple[int, int]:
     """Returns the indices of the two surfaces of a contact pair, the body or the first body
     first.
     """
     accepted = f"accepted: two names, one at least of a body, of {', '.join(index)}"
     if (
-        not isinstance(given, list)
-        or len(given) != 2
-        or not all(isinstance(name, str) for name in given)
+        not isinstance(names, list)
+        or len(names) != 2
+        or not all(isinstance(name, str) for name in names)
     ):
         raise BadInput(
-            f"{path}.bodies: '{'' if given is None else brief(given)}' is no pair ({accepted})"
+            f"{path}.bodies: '{'' if names is None else brief(names)}' is no pair ({accepted})"
         )
-    for name in given:
+    for name in names:
         if name not in index:
             raise BadInput(f"{path}.bodies: '{brief(name)}' is not in the scene ({accepted})")
-    first, second = sorted((index[name] for name in given), key=lambda k: (k < 0, abs(k)))
+    first, second = sorted((index[name] for name in names), key=lambda k: (k < 0, abs(k)))
     if first < 0:
         raise BadInput(
-            f"{path}.bodies: '{brief(given)}' cannot come into contact with each other ({accepted})"
+            f"{path}.bodies: '{brief(names)}' cannot come into contact with each other ({accepted})"
         )
     return first, second
 
@@ -517,26 +530,26 @@ def _partners(path: str, given, index: dict[str, int]) -> tuple[int, int]:
 # ---- positions at the start
 
 
-def _apart(found: Scene) -> None:
+def _apart(scene: Scene) -> None:
     """Raises BadInput if a body overlaps another one or an obstacle at the start."""
-    placed = [body.placed for body in found.bodies]
+    placed = [body.placed for body in scene.bodies]
     centres, reaches = (
-        np.array([one.area_centre for one in placed]),
-        np.array([one.reach for one in placed]),
+        np.array([shape.area_centre for shape in placed]),
+        np.array([shape.reach for shape in placed]),
     )
     for i, j in sorted(cKDTree(centres).query_pairs(2 * reaches.max())):
         if np.linalg.norm(centres[i] - centres[j]) <= reaches[i] + reaches[j]:
-            body, other = found.bodies[i], found.bodies[j]
+            body, other = scene.bodies[i], scene.bodies[j]
             _refuse_overlap(
                 f"body.{i + 1}",
                 body,
                 f"body.{j + 1}",
                 other.name,
                 gap_between(placed[i], placed[j]),
-                _units(found, i + 1, body) or _units(found, j + 1, other),
+                _units(scene, i + 1, body) or _units(scene, j + 1, other),
             )
     for (i, body), (j, other) in itertools.product(
-        enumerate(found.bodies, 1), enumerate(found.obstacles, 1)
+        enumerate(scene.bodies, 1), enumerate(scene.obstacles, 1)
     ):
         _refuse_overlap(
             f"body.{i}",
@@ -544,16 +557,16 @@ def _apart(found: Scene) -> None:
             f"obstacle.{j}",
             other.name,
             gap_to_obstacle(body.placed, other),
-            _units(found, i, body),
+            _units(scene, i, body),
         )
 
 
-def _units(found: Scene, i: int, body: Body) -> str:
+def _units(scene: Scene, i: int, body: Body) -> str:
     """Returns a hint for a message if body i comes from a file and is wider than WIDE."""
     width = 2 * body.outline.reach
     return (
         f"; its file is {width:.3g} m wide: other units? body.{i}.scale = 0.001 takes them as mm"
-        if width > WIDE and "file" in found.given["body"][i - 1]
+        if width > WIDE and "file" in scene.content["body"][i - 1]
         else ""
     )
 

@@ -69,38 +69,40 @@ def study(
     one is computing.
     """
     places = [place(folder, point) for point in points]
-    given = scene.load(name)
-    found = outcomes(points, folder, base, given)
+    loaded = scene.load(name)
+    rows = outcomes(points, folder, base, loaded)
     tasks = {
-        where: given.override(base | point)
+        where: loaded.override(base | point)
         for where, point in zip(places, points)
-        if where not in found
+        if where not in rows
     }
     if tasks:
         freefem.find()
         # The folder is made here, because an interrupted run removes the folders that it made.
         (folder / "runs").mkdir(parents=True, exist_ok=True)
-    acts = {where: partial(outcome_of, where, wanted, limit) for where, wanted in tasks.items()}
-    for where, outcome in side_by_side(acts, cores, "/".join(folder.parts[-2:]), len(found)):
-        found[where] = _row(1, str(outcome), False, {}) if isinstance(outcome, Failure) else outcome
-    return pd.DataFrame([point | found[where] for where, point in zip(places, points)])
+    acts = {
+        where: partial(outcome_of, where, requested, limit) for where, requested in tasks.items()
+    }
+    for where, outcome in side_by_side(acts, cores, "/".join(folder.parts[-2:]), len(rows)):
+        rows[where] = _row(1, str(outcome), False, {}) if isinstance(outcome, Failure) else outcome
+    return pd.DataFrame([point | rows[where] for where, point in zip(places, points)])
 
 
 def outcomes(
-    points: list[Point], folder: Path, base: Point, given: scene.Scene
+    points: list[Point], folder: Path, base: Point, loaded: scene.Scene
 ) -> dict[Path, dict]:
     """Returns, by folder, the outcomes of points that need no run: those that are in the folder
-    already, and those that the scene `given` refuses.
+    already, and those that the scene `loaded` refuses.
     """
-    found = {}
+    rows = {}
     for point in points:
         where = place(folder, point)
         try:
-            outcome = there(where, given.override(base | point))
+            outcome = there(where, loaded.override(base | point))
         except BadInput as error:
             outcome = _row(error.code, str(error), False, {})
-        found |= {where: outcome} if outcome else {}
-    return found
+        rows |= {where: outcome} if outcome else {}
+    return rows
 
 
 def place(folder: Path, point: Point) -> Path:
@@ -174,36 +176,36 @@ def _outcome_of(future: Future) -> Any:
     return Failure(f"{type(error).__name__}: {error}")
 
 
-def there(folder: Path, wanted: scene.Scene) -> dict | None:
+def there(folder: Path, requested: scene.Scene) -> dict | None:
     """Returns the outcome that is in `folder` already, None if there is none: a finished run, or a
     failure of the same scene and code, which would be repeated.
     """
-    for place in (folder, failed_beside(folder)):
-        failed = read_json(place / "failure.json")
+    for candidate in (folder, failed_beside(folder)):
+        failed = read_json(candidate / "failure.json")
         made = failed.get("provenance") or {}
         if (
             failed.get("exit_code") in (11, 12)
             and made.get("code") == run.code_hash()
-            and made.get("asked") == wanted.asked
+            and made.get("asked") == requested.decisive_entries
         ):
             return _row(failed["exit_code"], str(failed.get("message")), True, failed)
     try:
-        result = run.reusable(wanted, folder)
+        result = run.reusable(requested, folder)
     except Failure:  # the run reports it
         return None
     return result and _row(0, result.summary["message"], True, result.summary)
 
 
-def outcome_of(folder: Path, wanted: scene.Scene, limit: float) -> dict | None:
+def outcome_of(folder: Path, requested: scene.Scene, limit: float) -> dict | None:
     """Runs a scene, unless its outcome is there already, and returns the row of the table: exit
     code, message, warnings, reused, and the numbers of the summary, as far as the run came in
     `limit` seconds. None if another process is computing this run.
     """
-    if found := there(folder, wanted):
-        return found
+    if row := there(folder, requested):
+        return row
     try:
         with freefem.limited(limit):
-            result = run.run(wanted, out=folder, estimate=False, progress=False)
+            result = run.run(requested, out=folder, estimate=False, progress=False)
         return _row(0, result.summary["message"], result.reused, result.summary)
     except Busy:
         return None

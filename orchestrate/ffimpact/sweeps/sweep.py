@@ -113,12 +113,12 @@ def main(argv: list[str]) -> int:
         "--run", metavar="NAME", help="only this run of the list, without table and figure"
     )
     options = parser.parse_args(argv)
-    wanted = load(options.sweep)
-    out = result_folder(options.out or RESULTS / "sweeps" / wanted.name)
-    names = {study.place(out, point).name: point for point in wanted.runs}
+    sweep = load(options.sweep)
+    out = result_folder(options.out or RESULTS / "sweeps" / sweep.name)
+    names = {study.place(out, point).name: point for point in sweep.runs}
     if options.list or options.open:
         there = (
-            study.outcomes([*names.values()], out, wanted.base, scene.load(wanted.scene))
+            study.outcomes([*names.values()], out, sweep.base, scene.load(sweep.scene))
             if options.open
             else {}
         )
@@ -128,17 +128,21 @@ def main(argv: list[str]) -> int:
         return 0
     if options.run is not None and options.run not in names:
         raise BadInput(
-            f"--run: '{brief(options.run)}' is no run of {wanted.name} (accepted: see --list)"
+            f"--run: '{brief(options.run)}' is no run of {sweep.name} (accepted: see --list)"
         )
-    with _ours(wanted, out):
+    with _ours(sweep, out):
         if options.run is not None:
             row = study.study(
-                [names[options.run]], out, wanted.base, wanted.limit, wanted.scene
+                [names[options.run]],
+                out,
+                sweep.base,
+                sweep.limit,
+                sweep.scene,
             ).iloc[0]
             print(f"{options.run}: {row.message or 'finished'}")
             return 0 if row.exit in LASTING else int(row.exit)
-        rows = collect(wanted, out)
-        print(report(wanted, rows, out))
+        rows = collect(sweep, out)
+        print(report(sweep, rows, out))
     bad = rows[~rows.exit.isin(RECORDED)]
     if len(bad):
         again = (
@@ -146,16 +150,16 @@ def main(argv: list[str]) -> int:
             if bad.exit.isin(LASTING).all()
             else "; the same command runs again what was killed or did not end"
         )
-        first = study.place(Path(), bad[wanted.axes].iloc[0].to_dict()).name
+        first = study.place(Path(), bad[sweep.axes].iloc[0].to_dict()).name
         raise Failure(
-            f"{wanted.name}: {len(bad)} of {len(rows)} points have no answer, first: {first}: {bad.message.iloc[0]}{again}",
+            f"{sweep.name}: {len(bad)} of {len(rows)} points have no answer, first: {first}: {bad.message.iloc[0]}{again}",
             code=int(bad.exit.iloc[0]) if bad.exit.nunique() == 1 else 1,
         )
     return 0
 
 
 @contextmanager
-def _ours(wanted: Sweep, out: Path) -> Iterator[None]:
+def _ours(sweep: Sweep, out: Path) -> Iterator[None]:
     """Locks the folder against processes of other sweeps. Processes of the same sweep share it."""
     try:
         out.mkdir(parents=True, exist_ok=True)
@@ -168,7 +172,7 @@ def _ours(wanted: Sweep, out: Path) -> Iterator[None]:
                 # The exclusive lock succeeds if no other process uses the folder.
                 fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
                 with study.complete(out / "sweep.toml") as part:
-                    part.write_text(wanted.text)
+                    part.write_text(sweep.text)
             except BlockingIOError:
                 pass
             # The shared lock waits for a process that is writing the file. After that nobody
@@ -176,7 +180,7 @@ def _ours(wanted: Sweep, out: Path) -> Iterator[None]:
             fcntl.flock(lock, fcntl.LOCK_SH)
             if (out / "sweep.toml").exists() and (
                 out / "sweep.toml"
-            ).read_bytes() == wanted.text.encode():
+            ).read_bytes() == sweep.text.encode():
                 break
         else:
             raise Busy(f"{out} is being written by another sweep; wait, or choose another --out")
@@ -198,34 +202,36 @@ def load(name: str) -> Sweep:
     value and what is accepted.
     """
     path = SWEEPS / f"{name}.toml" if name in built_in() else Path(name)
-    text, given = scene.read_toml(path, scene.absent(name, "sweep", built_in()))
+    text, content = scene.read_toml(path, scene.absent(name, "sweep", built_in()))
     try:
-        return _sweep(path, given, text)
+        return _sweep(path, content, text)
     except BadInput as error:
         raise error.within(str(path)) from None
 
 
-def _sweep(path: Path, given: dict, text: str) -> Sweep:
-    for key in given:
+def _sweep(path: Path, content: dict, text: str) -> Sweep:
+    for key in content:
         if key not in KEYS:
             raise BadInput(
                 f"{brief(key)}: no such entry{suggestion(key, KEYS)} (accepted: {', '.join(KEYS)})"
             )
     tables = {
-        key: _is(given.get(key, {}), dict, key, "a table")
+        key: _is(content.get(key, {}), dict, key, "a table")
         for key in ("set", "product", "refine", "figure")
     }
-    groups = _is(given.get("zip", []), list, "zip", "tables [[zip]]")
-    name = given.get("scene", "disc-normal")
+    groups = _is(content.get("zip", []), list, "zip", "tables [[zip]]")
+    name = content.get("scene", "disc-normal")
     if _is(name, str, "scene", "a name") not in scene.built_in():
         name = os.path.join(path.parent.resolve(), name)
-    of = scene.load(name)
-    base, refine = (of.check(_flat(tables[key])) for key in ("set", "refine"))
+    loaded = scene.load(name)
+    base, refine = (loaded.check(_flat(tables[key])) for key in ("set", "refine"))
     axes = [
-        [{name: value} for value in _values(name, values, of)]
+        [{name: value} for value in _values(name, values, loaded)]
         for name, values in _flat(tables["product"]).items()
     ]
-    axes += [_together(_flat(_is(group, dict, "zip", "tables [[zip]]")), of) for group in groups]
+    axes += [
+        _together(_flat(_is(group, dict, "zip", "tables [[zip]]")), loaded) for group in groups
+    ]
     count = int(np.prod([len(axis) for axis in axes])) * (2 if refine else 1)
     if not axes:
         raise BadInput(
@@ -250,35 +256,35 @@ def _sweep(path: Path, given: dict, text: str) -> Sweep:
     ]
     if len({tuple(point.values()) for point in points}) < len(points):
         raise BadInput("zip: two points are the same (accepted: every combination once)")
-    sample = _sample(of, {"fields": 0} | base, points)
-    _finer(refine, of.values | of.sizes | base, points)
-    known = [f"{each}_end" if each in varied else each for each in of.numbers]
-    wanted = _is(given.get("collect", known), list, "collect", "a list of names")
-    for each in wanted:
-        if each not in known:
-            raise BadInput(f"collect: {unknown(each, known, ', ')}")
-        if wanted.count(each) > 1:
+    sample = _sample(loaded, {"fields": 0} | base, points)
+    _finer(refine, loaded.values | loaded.sizes | base, points)
+    accepted = [f"{column}_end" if column in varied else column for column in loaded.numbers]
+    collected = _is(content.get("collect", accepted), list, "collect", "a list of names")
+    for number in collected:
+        if number not in accepted:
+            raise BadInput(f"collect: {unknown(number, accepted, ', ')}")
+        if collected.count(number) > 1:
             raise BadInput(
-                f"collect: '{brief(each)}' is given twice (accepted: {', '.join(known)})"
+                f"collect: '{brief(number)}' is given twice (accepted: {', '.join(accepted)})"
             )
-    limit = given.get("limit", LIMIT)
+    limit = content.get("limit", LIMIT)
     if type(limit) not in (int, float) or not 1 <= limit <= 1e6:
         raise BadInput(f"limit: {brief(limit)} (accepted: 1 to 1e6 seconds)")
     figure = (
-        sweep_figures.check(tables["figure"], points, wanted, of.columns)
-        | {"per": dimension.per_metre(of.script)}
+        sweep_figures.check(tables["figure"], points, collected, loaded.columns)
+        | {"per": dimension.per_metre(loaded.script)}
         if tables["figure"]
         else {}
     )
     base = {"fields": 0} | base
     return Sweep(
         path.stem,
-        str(given.get("title", path.stem)),
+        str(content.get("title", path.stem)),
         name,
         base,
         points,
         refine,
-        wanted,
+        collected,
         float(limit),
         figure,
         sample,
@@ -286,14 +292,14 @@ def _sweep(path: Path, given: dict, text: str) -> Sweep:
     )
 
 
-def _sample(of: scene.Scene, base: study.Point, points: list[study.Point]) -> scene.Scene:
+def _sample(loaded: scene.Scene, base: study.Point, points: list[study.Point]) -> scene.Scene:
     """Returns the scene of the first point that is accepted. A point that is refused does not stop
     the runs of others. If all are refused, the BadInput of the first point is raised.
     """
     refused = None
     for point in points:
         try:
-            return of.override(base | point)
+            return loaded.override(base | point)
         except BadInput as error:
             refused = refused or error
     raise refused
@@ -329,25 +335,25 @@ def _flat(table: dict, path: str = "") -> dict:
     """Returns the entries of a table by dotted names. TOML reads body.2.young as nested tables
     unless the name is in quotes.
     """
-    found = {}
+    entries = {}
     for name, value in table.items():
         nested = isinstance(value, dict) and not set(value) & set(RANGE)
-        found |= _flat(value, f"{path}{name}.") if nested else {f"{path}{name}": value}
-    return found
+        entries |= _flat(value, f"{path}{name}.") if nested else {f"{path}{name}": value}
+    return entries
 
 
-def _values(name: str, given: list | dict, of: scene.Scene) -> list[Value]:
-    """Returns the checked values of an axis of a sweep over the scene `of`, from a list or a
+def _values(name: str, axis: list | dict, loaded: scene.Scene) -> list[Value]:
+    """Returns the checked values of an axis of a sweep over the scene `loaded`, from a list or a
     range.
     """
-    if isinstance(given, dict):
-        if not set(RANGE[:3]) <= set(given) <= set(RANGE):
+    if isinstance(axis, dict):
+        if not set(RANGE[:3]) <= set(axis) <= set(RANGE):
             raise BadInput(
-                f"{brief(name)}: {brief(given)} is no range (accepted: from, to, points and perhaps spacing)"
+                f"{brief(name)}: {brief(axis)} is no range (accepted: from, to, points and perhaps spacing)"
             )
         low, high, points, spacing = (
-            *(given[key] for key in ("from", "to", "points")),
-            given.get("spacing", "linear"),
+            *(axis[key] for key in ("from", "to", "points")),
+            axis.get("spacing", "linear"),
         )
         if spacing not in ("linear", "log"):
             raise BadInput(f"{brief(name)}: spacing {unknown(spacing, ('linear', 'log'))}")
@@ -356,38 +362,41 @@ def _values(name: str, given: list | dict, of: scene.Scene) -> list[Value]:
             raise BadInput(
                 f"{brief(name)}: a range needs a parameter that is a number, from and to numbers"
             )
-        low, high = (of.check({name: number})[name] for number in (low, high))
+        low, high = (loaded.check({name: number})[name] for number in (low, high))
         if spacing == "log" and min(low, high) <= 0:
             raise BadInput(
                 f"{brief(name)}: from {brief(low)} to {brief(high)} (accepted for log: above 0)"
             )
         if type(points) is not int or not 2 <= points <= MOST_RUNS:
             raise BadInput(f"{brief(name)}: points = {brief(points)} (accepted: 2 to {MOST_RUNS})")
-        given = [
+        axis = [
             float(f"{value:.10g}")
             for value in (np.geomspace if spacing == "log" else np.linspace)(low, high, points)
         ]
     values = [
-        _single(name, value, of) for value in _is(given, list, name, "a list of values, or a range")
+        _single(name, value, loaded)
+        for value in _is(axis, list, name, "a list of values, or a range")
     ]
     if not values or len(set(values)) < len(values):
-        raise BadInput(f"{brief(name)}: {brief(given)} (accepted: at least one value, none twice)")
+        raise BadInput(f"{brief(name)}: {brief(axis)} (accepted: at least one value, none twice)")
     return values
 
 
-def _single(name: str, value, of: scene.Scene) -> Value:
+def _single(name: str, value, loaded: scene.Scene) -> Value:
     """Returns a checked value of an axis: a number or a word."""
     if isinstance(value, list | dict):
         raise BadInput(
             f"{brief(name)}: {brief(value)} (accepted: single numbers and words, as body.1.velocity.2 for one of two)"
         )
-    return of.check({name: value})[name]
+    return loaded.check({name: value})[name]
 
 
-def _together(group: dict, of: scene.Scene) -> list[study.Point]:
+def _together(group: dict, loaded: scene.Scene) -> list[study.Point]:
     """Returns the points of a [[zip]], whose parameters vary together."""
     columns = {
-        name: [_single(name, value, of) for value in _is(values, list, name, "a list of values")]
+        name: [
+            _single(name, value, loaded) for value in _is(values, list, name, "a list of values")
+        ]
         for name, values in group.items()
     }
     if (
@@ -405,17 +414,17 @@ def _together(group: dict, of: scene.Scene) -> list[study.Point]:
 # ---- the table
 
 
-def collect(wanted: Sweep, out: Path) -> pd.DataFrame:
+def collect(sweep: Sweep, out: Path) -> pd.DataFrame:
     """Computes the runs that are missing. Returns the table and saves it as sweep.csv, with its
     figure.
     """
-    rows = table(wanted, out)
+    rows = table(sweep, out)
     study.save(rows, out / "sweep.csv")
-    sweep_figures.draw(wanted, rows, out)
+    sweep_figures.draw(sweep, rows, out)
     return rows
 
 
-def table(wanted: Sweep, out: Path) -> pd.DataFrame:
+def table(sweep: Sweep, out: Path) -> pd.DataFrame:
     """Computes the runs that are missing and returns a tidy table with one row per point.
 
     Columns: the parameters that vary, exit, message, warnings, the collected numbers, and seconds.
@@ -423,79 +432,77 @@ def table(wanted: Sweep, out: Path) -> pd.DataFrame:
     - plain|. If a run of a point failed, the row has the exit code and message of that run, and no
     numbers.
     """
-    runs = study.study(wanted.runs, out, wanted.base, wanted.limit, wanted.scene)
-    for name in wanted.collect:  # a number that no run has becomes an empty column
+    runs = study.study(sweep.runs, out, sweep.base, sweep.limit, sweep.scene)
+    for name in sweep.collect:  # a number that no run has becomes an empty column
         if name not in runs:
             runs[name] = np.nan
-    n = len(wanted.points)
+    n = len(sweep.points)
     plain, fine = runs[:n], runs[-n:].set_axis(runs.index[:n])
-    rows = fine[wanted.axes + ["exit", "message", "warnings"] + wanted.collect].copy()
-    if wanted.refine:
+    rows = fine[sweep.axes + ["exit", "message", "warnings"] + sweep.collect].copy()
+    if sweep.refine:
         worse = (plain.exit != 0) & (fine.exit == 0)
         rows.loc[worse, ["exit", "message", "warnings"]] = plain.loc[
             worse, ["exit", "message", "warnings"]
         ]
-        errors = {f"{name}_error": (fine[name] - plain[name]).abs() for name in wanted.collect}
+        errors = {f"{name}_error": (fine[name] - plain[name]).abs() for name in sweep.collect}
         rows = pd.concat([rows, pd.DataFrame(errors)], axis=1)
-    rows[wanted.collect] = rows[wanted.collect].where(rows.exit == 0)
+    rows[sweep.collect] = rows[sweep.collect].where(rows.exit == 0)
     rows["seconds"] = plain.get("wall_seconds", np.nan) + (
-        fine.get("wall_seconds", np.nan) if wanted.refine else 0
+        fine.get("wall_seconds", np.nan) if sweep.refine else 0
     )
     return rows
 
 
-def _units(wanted: Sweep, names: list[str]) -> str:
+def _units(sweep: Sweep, names: list[str]) -> str:
     """Returns the units of columns of sweep.csv in words, from the parameters and the meanings of
     the summary.
     """
-    said = describe_results(script=wanted.sample.script)["meanings"]["summary"]
+    meanings = describe_results(script=sweep.sample.script)["meanings"]["summary"]
     units = {
-        name: said[key][0]
-        if (key := re.sub("_[0-9]+$", "", name)) in said
+        name: meanings[key][0]
+        if (key := re.sub("_[0-9]+$", "", name)) in meanings
         else sweep_figures.unit_of(name)
         for name in names
     }
-    found = ", ".join(
-        f"{name} {unit}" for name, unit in units.items() if unit not in ("", "-", "1")
-    )
-    return f"units: {found}" if found else "units: none"
+    text = ", ".join(f"{name} {unit}" for name, unit in units.items() if unit not in ("", "-", "1"))
+    return f"units: {text}" if text else "units: none"
 
 
-def report(wanted: Sweep, rows: pd.DataFrame, out: Path) -> str:
+def report(sweep: Sweep, rows: pd.DataFrame, out: Path) -> str:
     """Returns the results in words: a table of all points if it is short, failures with their
     reasons, the findings of the figure, and where the files are.
     """
-    lines = [wanted.title]
+    lines = [sweep.title]
     if len(rows) <= 60:
-        text = rows[wanted.axes].copy()
-        for name in wanted.collect[:SHOWN]:
+        text = rows[sweep.axes].copy()
+        for name in sweep.collect[:SHOWN]:
             text[name] = ["" if np.isnan(value) else f"{value:.5g}" for value in rows[name]]
-            if wanted.refine:
-                errors = sweep_figures.bars_of_all(wanted, rows, name)
+            if sweep.refine:
+                errors = sweep_figures.bars_of_all(sweep, rows, name)
                 text[name] += ["" if np.isnan(error) else f" ± {error:.2g}" for error in errors]
         lines += [
             study.table(
                 text,
                 {
                     name: "g"
-                    if name in wanted.axes and pd.api.types.is_numeric_dtype(rows[name])
+                    if name in sweep.axes and pd.api.types.is_numeric_dtype(rows[name])
                     else ""
                     for name in text
                 },
             ),
-            _units(wanted, list(text)),
+            _units(sweep, list(text)),
             "",
         ]
     failed = rows[rows.exit != 0]
     for (code, message), group in failed.groupby(["exit", "message"], sort=False):
         where = "; ".join(
-            study.place(Path(), point).name for point in group[wanted.axes].to_dict("records")
+            study.place(Path(), point).name for point in group[sweep.axes].to_dict("records")
         )
         lines.append(f"failed, exit {code}: {where}: {message}")
-    lines += [f"released: {sentence}" for sentence in wanted.sample.released]
-    if found := study.warned(rows.warnings):
-        lines.append(f"warnings: {found}")
-    lines += sweep_figures.findings(wanted, rows, out)
+    lines += [f"released: {sentence}" for sentence in sweep.sample.released]
+    if warned := study.warned(rows.warnings):
+        lines.append(f"warnings: {warned}")
+    lines += sweep_figures.findings(sweep, rows, out)
     files = ", ".join(path.name for path in (out / "sweep.csv", out / "sweep.png") if path.exists())
     lines.append(
         f"{len(rows) - len(failed)} of {len(rows)} points finished; {shown(out)}/: {files}"

@@ -84,22 +84,22 @@ SPAN = 1e3  # ratio of the largest to the smallest value above which the axis y 
 COLOURS, MARKERS = (BLUE, ORANGE, GREEN, PURPLE, GREY), "osd^v"
 
 
-def check(given: dict, points: list[dict], collected: list[str], columns: list[str]) -> dict:
+def check(entries: dict, points: list[dict], collected: list[str], columns: list[str]) -> dict:
     """Returns the [figure] of a sweep with defaults, empty if there is none. `columns` are those of
     its histories. Raises BadInput if it cannot be drawn or does not distinguish all points.
     """
-    if not given:
+    if not entries:
         return {}
-    kind, varied = given.get("kind", "lines"), list(points[0])
+    kind, varied = entries.get("kind", "lines"), list(points[0])
     if kind not in list(KINDS):
         raise BadInput(f"figure: kind {unknown(kind, KINDS)}")
-    for key in given:
+    for key in entries:
         if key not in ("kind", *KINDS[kind]):
             raise BadInput(
                 f"figure: {brief(key)}: no such entry for {kind}{suggestion(key, KINDS[kind])} "
                 f"(accepted: {', '.join(KINDS[kind])})"
             )
-    figure = {"kind": kind, "by": None, "panel": None, "level": None, "band": 0.0} | given
+    figure = {"kind": kind, "by": None, "panel": None, "level": None, "band": 0.0} | entries
     if kind != "map" and isinstance(figure.get("y"), str):
         figure["y"] = [figure["y"]]
     axes, results = {
@@ -177,7 +177,7 @@ def constants(sweep) -> str:
     """Returns the parameters that are the same in all runs, in words: law, nu, speed, contact
     stiffness and, with friction, the slip velocity.
     """
-    used = sweep.sample.given
+    used = sweep.sample.content
     names = ("law", "nu", "speed", "penalty") + ("slip_velocity",) * (
         used.get("friction_static", 0) > 0
     )
@@ -335,7 +335,7 @@ def draw_lines(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
     # Curves come before other marks in the legend.
     handles = sorted(
         zip(*grid[0, 0].get_legend_handles_labels()),
-        key=lambda each: isinstance(each[0], plt.Line2D),
+        key=lambda handle: isinstance(handle[0], plt.Line2D),
     )
     if handles:
         grid[0, 0].legend(*zip(*handles))
@@ -353,9 +353,9 @@ def _published(axes: plt.Axes, sweep, x: str, y: str) -> None:
         y.removeprefix("thresholded_"),
         (_quantity(y).factor, _unit(y, sweep.figure["per"])),
     )
-    scenes = (sweep.sample.given | point for point in sweep.points)
+    scenes = (sweep.sample.content | point for point in sweep.points)
     for at, value, words in dict.fromkeys(
-        found for scene in scenes for found in numbers_of_the_paper(scene, name, over=x)
+        number for scene in scenes for number in numbers_of_the_paper(scene, name, over=x)
     ):
         style = dict(color=BLACK, label=f"{words}: {factor * value:.3g}{unit}")
         if at is None:
@@ -439,12 +439,12 @@ def bars_of_all(sweep, rows: pd.DataFrame, y: str) -> pd.Series:
     """Returns the error bars (bars()) of every row of the table, each in its own curve or map of
     the figure; nan where a run failed. Without a figure all points are one curve.
     """
-    found = pd.Series(np.nan, rows.index)
+    all_bars = pd.Series(np.nan, rows.index)
     for _, panel in _groups(sweep, rows, "panel"):
         for _, group in _groups(sweep, panel, "by"):
             there = group[group.exit == 0]
-            found[there.index] = bars(there, y)
-    return found
+            all_bars[there.index] = bars(there, y)
+    return all_bars
 
 
 FALLS, RISES, LEVEL = "falls", "rises", "does not change beyond its error bars"
@@ -510,34 +510,37 @@ def steps_against(group: pd.DataFrame, x: str, y: str) -> Trend | None:
 def trend(group: pd.DataFrame, x: str, y: str, words: str, per: str = "/m") -> str:
     """Returns the trend (steps_against()) in words."""
     name = f"{words}: " * bool(words) + f"{y.replace('_', ' ')} over {x.replace('_', ' ')}"
-    found, factor, unit = steps_against(group, x, y), _quantity(y).factor, _unit(y, per)
-    if not found:
+    curve, factor, unit = steps_against(group, x, y), _quantity(y).factor, _unit(y, per)
+    if not curve:
         return f"{name}: too few points for a trend"
     size = abs(group[group.exit == 0][y]).mean()
-    text = f"{name}: {found.course}{_extremes(found, x, factor)} from {factor * found.first:.5g} to {factor * found.last:.5g}{unit}"
-    if found.course in (FALLS, RISES):
-        text += f"; of {found.steps} steps {found.against} {'rise' if found.falls else 'fall'}"
-    if np.isnan(found.typical):
+    text = (
+        f"{name}: {curve.course}{_extremes(curve, x, factor)} "
+        f"from {factor * curve.first:.5g} to {factor * curve.last:.5g}{unit}"
+    )
+    if curve.course in (FALLS, RISES):
+        text += f"; of {curve.steps} steps {curve.against} {'rise' if curve.falls else 'fall'}"
+    if np.isnan(curve.typical):
         return text + " (no error bars: no [refine], or no finished refined run)"
-    if found.course in (FALLS, RISES):
-        text += f", {found.beyond} of them by more than their error bar, {found.established} by more than twice that"
-        if found.largest > 0:
-            text += f"; the largest by {factor * found.largest:.2g}{unit} ({100 * found.largest / size:.2f} %)"
+    if curve.course in (FALLS, RISES):
+        text += f", {curve.beyond} of them by more than their error bar, {curve.established} by more than twice that"
+        if curve.largest > 0:
+            text += f"; the largest by {factor * curve.largest:.2g}{unit} ({100 * curve.largest / size:.2f} %)"
     return (
         text
-        + f"; error of a point {factor * found.typical:.2g}{unit} ({100 * found.typical / size:.2f} %, rms)"
+        + f"; error of a point {factor * curve.typical:.2g}{unit} ({100 * curve.typical / size:.2f} %, rms)"
     )
 
 
-def _extremes(found: Trend, x: str, factor: float) -> str:
+def _extremes(curve: Trend, x: str, factor: float) -> str:
     """Returns the extreme values of a curve that neither falls nor rises throughout, with their x,
     in words.
     """
     low, high = (
-        f"{factor * value:.5g} at {_value(x, at)}" for at, value in (found.low, found.high)
+        f"{factor * value:.5g} at {_value(x, at)}" for at, value in (curve.low, curve.high)
     )
     return {MINIMUM: f", {low},", MAXIMUM: f", {high},", UNEVEN: f" between {low} and {high},"}.get(
-        found.course, ""
+        curve.course, ""
     )
 
 
@@ -552,8 +555,8 @@ def _maps(sweep, rows: pd.DataFrame) -> Iterator[tuple[str, pd.DataFrame]]:
 
 
 def _map(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
-    wanted = sweep.figure
-    x, y, colour = (wanted[key] for key in ("x", "y", "colour"))
+    entries = sweep.figure
+    x, y, colour = (entries[key] for key in ("x", "y", "colour"))
     maps, height = list(_maps(sweep, rows)), len(list(_groups(sweep, rows, "panel")))
     # The width of a map follows from the number of its values of x.
     widths = [max(2.5, group[x].nunique()) for _, group in maps[: len(maps) // height]]
@@ -593,8 +596,8 @@ def _map(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
                     pad=1.2,
                 ),
             )
-        if wanted["level"] is not None:
-            level, band = (_quantity(colour).factor * wanted[key] for key in ("level", "band"))
+        if entries["level"] is not None:
+            level, band = (_quantity(colour).factor * entries[key] for key in ("level", "band"))
             alone = cells.shape[1] == 1  # then the lines of the level cross the whole column
             across = [-0.5, 0.5] if alone else np.arange(cells.shape[1])
             drawn = across, np.arange(len(cells)), cells.repeat(2, axis=1) if alone else cells
@@ -615,7 +618,7 @@ def _map(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
         axes.spines[:].set_visible(False)
     plt.setp(grid[-1], xlabel=label(x))
     plt.setp(grid[:, 0], ylabel=label(y))
-    figure.colorbar(picture, ax=grid, label=label(colour, wanted["per"]))
+    figure.colorbar(picture, ax=grid, label=label(colour, entries["per"]))
     return figure
 
 
@@ -632,16 +635,16 @@ def level_set(figure: dict, group: pd.DataFrame) -> dict[float, list[tuple[float
     band and error bar. Between points colour is interpolated linearly in the logarithm of y.
     """
     x, y, colour = (figure[key] for key in ("x", "y", "colour"))
-    found, band = {}, figure["band"] + _typical(group, colour)
+    levels, band = {}, figure["band"] + _typical(group, colour)
     for value, column in group[group.exit == 0].groupby(x):
         column = column.sort_values(y)
         fine = np.geomspace(column[y].iloc[0], column[y].iloc[-1], 2001)
-        found[value] = ranges(
+        levels[value] = ranges(
             fine,
             np.abs(np.interp(np.log(fine), np.log(column[y]), column[colour]) - figure["level"])
             <= band,
         )
-    return found
+    return levels
 
 
 def ranges(values: np.ndarray, holds: np.ndarray) -> list[tuple[float, float]]:
@@ -753,8 +756,10 @@ def distances(
         for y, (b, row) in itertools.product(sweep.figure["y"], runs[1:]):
             a, first = runs[0]
             bars = [
-                distance(_history(sweep, each, out, y, True), _history(sweep, each, out, y, False))
-                for each in (first, row)
+                distance(
+                    _history(sweep, point, out, y, True), _history(sweep, point, out, y, False)
+                )
+                for point in (first, row)
                 if refined
             ]
             yield (
@@ -762,7 +767,7 @@ def distances(
                 y,
                 a,
                 b,
-                distance(*(_history(sweep, each, out, y, refined) for each in (first, row))),
+                distance(*(_history(sweep, point, out, y, refined) for point in (first, row))),
                 max(bars, default=np.nan),
             )
 
@@ -774,5 +779,5 @@ def distance(first: tuple[np.ndarray, np.ndarray], second: tuple[np.ndarray, np.
     t = np.union1d(first[0], second[0])
     if not first[1].any():
         return np.nan
-    a, b = (np.interp(t, *each, left=0, right=0) for each in (first, second))
+    a, b = (np.interp(t, *history, left=0, right=0) for history in (first, second))
     return float(np.sqrt(np.trapezoid((b - a) ** 2, t) / np.trapezoid(a**2, t)))
