@@ -78,13 +78,13 @@ class Case:
     @property
     def finer(self) -> float:
         """The accuracy of the scene over the accuracy for which its mesh and steps are made."""
-        wanted = scene.load(self.scene)
-        return wanted.values["accuracy"] / wanted.description()["accuracy_made"]
+        problem = scene.load(self.scene)
+        return problem.values["accuracy"] / problem.description()["accuracy_made"]
 
-    def sized(self, factor: float, dt: float, **given) -> study.Point:
+    def sized(self, factor: float, dt: float, **entries) -> study.Point:
         """Sizes `factor` times those of peers.sized() and step dt [s], both multiplied by `scale`.
         """
-        return peers.sized(self.scale * factor, dt=float(f"{self.scale * dt:.6g}"), **given)
+        return peers.sized(self.scale * factor, dt=float(f"{self.scale * dt:.6g}"), **entries)
 
 
 BALL = {"law": "neohookean", "nu": 0.45, "speed": 8.0, "penalty": 1.5e10}
@@ -147,9 +147,9 @@ def settings(case: Case, quick: bool) -> dict[str, list[study.Point]]:
             or not case.families}
 
 
-def adaptive(case: Case, accuracies: Iterable[float], **given) -> list[study.Point]:
+def adaptive(case: Case, accuracies: Iterable[float], **entries) -> list[study.Point]:
     """One setting for each of the `accuracies` for which meshes and steps are made."""
-    return [{"accuracy": min(0.4, case.finer * each)} | given for each in accuracies]
+    return [{"accuracy": min(0.4, case.finer * accuracy)} | entries for accuracy in accuracies]
 
 
 def coarse(case: Case) -> dict[str, list[study.Point]]:
@@ -161,7 +161,7 @@ def coarse(case: Case) -> dict[str, list[study.Point]]:
 
 def grid(case: Case) -> dict[str, list[study.Point]]:
     """All settings, by family."""
-    found = {
+    families = {
         "adaptive, P2": adaptive(case, [a for a in (0.05, 0.02, 0.01, 0.005, 0.0025, 0.00125, 0.000625) if a >= case.finest]),
         "adaptive, P1": adaptive(case, (0.02, 0.005, 0.00125, 0.0005), degree=1),
         "fixed step, P2": [case.sized(factor, dt)
@@ -169,9 +169,9 @@ def grid(case: Case) -> dict[str, list[study.Point]]:
         "fixed step, P1": [case.sized(factor, dt, degree=1) for factor, dt in ((1, 5e-5), (0.5, 5e-5), (0.5, 2e-5))],
     }
     for integrator in ("midpoint", "newmark", "backward-euler", "bdf2"):
-        found[integrator] = adaptive(case, [a for a in (0.02, 0.005, 0.00125) if a >= case.finest], integrator=integrator)
-    found["central-difference"] = adaptive(case, (0.02, 0.005), integrator="central-difference")
-    return found
+        families[integrator] = adaptive(case, [a for a in (0.02, 0.005, 0.00125) if a >= case.finest], integrator=integrator)
+    families["central-difference"] = adaptive(case, (0.02, 0.005), integrator="central-difference")
+    return families
 
 
 def references(case: Case, quick: bool) -> list[study.Point]:
@@ -193,30 +193,30 @@ def measure(name: str, out: Path, quick: bool) -> tuple[pd.DataFrame, dict[str, 
     case, folder = CASES[name], out / name
     families = settings(case, quick)
     labels = [(family, point) for family, points in families.items() for point in points]
-    of = CASES[case.like or name]
-    wanted, best_folder = references(of, quick), out / (case.like or name)
-    fine = study.study(wanted, best_folder, {"fields": 0} | of.base, LIMIT, of.scene, cores=1)
+    reference_case = CASES[case.like or name]
+    fine_points, best_folder = references(reference_case, quick), out / (case.like or name)
+    fine = study.study(fine_points, best_folder, {"fields": 0} | reference_case.base, LIMIT, reference_case.scene, cores=1)
     rows = study.study([point for _, point in labels], folder, {"fields": 0} | case.base, LIMIT, case.scene, cores=1)
     if fine.exit.any():
         raise study.Failure(f"bench: the reference of {name} failed: {fine.message[fine.exit != 0].iloc[0]}", code=int(fine.exit.max()))
-    histories = [force_of(study.place(best_folder, point)) for point in wanted]
+    histories = [force_of(study.place(best_folder, point)) for point in fine_points]
     best = fine[list(case.answers)].mean()
     bars = {answer: 50 * abs(fine[answer].iloc[0] - fine[answer].iloc[1]) / abs(best[answer]) for answer in case.answers}
     bars["force"] = 100 * distance(*histories)
-    found = pd.DataFrame({"case": name, "program": "ffimpact", "family": [family for family, _ in labels],
+    table = pd.DataFrame({"case": name, "program": "ffimpact", "family": [family for family, _ in labels],
                           "setting": [_words(point) for _, point in labels], "dofs": rows.dofs, "steps": rows.steps,
                           "seconds": rows.cpu_seconds, "exit": rows.exit, "message": rows.message})
     for answer in case.answers:
-        found[f"{answer}_error"] = 100 * (rows[answer] / best[answer] - 1).abs()
-    found["force_error"] = [100 * distance(histories[0], force_of(study.place(folder, point))) if code == 0 else np.nan
+        table[f"{answer}_error"] = 100 * (rows[answer] / best[answer] - 1).abs()
+    table["force_error"] = [100 * distance(histories[0], force_of(study.place(folder, point))) if code == 0 else np.nan
                             for (_, point), code in zip(labels, rows.exit)]
     if others := (PEERS_QUICK if quick else PEERS).get(name):
         ours = {study.place(folder, point) for (_, point), code in zip(labels, rows.exit) if code == 0}
-        found = pd.concat([found, _peers(case, others, best, histories[0], out / "peers", folder, ours).assign(case=name)],
+        table = pd.concat([table, _peers(case, others, best, histories[0], out / "peers", folder, ours).assign(case=name)],
                           ignore_index=True)
     if case.scene == "disc-block":
-        found = pd.concat([found, _two_bodies(case, best, histories[0], out / "peers", quick).assign(case=name)], ignore_index=True)
-    return found, bars
+        table = pd.concat([table, _two_bodies(case, best, histories[0], out / "peers", quick).assign(case=name)], ignore_index=True)
+    return table, bars
 
 
 def force_of(folder: Path) -> tuple[np.ndarray, np.ndarray]:
@@ -244,12 +244,12 @@ def _peers(case: Case, others: list[tuple], best: pd.Series, force: tuple[np.nda
         history = _history(out, f"{case.scene}-{program}-{form}-{factor:g}-{dt:g}")
         row = {"program": f"{program}, {form}", "family": f"{program}, {form}", "setting": _words(sizes | {"dt": dt})}
         if program == "textbook":
-            found, reason = _textbook(sizes, dt, out), ""
+            output, reason = _textbook(sizes, dt, out), ""
         else:
-            found, reason = peers.run(program, form, sizes["mesh_size"], sizes["contact_mesh_size"], dt, LIMIT, scene=case.scene,
-                                      history=str(history), **case.base)
-        row |= _other(found, reason, best, {answer: answer for answer in ("impulse", "rebound_vy", "contact_time")})
-        if found and history.exists():
+            output, reason = peers.run(program, form, sizes["mesh_size"], sizes["contact_mesh_size"], dt, LIMIT, scene=case.scene,
+                                       history=str(history), **case.base)
+        row |= _other(output, reason, best, {answer: answer for answer in ("impulse", "rebound_vy", "contact_time")})
+        if output and history.exists():
             t, values = np.loadtxt(history, delimiter=",", skiprows=1).T
             row["force_error"] = 100 * distance(force, (t - dt / 2, values))
             if (same := study.place(folder, sizes | {"dt": dt})) in ours:
@@ -266,10 +266,10 @@ def _two_bodies(case: Case, best: pd.Series, force: tuple[np.ndarray, np.ndarray
     rows = []
     for refine in in_turn("NGSolve", REFINEMENTS_QUICK if quick else REFINEMENTS):
         history = _history(out, f"two-bodies-{refine:g}")
-        found, reason = peers.two_bodies(LIMIT, refine=refine, history=str(history), **case.base)
+        output, reason = peers.two_bodies(LIMIT, refine=refine, history=str(history), **case.base)
         rows.append({"program": "ngsolve", "family": "ngsolve, central differences", "setting": f"refine {refine:g}"}
-                    | _other(found, reason, best, NGSOLVE))
-        if found:
+                    | _other(output, reason, best, NGSOLVE))
+        if output:
             rows[-1]["force_error"] = 100 * distance(force, tuple(np.loadtxt(history, delimiter=",", skiprows=1, usecols=(0, 1)).T))
     return pd.DataFrame(rows)
 
@@ -280,24 +280,24 @@ def _history(out: Path, name: str) -> Path:
     return out / f"{name}.csv"
 
 
-def _other(found: dict | None, reason: str, best: pd.Series, answers: dict[str, str]) -> dict:
-    """A row from the output `found` of another program: unknowns, steps, seconds and errors [%].
+def _other(output: dict | None, reason: str, best: pd.Series, answers: dict[str, str]) -> dict:
+    """A row from the `output` of another program: unknowns, steps, seconds and errors [%].
 
-    `answers` maps our names of the results to the names in `found`. If `found` is empty, the row
+    `answers` maps our names of the results to the names in `output`. If `output` is empty, the row
     has the `reason`.
     """
-    if not found:
+    if not output:
         return {"exit": 1, "message": reason}
-    return {"exit": 0, "message": reason, "dofs": found["dofs"], "steps": found["steps"], "seconds": found["cpu_seconds"]} | {
-        f"{ours}_error": 100 * abs(found[theirs] / best[ours] - 1) for ours, theirs in answers.items() if theirs in found}
+    return {"exit": 0, "message": reason, "dofs": output["dofs"], "steps": output["steps"], "seconds": output["cpu_seconds"]} | {
+        f"{ours}_error": 100 * abs(output[theirs] / best[ours] - 1) for ours, theirs in answers.items() if theirs in output}
 
 
 def _textbook(sizes: study.Point, dt: float, out: Path) -> dict:
     """The results of the textbook FreeFEM script on our mesh of these sizes, with step dt [s]."""
-    wanted = scene.load("disc-normal").override(sizes | {"dt": dt, "end_time": 5.2e-3})
+    problem = scene.load("disc-normal").override(sizes | {"dt": dt, "end_time": 5.2e-3})
     path = out / f"textbook-{sizes['mesh_size']:g}.msh"
-    mesh.write(mesh.disc(wanted.values["radius"], sizes["mesh_size"], sizes["contact_mesh_size"], half=True), path)
-    return peers.textbook(wanted, path)
+    mesh.write(mesh.disc(problem.values["radius"], sizes["mesh_size"], sizes["contact_mesh_size"], half=True), path)
+    return peers.textbook(problem, path)
 
 
 # ---- the page
@@ -314,17 +314,17 @@ def page(name: str, rows: pd.DataFrame, bars: dict[str, float]) -> str:
              "reference ± [%]: " + ", ".join(f"{words} {bars[column.removesuffix('_error')]:.2g}" for column, words in columns.items()), "",
              "Cheapest setting [s of processor time]:", ""]
     together = [column for column in columns if "impulse" in column or "rebound" in column]
-    for words, wanted in [("impulse and rebound together", together), *((words, [column]) for column, words in columns.items())]:
-        found = [{words: program} | {f"{level:g} %": cheapest(group, wanted, level) for level in LEVELS}
-                 for program, group in rows.groupby("program", sort=False)]
-        lines += [study.table(pd.DataFrame(found), dict.fromkeys(found[0], "")), ""]
-    asked = {answer: HEADLINE_CONTACT if answer.endswith("contact_time") else HEADLINE for answer in CASES[name].answers
-             if answer != "friction_work"}
-    headline = {f"{answer}_error": level for answer, level in asked.items()}
-    found = [{"program": program, "cheapest": cheapest(group, list(headline), np.array(list(headline.values())))}
-             for program, group in rows.groupby("program", sort=False)]
-    lines += ["At most " + ", ".join(f"{level:g} % in {answer.replace('_', ' ')}" for answer, level in asked.items()) + ":", "",
-              study.table(pd.DataFrame(found), dict.fromkeys(found[0], "")), ""]
+    for words, error_columns in [("impulse and rebound together", together), *((words, [column]) for column, words in columns.items())]:
+        entries = [{words: program} | {f"{level:g} %": cheapest(group, error_columns, level) for level in LEVELS}
+                   for program, group in rows.groupby("program", sort=False)]
+        lines += [study.table(pd.DataFrame(entries), dict.fromkeys(entries[0], "")), ""]
+    limits = {answer: HEADLINE_CONTACT if answer.endswith("contact_time") else HEADLINE for answer in CASES[name].answers
+              if answer != "friction_work"}
+    headline = {f"{answer}_error": level for answer, level in limits.items()}
+    entries = [{"program": program, "cheapest": cheapest(group, list(headline), np.array(list(headline.values())))}
+               for program, group in rows.groupby("program", sort=False)]
+    lines += ["At most " + ", ".join(f"{level:g} % in {answer.replace('_', ' ')}" for answer, level in limits.items()) + ":", "",
+              study.table(pd.DataFrame(entries), dict.fromkeys(entries[0], "")), ""]
     if "force_from_ours" in rows and rows.force_from_ours.notna().any():
         lines += ["Force history against that of our run with the same sizes and step, in % (L2; GetFEM takes our mesh, NGSolve makes its "
                   "own):", "",

@@ -82,8 +82,8 @@ def compare(cases: list[study.Point], accuracies: tuple[float, ...], out: Path) 
     references = study.study(finer, out / "finer", OPEN, LIMIT, "disc-block")
     rows = []
     for k, case in enumerate(cases):
-        found = [*runs.iloc[k * len(accuracies):(k + 1) * len(accuracies)].iterrows(), (None, references.iloc[k])]
-        rows += [case | row(run, accuracy) for (_, run), accuracy in zip(found, (*accuracies, REFERENCE))]
+        entries = [*runs.iloc[k * len(accuracies):(k + 1) * len(accuracies)].iterrows(), (None, references.iloc[k])]
+        rows += [case | row(run, accuracy) for (_, run), accuracy in zip(entries, (*accuracies, REFERENCE))]
     return pd.DataFrame(rows).reindex(columns=[*CASES[0], "accuracy", "dofs", "steps", "seconds", *ANSWERS, "momentum",
                                                "energy drift", "message"])
 
@@ -94,10 +94,10 @@ def row(run: Mapping[str, Value], accuracy: float | str) -> dict:
     if run["exit"] != 0:
         return {"accuracy": accuracy, "message": run["message"]}
     disc, block = (run["mass_1"], run["rebound_vy_1"]), (run["mass_2"], run["rebound_vy_2"])
-    found = answers(disc, block, (run["vibration_energy_1"], run["vibration_energy_2"]), run["energy_initial"],
-                    (run["thresholded_contact_time"], run["contact_time"]))
+    results = answers(disc, block, (run["vibration_energy_1"], run["vibration_energy_2"]), run["energy_initial"],
+                      (run["thresholded_contact_time"], run["contact_time"]))
     missing = sum(mass * v for mass, v in (disc, block)) / (disc[0] * SPEED) + 1
-    return {"accuracy": accuracy, "dofs": run["dofs"], "steps": run["steps"], "seconds": run["cpu_seconds"]} | found | {
+    return {"accuracy": accuracy, "dofs": run["dofs"], "steps": run["steps"], "seconds": run["cpu_seconds"]} | results | {
         "momentum": abs(missing), "energy drift": run["energy_drift"], "message": ""}
 
 
@@ -120,31 +120,31 @@ def ask_peer(cases: list[study.Point]) -> tuple[pd.DataFrame, str]:
     """
     rows, reason = [], "none of its cases is among these" if not cases else ""
     for case, refine in in_turn("NGSolve", itertools.product(cases, REFINEMENTS)):
-        found, reason = peers.two_bodies(LIMIT, refine=refine, speed=SPEED, **case)
-        if not found:
+        output, reason = peers.two_bodies(LIMIT, refine=refine, speed=SPEED, **case)
+        if not output:
             break
-        bodies = [(found[f"mass_{body}"], found[f"velocity_{body}"]) for body in ("upper", "lower")]
-        rows.append(case | {"refine": refine, "dofs": found["dofs"], "steps": found["steps"], "seconds": found["cpu_seconds"]
-                            + found["setup_seconds"]}
-                    | answers(*bodies, (found["vibration_upper"], found["vibration_lower"]), found["energy_start"],
-                              (found["contact_time_1_percent"], found["contact_time"])))
+        bodies = [(output[f"mass_{body}"], output[f"velocity_{body}"]) for body in ("upper", "lower")]
+        rows.append(case | {"refine": refine, "dofs": output["dofs"], "steps": output["steps"], "seconds": output["cpu_seconds"]
+                            + output["setup_seconds"]}
+                    | answers(*bodies, (output["vibration_upper"], output["vibration_lower"]), output["energy_start"],
+                              (output["contact_time_1_percent"], output["contact_time"])))
     return pd.DataFrame(rows, columns=[*CASES[0], "refine", "dofs", "steps", "seconds", *ANSWERS]), reason
 
 
 def violations(table: pd.DataFrame) -> list[str]:
     """A sentence for each check that a run fails. A check with a missing number fails."""
-    found = []
+    sentences = []
     for _, run in table.iterrows():
         if run.message:
-            found.append(f"{words(run)}: no answer: {run.message}")
+            sentences.append(f"{words(run)}: no answer: {run.message}")
             continue
         v_disc, v_block = run[list(VELOCITIES)]
         checks = {f"the block's velocity {v_block:.4f} m/s is not between {BLOCK[0]} and {BLOCK[1]}": BLOCK[0] < v_block < BLOCK[1],
                   f"the disc does not rebound: {v_disc:.4f} m/s": v_disc > 0,
                   f"momentum changes by {run.momentum:.1e}, more than {MOMENTUM:g}": run.momentum <= MOMENTUM,
                   f"energy drifts by {run['energy drift']:.1e}, not below {ENERGY:g}": run["energy drift"] < ENERGY}
-        found += [f"{words(run)}: {sentence}" for sentence, holds in checks.items() if not holds]
-    return found
+        sentences += [f"{words(run)}: {sentence}" for sentence, holds in checks.items() if not holds]
+    return sentences
 
 
 def words(run: Mapping[str, Value]) -> str:
@@ -189,12 +189,12 @@ def disagreements(ours: pd.DataFrame, theirs: pd.DataFrame) -> list[str]:
 
     Both tables hold error bars, as with_bars() returns them.
     """
-    found = []
+    sentences = []
     for _, other in theirs.iterrows():
         own = ours[(ours[list(CASES[0])] == other[list(CASES[0])]).all(axis=1)].iloc[0]
-        found += [f"{words(other)}: {answer}: ours {bar(own, answer)}, NGSolve {bar(other, answer)}" for answer in ANSWERS
-                  if not abs(own[answer] - other[answer]) <= own[f"{answer} bar"] + other[f"{answer} bar"]]
-    return found
+        sentences += [f"{words(other)}: {answer}: ours {bar(own, answer)}, NGSolve {bar(other, answer)}" for answer in ANSWERS
+                      if not abs(own[answer] - other[answer]) <= own[f"{answer} bar"] + other[f"{answer} bar"]]
+    return sentences
 
 
 def bar(values: Mapping[str, Value], answer: str) -> str:

@@ -48,30 +48,30 @@ def mixture(seed: int, count: int) -> list[tuple[str, Point]]:
 
     Some scenes have friction. The kinds of scenes are spread evenly over the list.
     """
-    found = []
+    entries = []
     for scene, (share, accuracies) in MIXTURE.items():
         chance = random.Random(f"{seed} {scene}")
         many = max(1, round(count * share / 60))
         for k in range(many):
             point = SCENES[scene](chance, _scene(chance, False))
-            found.append(((k + 0.5) / many, scene, point | {"accuracy": chance.choice(accuracies)}))
-    return [(scene, point) for _, scene, point in sorted(found, key=lambda one: one[0])]
+            entries.append(((k + 0.5) / many, scene, point | {"accuracy": chance.choice(accuracies)}))
+    return [(scene, point) for _, scene, point in sorted(entries, key=lambda entry: entry[0])]
 
 
-def coarse(seed: int, count: int, asked: Sequence[float] = COARSE) -> list[tuple[str, Point]]:
+def coarse(seed: int, count: int, accuracies: Sequence[float] = COARSE) -> list[tuple[str, Point]]:
     """`count` discs and balls of revolution in turn, drawn as in draw(), at each accuracy in
-    `asked`.
+    `accuracies`.
 
     A fifth of them is nearly incompressible.
     """
-    chance, found = random.Random(f"{seed} coarse"), []
+    chance, entries = random.Random(f"{seed} coarse"), []
     for k in range(count):
         scene = ("disc-normal", "ball-axisymmetric")[k % 2]
         point = SCENES[scene](chance, _scene(chance, False))
         if chance.random() < 0.2:
             point["nu"] = chance.choice([0.48, 0.49, 0.499, 0.4999])
-        found.append((scene, point | {"accuracy": asked[k // 2 % len(asked)]}))
-    return found
+        entries.append((scene, point | {"accuracy": accuracies[k // 2 % len(accuracies)]}))
+    return entries
 
 
 def _on_plane(chance: random.Random, point: Point) -> Point:
@@ -95,30 +95,30 @@ def _on_another(chance: random.Random, point: Point) -> Point:
     radius, speed, other = point["radius"], point["speed"], point["radius"] * chance.choice([0.5, 1, 1, 2])
     apart, off = radius + other, chance.choice([0, 0.2, 0.4, 0.6]) * (radius + other)
     drift = [_round(chance.uniform(-2, 2) * speed) for _ in "xy"]
-    found = {name: point[name] for name in ("law", "young", "density", "nu")}
-    found |= {"body.1.radius": radius, "body.2.radius": other, "body.1.position": [0.0, 0.0],
-              "body.2.position": [_round(1.05 * apart), _round(off)], "body.1.velocity": [speed + drift[0], drift[1]],
-              "body.2.velocity": drift}
+    overrides = {name: point[name] for name in ("law", "young", "density", "nu")}
+    overrides |= {"body.1.radius": radius, "body.2.radius": other, "body.1.position": [0.0, 0.0],
+                  "body.2.position": [_round(1.05 * apart), _round(off)], "body.1.velocity": [speed + drift[0], drift[1]],
+                  "body.2.velocity": drift}
     if chance.random() < 0.3:
-        found["body.2.young"] = 10 * point["young"]
+        overrides["body.2.young"] = 10 * point["young"]
     if "spin" in point:
-        found["body.1.spin"] = point["spin"]
+        overrides["body.1.spin"] = point["spin"]
     contact = {"friction_static": 0.0, "friction_dynamic": 0.0} | {
         name: point[name] for name in ("friction_static", "friction_dynamic", "exponent") if name in point}
-    return found | {f"contact.{name}": value for name, value in contact.items()}
+    return overrides | {f"contact.{name}": value for name, value in contact.items()}
 
 
 def _on_corner(chance: random.Random, point: Point) -> Point:
     """A square or rectangular block that falls on one of its corners."""
     width, height, speed = 2 * point["radius"], 2 * point["radius"] * chance.choice([0.3, 0.6, 1]), min(
         point["speed"], FASTEST_CORNER * bar_speed(point["young"], point["density"]))
-    found = {name: point[name] for name in ("law", "young", "density", "nu", "accuracy") if name in point}
-    found |= {"body.1.width": width, "body.1.height": height, "body.1.angle": _round(chance.uniform(10, 80)),
-              "body.1.position": [0.0, _round(0.51 * (width**2 + height**2) ** 0.5)],
-              "body.1.velocity": [_round(chance.choice([0, 0.5, 1]) * speed), -_round(speed)]}
+    overrides = {name: point[name] for name in ("law", "young", "density", "nu", "accuracy") if name in point}
+    overrides |= {"body.1.width": width, "body.1.height": height, "body.1.angle": _round(chance.uniform(10, 80)),
+                  "body.1.position": [0.0, _round(0.51 * (width**2 + height**2) ** 0.5)],
+                  "body.1.velocity": [_round(chance.choice([0, 0.5, 1]) * speed), -_round(speed)]}
     contact = {"friction_static": 0.0, "friction_dynamic": 0.0} | {
         name: point[name] for name in ("friction_static", "friction_dynamic", "exponent") if name in point}
-    return found | {f"contact.{name}": value for name, value in contact.items()}
+    return overrides | {f"contact.{name}": value for name, value in contact.items()}
 
 
 def _in_space(chance: random.Random, point: Point) -> Point:
@@ -134,9 +134,9 @@ SCENES = {"disc-normal": _on_plane, "disc-block": _on_block, "ball-axisymmetric"
 def words(point: Point) -> str:
     """A scene as a line of a table: law, material, speed over c and unusual entries."""
     named = {value[:2]: name for name, value in MATERIALS.items()}
-    known = point["nu"] == MATERIALS[named[point["young"], point["density"]]][2]
-    told = {"law", "young", "density", "nu" if known else "", "speed", "friction_static", "friction_dynamic", "body.1.position",
-            "body.1.velocity", "body.2.velocity"}
+    is_usual = point["nu"] == MATERIALS[named[point["young"], point["density"]]][2]
+    names = {"law", "young", "density", "nu" if is_usual else "", "speed", "friction_static", "friction_dynamic", "body.1.position",
+             "body.1.velocity", "body.2.velocity"}
     point = {name.removeprefix("contact."): value for name, value in point.items()}
     if "speed" in point:
         speed = point["speed"]
@@ -149,7 +149,7 @@ def words(point: Point) -> str:
     if point.get("friction_static"):
         parts.append(f"friction {point['friction_static']:g}, {point['friction_dynamic']:g}")
     return ", ".join(parts + [f"{name} {value:g}" if isinstance(value, float) else f"{name} {value}" for name, value in point.items()
-                              if name not in told])
+                              if name not in names])
 
 
 def _scene(chance: random.Random, hard: bool) -> Point:
@@ -214,7 +214,7 @@ FLAT_NU = (0.0, 0.0, 0.1, 0.2, 0.3, 0.4, 0.45, 0.49)
 def flat(seed: int, count: int) -> list[tuple[str, Point]]:
     """About `count` bodies whose faces strike planes or each other flat, in all dimensions, as
     scene and overrides."""
-    found = []
+    entries = []
     for scene, (share, accuracies) in FLAT_MIXTURE.items():
         chance = random.Random(f"{seed} {scene}")
         many = max(1, round(count * share / 60))
@@ -225,8 +225,8 @@ def flat(seed: int, count: int) -> list[tuple[str, Point]]:
                      "accuracy": chance.choice(accuracies)}
             point |= {name: value if isinstance(value, list) else float(f"{value:.3g}") for name, value in
                       FLAT_SHAPES[scene](chance, speed).items()}
-            found.append(((k + 0.5) / many, scene, point))
-    return [(scene, point) for _, scene, point in sorted(found, key=lambda one: one[0])]
+            entries.append(((k + 0.5) / many, scene, point))
+    return [(scene, point) for _, scene, point in sorted(entries, key=lambda entry: entry[0])]
 
 
 def _block(chance: random.Random, speed: float) -> Point:
@@ -276,7 +276,7 @@ FASTEST_HELD = 0.06  # upper bound of the speed over sqrt(E/density)
 def held(seed: int, count: int) -> list[tuple[str, Point]]:
     """About `count` scenes with supports, loads, rigid bodies and moving obstacles, as scene and
     overrides."""
-    found = []
+    entries = []
     for scene, share in HELD_MIXTURE.items():
         chance = random.Random(f"{seed} {scene}")
         many = max(1, round(count * share / 60))
@@ -287,8 +287,8 @@ def held(seed: int, count: int) -> list[tuple[str, Point]]:
                      "accuracy": chance.choice(HELD_ACCURACIES)}
             shape = HELD_SHAPES[scene](chance, speed, bar_speed(young, density), point)
             point |= {name: _round(value) if isinstance(value, float) else value for name, value in shape.items()}
-            found.append(((k + 0.5) / many, scene, point))
-    return [(scene, point) for _, scene, point in sorted(found, key=lambda one: one[0])]
+            entries.append(((k + 0.5) / many, scene, point))
+    return [(scene, point) for _, scene, point in sorted(entries, key=lambda entry: entry[0])]
 
 
 def _weight(chance: random.Random, speed: float, c: float, material: Point) -> Point:

@@ -42,7 +42,7 @@ Measured = dict[str, float]  # results of a run by name
 class Case:
     """An impact that all programs solve.
 
-    title: heading; scene: built-in scene; given: its entries; speed: impact speed [m/s]
+    title: heading; scene: built-in scene; entries: entries set in it; speed: impact speed [m/s]
     answers: for each result, its name in our output, its name in theirs, and the value to which its
         error is relative (None: the result itself)
     settings: settings by program, from coarse to fine
@@ -54,7 +54,7 @@ class Case:
 
     title: str
     scene: str
-    given: study.Point
+    entries: study.Point
     speed: float
     answers: dict[str, tuple[str, str, float | None]]
     settings: dict[str, list]
@@ -62,8 +62,8 @@ class Case:
     theirs: study.Point = field(default_factory=dict)
 
 
-def accuracies(*values: float, **given: Value) -> list[study.Point]:
-    return [{"accuracy": value} | given for value in values]
+def accuracies(*values: float, **entries: Value) -> list[study.Point]:
+    return [{"accuracy": value} | entries for value in values]
 
 
 def sizes(*pairs: tuple[float, float]) -> list[study.Point]:
@@ -177,10 +177,10 @@ def in_files(tables: list[pd.DataFrame], references: list[pd.DataFrame],
     first = ["case", "program", "setting", "dofs", "steps", *SECONDS.values()]
     answers = [name for name in rows if name.endswith(" %")]
     best = []
-    for one in tables:
-        for program, level in itertools.product(one.program.unique(), LEVELS):
-            if (row := safe(one, program, level)) is not None:
-                best.append({"case": one["case"].iloc[0], "program": program, "level %": level,
+    for table in tables:
+        for program, level in itertools.product(table.program.unique(), LEVELS):
+            if (row := safe(table, program, level)) is not None:
+                best.append({"case": table["case"].iloc[0], "program": program, "level %": level,
                              "march": row.cpu_seconds, "process": row.process_seconds, "setting": row.setting})
     quicker = []
     for name, levels in ratios.items():
@@ -188,12 +188,12 @@ def in_files(tables: list[pd.DataFrame], references: list[pd.DataFrame],
         for level, (march, process) in levels.items():
             row |= {f"{level:g} %, march": march, f"{level:g} %, process": process}
         quicker.append(row)
-    found = {"": rows.reindex(columns=[*first, *answers, "error", "message"]),
+    files = {"": rows.reindex(columns=[*first, *answers, "error", "message"]),
              "levels": pd.DataFrame(best), "ratios": pd.DataFrame(quicker)}
     agreeing = pd.concat(references)
     if agreeing.empty:
-        return found
-    return found | {"references": agreeing[["case", *agreeing.columns.drop("case")]]}
+        return files
+    return files | {"references": agreeing[["case", *agreeing.columns.drop("case")]]}
 
 
 # ---- the measurement
@@ -204,23 +204,23 @@ def measure(case: Case) -> tuple[pd.DataFrame, pd.DataFrame]:
     A setting has program, words, seconds and errors [%]. A reference has its values, error bars [%]
     and whether they agree. Raises study.Failure if our reference run fails.
     """
-    found, rows = {}, []
+    outputs, rows = {}, []
     for program, points in case.settings.items():
         for point in points:
             got, reason = least(case, program, point)
-            found[program, words(point)] = got
+            outputs[program, words(point)] = got
             rows.append({"program": program, "setting": words(point), "exit": int(got is None), "message": reason})
             if "not installed" in reason:
                 break
     fine = {}
     for program, points in case.finest.items():
-        runs = [found.get((program, words(case.settings[program][-1])))]
+        runs = [outputs.get((program, words(case.settings[program][-1])))]
         runs += [runs[0] and once(case, program, point)[0] for point in points]
-        fine[program] = [answers(case, program, each) for each in runs]
+        fine[program] = [answers(case, program, output) for output in runs]
     if None in fine[OURS]:
         raise study.Failure(f"equal-errors: the reference of {case.title} failed", code=11)
     for row in rows:
-        if of_it := found[row["program"], row["setting"]]:
+        if of_it := outputs[row["program"], row["setting"]]:
             row |= {name: of_it[name] for name in ("dofs", "steps", *SECONDS)}
             row |= errors(case, answers(case, row["program"], of_it), fine[OURS][-1])
     return pd.DataFrame(rows), compare(case, fine)
@@ -229,33 +229,34 @@ def measure(case: Case) -> tuple[pd.DataFrame, pd.DataFrame]:
 def once(case: Case, program: str, point: study.Point) -> tuple[Found | None, str]:
     """The output of a program at a setting, and the reason if there is none."""
     if program in OWN:
-        return peers.ours(LIMIT, case.scene, fields=0, **case.given, **point)
+        return peers.ours(LIMIT, case.scene, fields=0, **case.entries, **point)
     if case.scene == "disc-block":
-        return peers.two_bodies(LIMIT, **case.given, **point)
+        return peers.two_bodies(LIMIT, **case.entries, **point)
     form = "plain" if program in (USUAL, GETFEM_USUAL) else "tuned"
-    return peers.run(program.split(",")[0], form, limit=LIMIT, scene=case.scene, tolerance=TOLERANCE, **case.given, **case.theirs, **point)
+    return peers.run(program.split(",")[0], form, limit=LIMIT, scene=case.scene, tolerance=TOLERANCE,
+                     **case.entries, **case.theirs, **point)
 
 
 def least(case: Case, program: str, point: study.Point) -> tuple[Found | None, str]:
     """As once(), with the least times of REPEATS runs, or of one run if it takes longer than LONG.
     """
-    found, reason = once(case, program, point)
-    for _ in range(REPEATS - 1 if found and found["process_seconds"] <= LONG else 0):
+    output, reason = once(case, program, point)
+    for _ in range(REPEATS - 1 if output and output["process_seconds"] <= LONG else 0):
         again, _ = once(case, program, point)
-        found |= {name: min(found[name], again[name]) for name in SECONDS}
-    return found, reason
+        output |= {name: min(output[name], again[name]) for name in SECONDS}
+    return output, reason
 
 
-def answers(case: Case, program: str, found: Found | None) -> Measured | None:
+def answers(case: Case, program: str, output: Found | None) -> Measured | None:
     """The results by name from the output of a program."""
-    return found and {answer: found[ours if program in OWN else theirs] for answer, (ours, theirs, _) in case.answers.items()}
+    return output and {answer: output[ours if program in OWN else theirs] for answer, (ours, theirs, _) in case.answers.items()}
 
 
 def errors(case: Case, measured: Measured, reference: Measured) -> dict[str, float]:
     """The error [%] of each result, and the largest of them."""
-    found = {f"{answer} %": 100 * abs(measured[answer] - reference[answer]) / (unit or abs(reference[answer]))
-             for answer, (*_, unit) in case.answers.items()}
-    return found | {"error": max(found.values())}
+    percentages = {f"{answer} %": 100 * abs(measured[answer] - reference[answer]) / (unit or abs(reference[answer]))
+                   for answer, (*_, unit) in case.answers.items()}
+    return percentages | {"error": max(percentages.values())}
 
 
 def compare(case: Case, fine: dict[str, list[Measured | None]]) -> pd.DataFrame:
@@ -301,26 +302,26 @@ def beside(rows: pd.DataFrame) -> dict[float, tuple[float, float]]:
 
     The ratio is nan if our program or all others do not reach the level.
     """
-    found = {}
+    ratios = {}
     for level in LEVELS:
         ours = safe(rows, OURS, level)
         theirs = [best for program in rows.program.unique() if program not in OWN and (best := safe(rows, program, level)) is not None]
-        found[level] = tuple(min((best[name] for best in theirs), default=math.nan) / (math.nan if ours is None else ours[name])
-                             for name in ("cpu_seconds", "process_seconds"))
-    return found
+        ratios[level] = tuple(min((best[name] for best in theirs), default=math.nan) / (math.nan if ours is None else ours[name])
+                              for name in ("cpu_seconds", "process_seconds"))
+    return ratios
 
 
 def verdict(agreed: dict[str, bool], ratios: dict[str, dict[float, tuple[float, float]]]) -> str:
     """The last paragraph: agreement of the references and the fastest program."""
     without = [name for name, agrees in agreed.items() if not agrees]
-    pairs = [pair for each in ratios.values() for pair in each.values() if not math.isnan(pair[0])]
+    pairs = [pair for levels in ratios.values() for pair in levels.values() if not math.isnan(pair[0])]
     quicker = [sum(pair[which] > 1 for pair in pairs) for which in (0, 1)]
-    each = "; ".join(f"{name} " + ", ".join(f"{level:g} %: " + ("-" if math.isnan(march) else f"{march:.1f} / {process:.1f}")
-                                            for level, (march, process) in of.items()) for name, of in ratios.items())
+    details = "; ".join(f"{name} " + ", ".join(f"{level:g} %: " + ("-" if math.isnan(march) else f"{march:.1f} / {process:.1f}")
+                                               for level, (march, process) in levels.items()) for name, levels in ratios.items())
     return (f"The references of both programs agree within their bars in {len(agreed) - len(without)} of {len(agreed)} cases"
             + f" (not: {', '.join(without)})" * bool(without)
             + f". Our time integration is the quickest in {quicker[0]} of {len(pairs)} comparisons, our whole process "
-            f"in {quicker[1]}. The quickest other over ours, march / process: {each}.")
+            f"in {quicker[1]}. The quickest other over ours, march / process: {details}.")
 
 
 def text(case: Case, rows: pd.DataFrame, reference: pd.DataFrame) -> str:

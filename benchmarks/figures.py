@@ -39,10 +39,10 @@ def promise(tables: Tables, path: Path) -> None:
     kinds = rows.scene.str.partition(":")[0]
     ends = np.array([SMALLEST / 2, 2 * np.nanmax([rows.error.max(), rows.estimated.max()])])
     for kind, colour in zip(kinds.unique(), [*COLOURS, *COLOURS]):
-        one = rows[kinds == kind]
+        group = rows[kinds == kind]
         errors.plot(
-            one.estimated.clip(SMALLEST),
-            one.error.clip(SMALLEST),
+            group.estimated.clip(SMALLEST),
+            group.error.clip(SMALLEST),
             "o",
             color=colour,
             markersize=3,
@@ -106,14 +106,14 @@ def bench(tables: Tables, path: Path) -> None:
     colours = dict(zip(rows.program.unique(), COLOURS))
     for column, case in zip(grid.T, cases):
         for panel, name in zip(column, ("march", "process")):
-            for program, one in rows[(rows.case == case) & rows.error.notna()].groupby(
+            for program, group in rows[(rows.case == case) & rows.error.notna()].groupby(
                 "program", sort=False
             ):
                 # Settings go from coarse to fine.
-                kept = np.maximum.accumulate(one.error.to_numpy()[::-1])[::-1]
+                kept = np.maximum.accumulate(group.error.to_numpy()[::-1])[::-1]
                 panel.loglog(
                     kept.clip(SMALLEST),
-                    one[name],
+                    group[name],
                     "o-",
                     color=colours[program],
                     markersize=3,
@@ -151,21 +151,21 @@ def disc_block(tables: Tables, path: Path) -> None:
         "contact >1% ms": "contact above 1 % of the peak [ms]",
     }
     sets = [
-        (f"k = {penalty:.0e} Pa/m", one, shift, colour, "o")
-        for (penalty, one), shift, colour in zip(
+        (f"k = {penalty:.0e} Pa/m", group, shift, colour, "o")
+        for (penalty, group), shift, colour in zip(
             rows.groupby("penalty"), (-0.12, 0.12), (BLUE, ORANGE)
         )
     ]
     for panel, (name, words) in zip(panels, answers.items()):
-        for label, one, shift, colour, mark in [
+        for label, table, shift, colour, mark in [
             *sets,
             ("NGSolve, k = 1e+09 Pa/m", other, 0, GREEN, "D"),
         ]:
-            x = [places[law, nu] + shift for law, nu in zip(one.law, one.nu)]
+            x = [places[law, nu] + shift for law, nu in zip(table.law, table.nu)]
             panel.errorbar(
                 x,
-                one[name],
-                one[f"{name} bar"],
+                table[name],
+                table[f"{name} bar"],
                 fmt=mark,
                 color=colour,
                 markersize=3.5,
@@ -192,16 +192,16 @@ def pairing(tables: Tables, path: Path) -> None:
     rows = tables[""]
     figure, (differ, cost) = plt.subplots(1, 2, figsize=(9, 3.6))
     ranged = rows[rows["epsilon/h"].notna() & (rows["k/k0"] == 1)].sort_values("epsilon/h")
-    for ((law, mesh, kind), one), colour in zip(
+    for ((law, mesh, kind), group), colour in zip(
         ranged.groupby(["law", "mesh", "pairing"], sort=False), COLOURS
     ):
         label = (
             f"{LAWS.get(law, law)}, {mesh} mesh{', as printed' if kind.endswith('printed') else ''}"
         )
         differ.loglog(
-            one["epsilon/h"], one["differ [%]"], "o-", color=colour, markersize=4, label=label
+            group["epsilon/h"], group["differ [%]"], "o-", color=colour, markersize=4, label=label
         )
-        cost.semilogx(one["epsilon/h"], one["CPU [s]"], "o-", color=colour, markersize=4)
+        cost.semilogx(group["epsilon/h"], group["CPU [s]"], "o-", color=colour, markersize=4)
     nearest = rows[(rows.pairing == "closest-point") & (rows["k/k0"] == 1)]
     for mesh, style in (("usual", DASHED), ("finer", ":")):
         value = nearest[nearest.mesh == mesh]["CPU [s]"].mean()

@@ -99,28 +99,28 @@ def numbers(name: str, text: str, low: float, high: float) -> list[float]:
     Raises BadInput unless each number is between `low` and `high`, all differ and there are at most
     MANY.
     """
-    found = []
-    for each in text.split(","):
+    values = []
+    for word in text.split(","):
         try:
-            number = float(each)
+            number = float(word)
         except ValueError:
             number = math.nan
-        if not low <= number <= high or number in found or len(found) == MANY:
-            why = "is given twice" if number in found else f"is one more than {MANY}" if len(found) == MANY else "is not accepted"
-            raise BadInput(f"{name}: '{each.strip()}' {why} (accepted: numbers from {low:g} to {high:g}, each once, with commas "
+        if not low <= number <= high or number in values or len(values) == MANY:
+            why = "is given twice" if number in values else f"is one more than {MANY}" if len(values) == MANY else "is not accepted"
+            raise BadInput(f"{name}: '{word.strip()}' {why} (accepted: numbers from {low:g} to {high:g}, each once, with commas "
                            f"between them)")
-        found.append(number)
-    return sorted(found)
+        values.append(number)
+    return sorted(values)
 
 
-def words(name: str, text: str, known: list[str]) -> list[str]:
-    """The words of a comma-separated list in the order of `known`. Raises BadInput for any other
+def words(name: str, text: str, accepted: list[str]) -> list[str]:
+    """The words of a comma-separated list in the order of `accepted`. Raises BadInput for any other
     word."""
-    given = [each.strip() for each in text.split(",")]
-    for each in given:
-        if each not in known:
-            raise BadInput(f"{name}: {unknown(each, known, ', ').removesuffix(')')}, with commas between them)")
-    return [each for each in known if each in given]
+    entries = [word.strip() for word in text.split(",")]
+    for word in entries:
+        if word not in accepted:
+            raise BadInput(f"{name}: {unknown(word, accepted, ', ').removesuffix(')')}, with commas between them)")
+    return [word for word in accepted if word in entries]
 
 
 # ---- the runs
@@ -140,8 +140,8 @@ def impacts(body: str, kind: str, friction: float, angles: list[float], out: Pat
     for angle, (_, run), (_, other) in zip(angles, fine.iterrows(), coarse.iterrows()):
         row = {"body": body, "kind": kind, "friction": friction, "angle": angle, "speed": base["speed"],
                "psi_1": number(1 / math.tan(math.radians(angle)), friction)}
-        found, beside = (measured(each, row) if each.exit == 0 else dict.fromkeys(MEASURED, math.nan) for each in (run, other))
-        row |= found | {f"{name}_error": abs(found[name] - beside[name]) for name in MEASURED}
+        results, beside = (measured(series, row) if series.exit == 0 else dict.fromkeys(MEASURED, math.nan) for series in (run, other))
+        row |= results | {f"{name}_error": abs(results[name] - beside[name]) for name in MEASURED}
         rows.append(row | {"exit": run.exit, "message": run.message, "warnings": run.warnings,
                            "seconds": run.get("cpu_seconds", math.nan) + other.get("cpu_seconds", math.nan)})
     return pd.DataFrame(rows)
@@ -150,7 +150,7 @@ def impacts(body: str, kind: str, friction: float, angles: list[float], out: Pat
 def measured(run: pd.Series, row: dict) -> dict[str, float]:
     """The results of a finished run: normal restitution (e), tangential restitution (along) of the
     centre, and psi_2."""
-    before, across = (row["speed"] * of(math.radians(row["angle"])) for of in (math.cos, math.sin))
+    before, across = (row["speed"] * function(math.radians(row["angle"])) for function in (math.cos, math.sin))
     slip = run.rebound_vx + RADIUS * run.rebound_spin
     return {"e": run.rebound_vy / across, "along": run.rebound_vx / before, "psi_2": number(slip / across, row["friction"])}
 
@@ -246,14 +246,14 @@ def report(table: pd.DataFrame) -> str:
               for row in table[failed].itertuples()]
     lines += [f"- {body}, {kind}: {'; '.join(findings(body, kind, group))}."
               for (body, kind), group in table[~failed].groupby(["body", "kind"], sort=False)]
-    if found := study.warned(table.warnings):
-        lines.append(f"- Warnings: {found}.")
+    if warnings := study.warned(table.warnings):
+        lines.append(f"- Warnings: {warnings}.")
     if "disc" in set(table.body):
         lines.append("- No theory of an elastic disc that sticks is known to us: the model of independent springs holds for axisymmetric "
                      "contacts alone, and the approach of a\n  half-plane depends on the point it is measured from. A disc that slides "
                      "throughout loses what friction in one direction takes, as the ball does.")
-    agree, partly, asked = (table.verdict == "agrees").sum(), (table.verdict == "partly").sum(), table["asked [%]"].notna().sum()
-    lines += ["", f"{agree} of {asked} runs with a theory agree with it to {100 * ASKED:g} % of the lost slip. "
+    agree, partly, total = (table.verdict == "agrees").sum(), (table.verdict == "partly").sum(), table["asked [%]"].notna().sum()
+    lines += ["", f"{agree} of {total} runs with a theory agree with it to {100 * ASKED:g} % of the lost slip. "
                   f"{partly} agree partly: slow balls that",
               f"stick, within {FINITE:g} times contact radius over ball radius more, since a ball is not a half-space. "
               f"The requirement {'holds' if holds(table) else 'FAILS'}."]
@@ -264,14 +264,14 @@ def findings(body: str, kind: str, group: pd.DataFrame) -> list[str]:
     """Ranges of restitution, of the deviations from theory and of psi_2 over the finished runs of a
     body and kind."""
     slides = slides_throughout(group.psi_1, NU, INERTIA[body])
-    found = [f"e {group.e.min():.3f} to {group.e.max():.3f}"]
+    facts = [f"e {group.e.min():.3f} to {group.e.max():.3f}"]
     for where, part in (("beyond psi_1 = 4 chi - 1", group[slides]), ("below", group[~slides])):
         name = "rigid" if kind == "stiff" or part.elastic.isna().all() else "elastic"
         if len(part):
             off = part[f"off {name} [%]"]
-            found.append(f"{where} off {name} theory by {off.min():+.1f} to {off.max():+.1f} %")
+            facts.append(f"{where} off {name} theory by {off.min():+.1f} to {off.max():+.1f} %")
     recoil = group.psi_2.min()
-    return found + [f"psi_2 down to {recoil:.2f}"]
+    return facts + [f"psi_2 down to {recoil:.2f}"]
 
 
 def draw(table: pd.DataFrame, path: Path) -> None:

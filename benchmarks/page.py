@@ -80,7 +80,7 @@ def place(path: Path, name: str) -> Path:
 def draw(path: Path, command: str) -> None:
     """Draws the figure of a page from its CSV files."""
     tables = {
-        one.stem.removeprefix(path.stem).removeprefix("-"): pd.read_csv(one) for one in files(path)
+        file.stem.removeprefix(path.stem).removeprefix("-"): pd.read_csv(file) for file in files(path)
     }
     figures.draw(command, tables, path.with_suffix(".svg"))
 
@@ -88,12 +88,12 @@ def draw(path: Path, command: str) -> None:
 def files(path: Path) -> list[Path]:
     """The CSV files of a page, without those of pages whose names begin with the name of this page."""
     pages = sorted(
-        {path.stem, *(one.stem for one in path.parent.glob("*.md"))}, key=len, reverse=True
+        {path.stem, *(file.stem for file in path.parent.glob("*.md"))}, key=len, reverse=True
     )
     return [
-        one
-        for one in sorted(path.parent.glob(f"{path.stem}*.csv"))
-        if next((page for page in pages if one.stem == page or one.stem.startswith(f"{page}-")), "")
+        file
+        for file in sorted(path.parent.glob(f"{path.stem}*.csv"))
+        if next((page for page in pages if file.stem == page or file.stem.startswith(f"{page}-")), "")
         == path.stem
     ]
 
@@ -104,7 +104,7 @@ def markdown(table: pd.DataFrame) -> str:
     numeric = [
         pd.api.types.is_numeric_dtype(table[name]) and table[name].dtype != bool for name in table
     ]
-    lines = [list(table.columns), ["---:" if one else "---" for one in numeric], *cells]
+    lines = [list(table.columns), ["---:" if is_number else "---" for is_number in numeric], *cells]
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
 
@@ -120,13 +120,13 @@ def main(argv: list[str]) -> int:
     parser.add_argument(
         "pages", metavar="PAGE", nargs="*", help=f"of {shown(FOLDER)} (default: all)"
     )
-    given = parser.parse_args(argv).pages
+    names = parser.parse_args(argv).pages
     commands_of = {
         path.stem: match[1]
         for path in sorted(FOLDER.glob("*.md"))
         if (match := re.search(r"`python -m benchmarks ([\w-]+)", path.read_text()))
     }
-    for name in given or commands_of:
+    for name in names or commands_of:
         if name not in commands_of:
             raise BadInput(f"PAGE: {unknown(name, commands_of, ', ')}")
         draw(FOLDER / f"{name}.md", commands_of[name])

@@ -49,14 +49,14 @@ def solve(points: list[study.Point], base: study.Point, out: Path) -> list[dict]
     A row has the results, the settings used and the relative change of the total momentum. A failed
     run gives a row, too.
     """
-    found = study.study(points, out, {"fields": 0} | base, LIMIT, "disc-block", cores=1).to_dict("records")
-    for point, row in zip(points, found):
+    rows = study.study(points, out, {"fields": 0} | base, LIMIT, "disc-block", cores=1).to_dict("records")
+    for point, row in zip(points, rows):
         folder = study.place(out, point)
         used = read_scene(folder) if (folder / "scene.toml").exists() else {}
         momentum = read_history(folder)["momentum_y"] if (folder / "history.csv").exists() else None
         row |= {"range": used.get("pairing_range"), "penalty": used.get("penalty"), "element": used.get("contact_mesh_size"),
                 "momentum": None if momentum is None else abs(momentum - momentum[0]).max() / abs(momentum[0])}
-    return found
+    return rows
 
 
 def compare(laws: list[str], out: Path) -> pd.DataFrame:
@@ -76,33 +76,33 @@ def _rows(base: study.Point, mesh: str, law: str, out: Path) -> list[dict]:
     nearest, chosen = solve([{"pairing": "closest-point"}, {"pairing": "pairwise"}], base, out)
     usual, stiffer = mesh == "usual", {factor: {"penalty": factor * chosen["penalty"]} for factor in (1, *PENALTIES)}
     width = {factor: {"pairing_range": factor * chosen["range"]} for factor in (1, *RANGES)}
-    wanted = [("closest-point", k, stiffer[k]) for k in PENALTIES if usual]
-    wanted += [("pairwise", 1, width[factor]) for factor in (RANGES if usual else (1 / 2, 2))]
-    wanted += [("pairwise", k, width[1] | stiffer[k]) for k in PENALTIES if usual]
+    settings = [("closest-point", k, stiffer[k]) for k in PENALTIES if usual]
+    settings += [("pairwise", 1, width[factor]) for factor in (RANGES if usual else (1 / 2, 2))]
+    settings += [("pairwise", k, width[1] | stiffer[k]) for k in PENALTIES if usual]
     # These runs are slow, hence for one law only.
     for k in (1, PENALTIES[0]) if usual and law == LAWS[0] else ():
-        wanted.append(("pairwise-printed", k, width[1] | stiffer[k] | {"chatter": "continue"}))
-    runs = solve([{"pairing": pairing} | more for pairing, _, more in wanted], base, out)
-    found = [(pairing, k, row) for (pairing, k, _), row in zip(wanted, runs)]
-    closest = {1: nearest} | {k: row for pairing, k, row in found if pairing == "closest-point"}
-    rows = [("closest-point", k, row) for k, row in closest.items()] + [("pairwise", 1, chosen)] + found[len(closest) - 1:]
+        settings.append(("pairwise-printed", k, width[1] | stiffer[k] | {"chatter": "continue"}))
+    runs = solve([{"pairing": pairing} | more for pairing, _, more in settings], base, out)
+    results = [(pairing, k, row) for (pairing, k, _), row in zip(settings, runs)]
+    closest = {1: nearest} | {k: row for pairing, k, row in results if pairing == "closest-point"}
+    rows = [("closest-point", k, row) for k, row in closest.items()] + [("pairwise", 1, chosen)] + results[len(closest) - 1:]
     return [_row(law, pairing, mesh, row, closest[k], k) for pairing, k, row in rows]
 
 
-def _row(law: str, pairing: str, mesh: str, found: dict, reference: dict, factor: float) -> dict:
+def _row(law: str, pairing: str, mesh: str, outcome: dict, reference: dict, factor: float) -> dict:
     """A row of the table. `reference` is the closest-point run with the same k. The impulse is that
     of the disc along the normal."""
-    row = {"law": law, "pairing": pairing, "mesh": mesh, "epsilon/h": None, "k/k0": factor, "disc [m/s]": found.get("rebound_vy_1"),
-           "block [m/s]": found.get("rebound_vy_2"), "impulse [N s/m]": found.get("impulse_y_1"),
-           "contact [ms]": 1e3 * found.get("thresholded_contact_time", float("nan")), "touches": found.get("contact_intervals"),
-           "peak [N/m]": found.get("peak_force"), "energy": found.get("energy_drift"), "momentum": found["momentum"],
-           "steps": found.get("steps"), "CPU [s]": found.get("cpu_seconds"), "outcome": found["message"].split(":")[0],
-           "leaks": "slip through" in found["warnings"]}
-    if pairing != "closest-point" and found["range"]:
-        row["epsilon/h"] = found["range"] / found["element"]
-    if found["exit"] == 0:
-        apart = max(abs(found[f"rebound_vy_{b}"] - reference[f"rebound_vy_{b}"]) / SPEED for b in (1, 2))
-        row["differ [%]"] = 100 * max(apart, abs(found["impulse_y_1"] / reference["impulse_y_1"] - 1))
+    row = {"law": law, "pairing": pairing, "mesh": mesh, "epsilon/h": None, "k/k0": factor, "disc [m/s]": outcome.get("rebound_vy_1"),
+           "block [m/s]": outcome.get("rebound_vy_2"), "impulse [N s/m]": outcome.get("impulse_y_1"),
+           "contact [ms]": 1e3 * outcome.get("thresholded_contact_time", float("nan")), "touches": outcome.get("contact_intervals"),
+           "peak [N/m]": outcome.get("peak_force"), "energy": outcome.get("energy_drift"), "momentum": outcome["momentum"],
+           "steps": outcome.get("steps"), "CPU [s]": outcome.get("cpu_seconds"), "outcome": outcome["message"].split(":")[0],
+           "leaks": "slip through" in outcome["warnings"]}
+    if pairing != "closest-point" and outcome["range"]:
+        row["epsilon/h"] = outcome["range"] / outcome["element"]
+    if outcome["exit"] == 0:
+        apart = max(abs(outcome[f"rebound_vy_{b}"] - reference[f"rebound_vy_{b}"]) / SPEED for b in (1, 2))
+        row["differ [%]"] = 100 * max(apart, abs(outcome["impulse_y_1"] / reference["impulse_y_1"] - 1))
         row["outcome"] = "warns: range below the distance of points" if row["leaks"] else ""
     return row
 

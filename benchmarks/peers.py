@@ -37,9 +37,9 @@ TEXTBOOK = "benchmarks/programs/textbook.edp"
 BODIES = {"disc-normal": "disc", "disc-oblique": "disc_oblique", "ball-axisymmetric": "ball", "ball": "ball_3d"}
 
 
-def sized(factor: float, **given: Value) -> Point:
-    """Mesh sizes `factor` times BULK and CONTACT, with further entries `given`."""
-    return {"mesh_size": factor * BULK, "contact_mesh_size": factor * CONTACT} | given
+def sized(factor: float, **entries: Value) -> Point:
+    """Mesh sizes `factor` times BULK and CONTACT, with further `entries`."""
+    return {"mesh_size": factor * BULK, "contact_mesh_size": factor * CONTACT} | entries
 
 
 @cache
@@ -51,10 +51,10 @@ def find(program: str) -> str | None:
     if program == "ffimpact":
         return python
     try:
-        found = subprocess.run([python, "-c", f"import {program}"], capture_output=True, timeout=60).returncode == 0
+        exists = subprocess.run([python, "-c", f"import {program}"], capture_output=True, timeout=60).returncode == 0
     except (OSError, subprocess.TimeoutExpired):
         return None
-    return python if found else None
+    return python if exists else None
 
 
 def run(program: str, form: str, mesh_size: float, contact_mesh_size: float, dt: float, limit: float = 600, scene: str = "disc-normal",
@@ -81,11 +81,11 @@ def two_bodies(limit: float, **flags: Value) -> tuple[dict | None, str]:
         return _printed("ngsolve", "ngsolve_two_bodies.py", folder, limit, flags)
 
 
-def ours(limit: float, scene: str, **given: Value) -> tuple[dict | None, str]:
+def ours(limit: float, scene: str, **entries: Value) -> tuple[dict | None, str]:
     """As run(), for a run of this program without an error estimate: its summary and its seconds by
     phase."""
     with tempfile.TemporaryDirectory() as folder:
-        return _printed("ffimpact", "ffimpact_run.py", folder, limit, {"scene": scene, "given": json.dumps(given)})
+        return _printed("ffimpact", "ffimpact_run.py", folder, limit, {"scene": scene, "given": json.dumps(entries)})
 
 
 def _printed(program: str, script: str, folder: str, limit: float, flags: dict[str, Value]) -> tuple[dict | None, str]:
@@ -106,22 +106,22 @@ def _printed(program: str, script: str, folder: str, limit: float, flags: dict[s
                               capture_output=True, text=True, timeout=limit)
     except subprocess.TimeoutExpired:
         return None, f"no end after {limit:g} s: killed"
-    said, complaint = done.stdout.strip().splitlines(), done.stderr.strip().splitlines()
-    if done.returncode != 0 or not said:
+    lines, complaint = done.stdout.strip().splitlines(), done.stderr.strip().splitlines()
+    if done.returncode != 0 or not lines:
         return None, f"exit code {done.returncode}: {complaint[-1] if complaint else 'no output'}"
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return json.loads(said[-1]) | {"process_seconds": after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime}, ""
+    return json.loads(lines[-1]) | {"process_seconds": after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime}, ""
 
 
-def textbook(wanted: Scene, mesh_file: Path) -> dict:
+def textbook(scene: Scene, mesh_file: Path) -> dict:
     """The output of the textbook script for a disc on a mesh, with the names of summary.json.
 
     `cpu_seconds` excludes the set-up. Raises Failure if the script fails.
     """
     log = mesh_file.with_suffix(".log")
-    code, _ = freefem.run(freefem.find(), TEXTBOOK, wanted.values | {"mesh": mesh_file}, log)
-    said = log.read_text().strip().splitlines()
-    words = said[-1].split() if said else []
+    code, _ = freefem.run(freefem.find(), TEXTBOOK, scene.values | {"mesh": mesh_file}, log)
+    lines = log.read_text().strip().splitlines()
+    words = lines[-1].split() if lines else []
     if code != 0 or words[:1] != ["textbook"]:
         raise Failure(f"textbook: the textbook script ended with exit code {code}; its output is in {shown(log)}")
     names = ("dofs", "steps", "newton_iterations", "cpu_seconds", "impulse", "rebound_vy", "contact_time", "energy_drift")

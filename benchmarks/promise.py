@@ -77,7 +77,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--of", metavar="SCENE", choices=draws.SCENES, help=f"of one kind only: {', '.join(draws.SCENES)}")
     options = parser.parse_args(argv)
     usual = COARSE if options.coarse else FLAT if options.flat else HELD if options.held else (SEED, COUNT)
-    seed, count = (wanted if given is None else given for wanted, given in zip(usual, (options.seed, options.scenes)))
+    seed, count = (default if value is None else value for default, value in zip(usual, (options.seed, options.scenes)))
     table = compare(_drawn(options, seed, max(1, count)), options.out)
     if options.coarse:
         return _finish_parts(options, table, table.accuracy.map("accuracy {:g}".format), argv,
@@ -86,8 +86,8 @@ def main(argv: list[str]) -> int:
         return _finish_parts(options, table, table.scene.str.partition(":")[0], argv, "Whether stated errors hold " + (
             "where faces strike flat" if options.flat else "of what is held, loaded or rigid"))
     good = silent(table) == 0 if options.hard else kept(table) and covered(table)
-    asked = "the requirement on silent errors" if options.hard else "the requirement"
-    text = report(table) + f"; {asked} {'is kept' if good else 'IS NOT KEPT'}"
+    requirement = "the requirement on silent errors" if options.hard else "the requirement"
+    text = report(table) + f"; {requirement} {'is kept' if good else 'IS NOT KEPT'}"
     title = "Hard scenes" if options.hard else "Coverage of the error estimates"
     title += f" of {options.of}" if options.of else ""
     tables = {"": shown_in(table), "stated": cover(table)}
@@ -96,10 +96,10 @@ def main(argv: list[str]) -> int:
 
 def shown_in(table: pd.DataFrame) -> pd.DataFrame:
     """The columns of compare() for the page: promised results, and whether a scene warns."""
-    answers = [each for name in estimate.PROMISED for each in (name, f"{name} stated")]
-    found = table.assign(warnings=table.warnings.fillna("").str.len() > 0)
-    return found[["scene", *answers, "error", "estimated", "seconds", "finer seconds", "warnings",
-                  "message"]]
+    answers = [column for name in estimate.PROMISED for column in (name, f"{name} stated")]
+    rows = table.assign(warnings=table.warnings.fillna("").str.len() > 0)
+    return rows[["scene", *answers, "error", "estimated", "seconds", "finer seconds", "warnings",
+                 "message"]]
 
 
 def _drawn(options: Namespace, seed: int, count: int) -> list[Drawn]:
@@ -110,9 +110,9 @@ def _drawn(options: Namespace, seed: int, count: int) -> list[Drawn]:
         return draws.flat(seed, count)
     if options.held:
         return draws.held(seed, count)
-    of = options.of or "disc-normal"
+    name = options.of or "disc-normal"
     alike = options.hard or options.of
-    return [(of, point) for point in draws.draw(seed, count, options.hard, of)] if alike else draws.mixture(seed, count)
+    return [(name, point) for point in draws.draw(seed, count, options.hard, name)] if alike else draws.mixture(seed, count)
 
 
 def _finish_parts(options: Namespace, table: pd.DataFrame, part: pd.Series, argv: list[str], title: str) -> int:
@@ -122,12 +122,12 @@ def _finish_parts(options: Namespace, table: pd.DataFrame, part: pd.Series, argv
     together, and for each result with an estimate. Returns the exit code.
     """
     by_part = [cover(rows).tail(1).assign(answer=f"promised, {name}") for name, rows in table.groupby(part)]
-    found = pd.concat([*by_part, cover(table, estimate.BOUND).iloc[:-1]])
-    good = bool((found.within.dropna() >= KEPT).all())
+    coverage = pd.concat([*by_part, cover(table, estimate.BOUND).iloc[:-1]])
+    good = bool((coverage.within.dropna() >= KEPT).all())
     text = "\n".join([f"Stated errors of {len(table.error.dropna())} scenes: share of the cases within them (wanted: {KEPT:.0%} of each), "
-                      "how many times too large they are in the median", "", study.table(found, COVER), "",
+                      "how many times too large they are in the median", "", study.table(coverage, COVER), "",
                       f"stated errors {'hold' if good else 'DO NOT HOLD'}"])
-    tables = {"": shown_in(table), "stated": found}
+    tables = {"": shown_in(table), "stated": coverage}
     return page.finish(options, table, text, good, argv, title, tables, ["stated"])
 
 
@@ -138,12 +138,12 @@ def compare(drawn: list[Drawn], out: Path) -> pd.DataFrame:
     the promised results, all over the requested accuracy; the warnings; and processor seconds of
     the run with its estimate and of the reference. Values of a failed run are nan.
     """
-    acts = {k: partial(_row, out, *one) for k, one in enumerate(drawn)}
-    rows = {k: {"message": str(found)} if isinstance(found, Failure) else found
-            for k, found in study.side_by_side(acts, study.CORES, out.name)}
+    acts = {k: partial(_row, out, *entry) for k, entry in enumerate(drawn)}
+    rows = {k: {"message": str(outcome)} if isinstance(outcome, Failure) else outcome
+            for k, outcome in study.side_by_side(acts, study.CORES, out.name)}
     rows = [{"scene": f"{name}: {draws.words(point)}", "accuracy": point.get("accuracy"), "warnings": ""} | rows[k]
             for k, (name, point) in enumerate(drawn)]
-    columns = [each for name in estimate.BOUND for each in (name, f"{name} stated")]
+    columns = [column for name in estimate.BOUND for column in (name, f"{name} stated")]
     return pd.DataFrame(rows).reindex(columns=["scene", "accuracy", *columns, "error", "estimated", "seconds", "finer seconds", "warnings",
                                                "message"])
 
@@ -166,13 +166,13 @@ def open_scene(name: str, point: study.Point) -> scene.Scene:
     return open_one.override({"fields": 0, penalty: "auto"} | point)
 
 
-def _compared(wanted: scene.Scene, folder: Path) -> dict:
-    asked = wanted.values["accuracy"]
+def _compared(problem: scene.Scene, folder: Path) -> dict:
+    accuracy = problem.values["accuracy"]
     paid = [0.0]
 
-    def solve(given: dict[str, Value], where: Path) -> None:
-        told = ",".join(f"{key}={value}" for key, value in given.items() if wanted.bodies or wanted.values[key] != value)
-        kept = run.run(wanted, given, study.place(folder, {"run": told}), estimate=False, progress=False)
+    def solve(values: dict[str, Value], where: Path) -> None:
+        settings = ",".join(f"{key}={value}" for key, value in values.items() if problem.bodies or problem.values[key] != value)
+        kept = run.run(problem, values, study.place(folder, {"run": settings}), estimate=False, progress=False)
         paid[0] += kept.summary["cpu_seconds"]
         shutil.copytree(kept.folder, where, dirs_exist_ok=True)
 
@@ -180,26 +180,26 @@ def _compared(wanted: scene.Scene, folder: Path) -> dict:
         stage, finer = Path(place) / "run", Path(place) / "finer"
         solve({}, stage)
         used = read_answers(stage).used
-        found = estimate.settle(stage, wanted.values | wanted.sizes, True, solve, read_answers, partial(scaled, wanted))
+        summary = estimate.settle(stage, problem.values | problem.sizes, True, solve, read_answers, partial(scaled, problem))
         seconds, answers = paid[0], read_answers(stage)
-        twice = wanted.name in TWICE
+        twice = problem.name in TWICE
         used, factor = (answers.used, 1 / 2) if twice else (used, 1 / 3)
-        solve(scaled(wanted, wanted.values, used | {"accuracy": min(STEPS_GROW, used["accuracy"])}, factor), finer)
+        solve(scaled(problem, problem.values, used | {"accuracy": min(STEPS_GROW, used["accuracy"])}, factor), finer)
         best = read_answers(finer).summary | {"largest_energy": answers.summary["largest_energy"]}
     # The reference itself has the share `factor` of an error of first order (bodies that strike
     # flat), or the share `factor` squared of an error of second order.
-    left = 1 - factor if answers.summary["front_rise"] else 1 - factor**2 if twice else 1.0
-    apart = {name: error / left for name, error in
+    share = 1 - factor if answers.summary["front_rise"] else 1 - factor**2 if twice else 1.0
+    apart = {name: error / share for name, error in
              estimate.difference(best, answers.summary, answers.speed, answers.used.get("radius"),
                                  held_bodies(answers.used)).items()}
-    stated = found["estimated_error"]
-    row = {answer: apart[answer] / asked for answer in estimate.BOUND}
-    row |= {f"{answer} stated": stated[answer] / asked for answer in estimate.BOUND if answer in (stated or {})}
-    footnotes = [note for note in answers.summary.get("notes", []) + found["notes"] if is_about(note, row)]
+    stated = summary["estimated_error"]
+    row = {answer: apart[answer] / accuracy for answer in estimate.BOUND}
+    row |= {f"{answer} stated": stated[answer] / accuracy for answer in estimate.BOUND if answer in (stated or {})}
+    footnotes = [note for note in answers.summary.get("notes", []) + summary["notes"] if is_about(note, row)]
     return row | {"error": max(row[answer] for answer in estimate.PROMISED), "message": "",
-                  "estimated": estimate.largest(stated) / asked if stated else float("nan"),
+                  "estimated": estimate.largest(stated) / accuracy if stated else float("nan"),
                   "seconds": seconds, "finer seconds": paid[0] - seconds,
-                  "warnings": "; ".join(answers.summary.get("warnings", []) + found["warnings"] + footnotes)}
+                  "warnings": "; ".join(answers.summary.get("warnings", []) + summary["warnings"] + footnotes)}
 
 
 def is_about(note: str, row: study.Point) -> bool:
@@ -246,8 +246,8 @@ def cover(table: pd.DataFrame, answers: Iterable[str] = estimate.PROMISED) -> pd
 def covered(table: pd.DataFrame) -> bool:
     """Whether the estimates cover enough cases of every promised result and are not far too large.
     """
-    found = cover(table).set_index("answer")
-    return bool((found.within.dropna() >= KEPT).all() and found.times["all"] <= WIDEST)
+    coverage = cover(table).set_index("answer")
+    return bool((coverage.within.dropna() >= KEPT).all() and coverage.times["all"] <= WIDEST)
 
 
 def report(table: pd.DataFrame) -> str:

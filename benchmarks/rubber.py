@@ -60,11 +60,11 @@ def compare(nus: list[float], limit: float, out: Path) -> pd.DataFrame:
     rows = []
     for body, scene in BODIES.items():
         points = [_point("projected", nu) for nu in nus] + [_point("plain", nu) for nu in nus if PLAIN < nu < 0.5]
-        found = study.study(points, out / body, BASE, limit, scene, cores=1)
+        table = study.study(points, out / body, BASE, limit, scene, cores=1)
         finer = study.study(points[:len(nus)], out / f"{body}-finer", BASE | {"accuracy": BASE["accuracy"] / BETTER}, limit, scene, cores=1)
         name, factor = ANSWERS["contact [ms]"]
-        rows += [_row(body, one) | {"finer [ms]": factor * better.get(name, float("nan"))}
-                 for one, better in itertools.zip_longest(found.to_dict("records"), finer.to_dict("records"), fillvalue={})]
+        rows += [_row(body, outcome) | {"finer [ms]": factor * better.get(name, float("nan"))}
+                 for outcome, better in itertools.zip_longest(table.to_dict("records"), finer.to_dict("records"), fillvalue={})]
     return pd.DataFrame(rows)
 
 
@@ -72,12 +72,13 @@ def _point(volume: str, nu: float) -> study.Point:
     return {"volume": volume, "nu": nu} | ({"law": "incompressible"} if nu == 0.5 else {})
 
 
-def _row(body: str, found: dict) -> dict:
-    row = {"body": body, "volume": found["volume"], "nu": found["nu"], "energy": found.get("energy_drift")}
-    row |= {name: factor * found.get(key, float("nan")) for name, (key, factor) in ANSWERS.items()}
-    row["outcome"] = found["message"].split(":")[-1].strip()
-    return row | {"dofs": found.get("dofs"), "steps": found.get("steps"), "iterations": found.get("newton_iterations"),
-                  "factors": found.get("factorizations"), "CPU [s]": found.get("cpu_seconds", float("nan")) - found.get("start_seconds", 0)}
+def _row(body: str, outcome: dict) -> dict:
+    row = {"body": body, "volume": outcome["volume"], "nu": outcome["nu"], "energy": outcome.get("energy_drift")}
+    row |= {name: factor * outcome.get(key, float("nan")) for name, (key, factor) in ANSWERS.items()}
+    row["outcome"] = outcome["message"].split(":")[-1].strip()
+    return row | {"dofs": outcome.get("dofs"), "steps": outcome.get("steps"), "iterations": outcome.get("newton_iterations"),
+                  "factors": outcome.get("factorizations"),
+                  "CPU [s]": outcome.get("cpu_seconds", float("nan")) - outcome.get("start_seconds", 0)}
 
 
 def peer(body: str) -> list[dict]:
@@ -105,20 +106,20 @@ def holds(table: pd.DataFrame) -> bool:
     """
     mine = table[table.volume == "projected"]
     good = (mine.outcome == "").all() and (mine.energy < 1e-9).all()
-    for _, one in mine.groupby("body"):
-        times = one["contact [ms]"].to_numpy()
-        good &= (np.diff(times) <= SLACK * times[:-1]).all() and _dearer(one) <= DEAREST
+    for _, group in mine.groupby("body"):
+        times = group["contact [ms]"].to_numpy()
+        good &= (np.diff(times) <= SLACK * times[:-1]).all() and _dearer(group) <= DEAREST
     return bool(good)
 
 
-def _dearer(one: pd.DataFrame) -> float:
+def _dearer(group: pd.DataFrame) -> float:
     """Processor time at the largest nu over that at the nu nearest to PLAIN."""
-    return one["CPU [s]"].iloc[-1] / one["CPU [s]"].iloc[int(np.argmin(abs(one.nu.to_numpy() - PLAIN)))]
+    return group["CPU [s]"].iloc[-1] / group["CPU [s]"].iloc[int(np.argmin(abs(group.nu.to_numpy() - PLAIN)))]
 
 
-def _rise(one: pd.DataFrame, name: str) -> str:
+def _rise(group: pd.DataFrame, name: str) -> str:
     """The largest rise of a result from one nu to the next, in words."""
-    return f"{100 * max(0.0, one[name].pct_change().max()):.2f} % at most"
+    return f"{100 * max(0.0, group[name].pct_change().max()):.2f} % at most"
 
 
 def draw(table: pd.DataFrame, path: Path) -> None:
@@ -129,17 +130,17 @@ def draw(table: pd.DataFrame, path: Path) -> None:
     names = [*ANSWERS, "CPU [s]"]
     with plt.rc_context(STYLE):
         figure, grid = plt.subplots(len(BODIES), len(names), figsize=(12, 2.9 * len(BODIES)), squeeze=False)
-        for (body, one), axes in zip(table.groupby("body", sort=False), grid):
+        for (body, group), axes in zip(table.groupby("body", sort=False), grid):
             for name, axis in zip(names, axes):
                 for volume, colour, line in (("projected", BLUE, "-"), ("plain", ORANGE, DASHED)):
-                    its, held = one[(one.volume == volume) & (one.nu < 0.5)], one[one.nu == 0.5]
+                    its, held = group[(group.volume == volume) & (group.nu < 0.5)], group[group.nu == 0.5]
                     axis.plot(0.5 - its.nu, its[name], color=colour, linestyle=line, marker="o", markersize=3, label=volume)
                 for value in held[name]:
                     axis.axhline(value, color=BLUE, linewidth=0.6, label="J = 1")
                     if name in ANSWERS:
-                        asked = BASE["accuracy"]
-                        axis.axhspan((1 - asked) * value, (1 + asked) * value, color=GREY, alpha=0.25, linewidth=0,
-                                     label=f"± {100 * asked:g} %")
+                        accuracy = BASE["accuracy"]
+                        axis.axhspan((1 - accuracy) * value, (1 + accuracy) * value, color=GREY, alpha=0.25, linewidth=0,
+                                     label=f"± {100 * accuracy:g} %")
                 unit = {"impulse": " [N s/m]" if body == "disc" else " [N s]"}.get(name, "")
                 axis.set(xscale="log", xlabel="0.5 − ν", ylabel=f"{body}: {name}{unit}")
                 axis.invert_xaxis()
@@ -159,21 +160,21 @@ def report(table: pd.DataFrame, beside: list[dict]) -> str:
              f"plain: all of it at points, shown where the two differ. contact: time above 1 % of the largest force, finer: at {BETTER} "
              "times smaller accuracy; impulse in N s/m, of the ball N s; energy: largest error of the balance; CPU: without the start.",
              "", study.table(table, FORMATS), ""]
-    for body, one in mine.groupby("body", sort=False):
-        first, last = one.iloc[0], one.iloc[-1]
+    for body, group in mine.groupby("body", sort=False):
+        first, last = group.iloc[0], group.iloc[-1]
         lines.append(f"- {body}: from nu = {first.nu:g} to {last.nu:g} the contact time falls by "
                      f"{100 * (1 - last['contact [ms]'] / first['contact [ms]']):.1f} %, the rebound goes from "
                      f"{first['rebound [m/s]']:.3f} to {last['rebound [m/s]']:.3f} m/s; processor time at {last.nu:g} is "
-                     f"{_dearer(one):.2f} times that at {PLAIN:g}. From one nu to the next contact times rise by "
-                     f"{_rise(one, 'contact [ms]')}, finer by {_rise(one, 'finer [ms]')}.")
+                     f"{_dearer(group):.2f} times that at {PLAIN:g}. From one nu to the next contact times rise by "
+                     f"{_rise(group, 'contact [ms]')}, finer by {_rise(group, 'finer [ms]')}.")
     lines += ["", "Contact times jump where impulses do not: what is left of the force at the end is a shoulder of 1 to 3 % of the "
               "peak", "for 0.1 ms, of the last points to leave, which ends above the threshold of 1 % on one mesh and below it on another."]
     if beside:
         lines += ["", f"NGSolve, on the same equations with plain quadratic elements, and this program, nu = {PEER_NU:g}, elements "
                   f"of {FINE:g} times the usual sizes, steps of {PEER_DT:g} s, k = {PEER_PENALTY:g} Pa/m:", "",
                   study.table(pd.DataFrame(beside), {"body": "", "answer": "", "ours": ".6g", "NGSolve": ".6g", "differ": ".1e"})]
-    said = f"to NGSolve {100 * AGREE:g} %" if beside else "NGSolve was not there"
+    agreement = f"to NGSolve {100 * AGREE:g} %" if beside else "NGSolve was not there"
     good = holds(table) and agrees(beside)
     return "\n".join([*lines, "", f"The requirement (in the mean of elements every run ends, energy to 1e-9, contact times "
-                                  f"fall to {SLACK:g}, at most {DEAREST:g} times the processor time; {said}) "
+                                  f"fall to {SLACK:g}, at most {DEAREST:g} times the processor time; {agreement}) "
                                   f"{'holds' if good else 'FAILS'}."])

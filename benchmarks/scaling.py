@@ -29,7 +29,7 @@ class Case:
 
     sizes: element sizes in the bulk and near contact [m]; finer: divisors of the sizes
     dt: step [s]; steps: number of steps
-    asked, memory: largest permitted exponents of the time of a step and of the memory
+    exponent, memory: largest permitted exponents of the time of a step and of the memory
     """
 
     scene: str
@@ -37,7 +37,7 @@ class Case:
     finer: tuple[float, ...]
     dt: float
     steps: int
-    asked: float
+    exponent: float
     memory: float = 1.1
 
 
@@ -68,16 +68,17 @@ def main(argv: list[str]) -> int:
     for name in options.cases:
         case = CASES[name]
         # Each run has its own process, so that the memory of its children is measured alone.
-        with multiprocessing.get_context("fork").Pool(1, maxtasksperchild=1) as one:
-            wanted = [(case, finer, options.out / name.replace(", ", "-")) for finer in case.finer[:options.meshes]]
-            found = pd.DataFrame(one.starmap(_row, wanted, chunksize=1))
-        exponents = {column: slope(found.unknowns, found[column]) for column in (*PHASES, "step", "memory")}
-        rows.append(found.assign(case=name))
-        slopes.append({"case": name, "step": exponents["step"], "step, aim": case.asked,
+        with multiprocessing.get_context("fork").Pool(1, maxtasksperchild=1) as pool:
+            arguments = [(case, finer, options.out / name.replace(", ", "-")) for finer in case.finer[:options.meshes]]
+            measurements = pd.DataFrame(pool.starmap(_row, arguments, chunksize=1))
+        exponents = {column: slope(measurements.unknowns, measurements[column]) for column in (*PHASES, "step", "memory")}
+        rows.append(measurements.assign(case=name))
+        slopes.append({"case": name, "step": exponents["step"], "step, aim": case.exponent,
                        "memory": exponents["memory"], "memory, aim": case.memory})
         phases.append({"case": name} | {phase: exponents[phase] for phase in PHASES})
-        good &= exponents["step"] <= case.asked and exponents["memory"] <= case.memory and found["over floor"].max() <= MOST_OVER_FLOOR
-        shown = pd.concat([found, pd.DataFrame([exponents | {"mesh": f"exponent (asked: {case.asked}, {case.memory})"}])])
+        good &= (exponents["step"] <= case.exponent and exponents["memory"] <= case.memory
+                 and measurements["over floor"].max() <= MOST_OVER_FLOOR)
+        shown = pd.concat([measurements, pd.DataFrame([exponents | {"mesh": f"exponent (asked: {case.exponent}, {case.memory})"}])])
         texts.append(f"## {name}\n\n" + study.table(shown, {"mesh": "", "unknowns": ".0f", "iterations": ".1f", "factorisations": ".0f"}
                                                   | dict.fromkeys((*PHASES, "step"), ".3g") | {"over floor": ".2g", "memory": ".0f"}))
     verdict = (f"Seconds of processor time a step, by phase, from the first touch on; memory in MB. "
@@ -93,13 +94,13 @@ def main(argv: list[str]) -> int:
 def _row(case: Case, finer: float, out: Path) -> dict:
     """The row of one run, in its own folder and process."""
     bulk, contact = case.sizes
-    given = {"mesh_size": bulk / finer, "contact_mesh_size": contact / finer, "dt": case.dt, "end_time": case.steps * case.dt, "fields": 0}
+    values = {"mesh_size": bulk / finer, "contact_mesh_size": contact / finer, "dt": case.dt, "end_time": case.steps * case.dt, "fields": 0}
     folder = out / f"{finer:g}"
-    run.run(scene.load(case.scene).override(given), out=folder, force=True, estimate=False)
-    found = read_json(folder / "summary.json")
-    spent = {phase: found["phase_seconds"][phase] / found["steps"] for phase in PHASES}
-    return {"mesh": f"h / {finer:g}", "unknowns": found["dofs"], "iterations": found["newton_iterations"] / found["steps"],
-            "factorisations": found["factorizations"], **spent, "step": sum(spent.values()),
+    run.run(scene.load(case.scene).override(values), out=folder, force=True, estimate=False)
+    summary = read_json(folder / "summary.json")
+    spent = {phase: summary["phase_seconds"][phase] / summary["steps"] for phase in PHASES}
+    return {"mesh": f"h / {finer:g}", "unknowns": summary["dofs"], "iterations": summary["newton_iterations"] / summary["steps"],
+            "factorisations": summary["factorizations"], **spent, "step": sum(spent.values()),
             "over floor": sum(spent.values()) / max(spent["assembly"] + spent["solve"], 1e-9),
             "memory": getrusage(RUSAGE_CHILDREN).ru_maxrss / 1024}
 

@@ -115,10 +115,10 @@ def impact(a: float, speed: float, steps: int = 4000) -> tuple[float, float]:
 
     while t < unit or (state[0] > 0 and slope(state)[1] < 0):
         h = unit / steps
-        one = slope(state)
-        two = slope(state + h / 2 * one)
-        three = slope(state + h / 2 * two)
-        state, t = state + h / 6 * (one + 2 * two + 2 * three + slope(state + h * three)), t + h
+        first = slope(state)
+        second = slope(state + h / 2 * first)
+        third = slope(state + h / 2 * second)
+        state, t = state + h / 6 * (first + 2 * second + 2 * third + slope(state + h * third)), t + h
     return -state[1] / speed, t
 
 
@@ -131,9 +131,9 @@ def lost_to_branch(speed: float, steps: int = 2000) -> float:
     ends = np.linspace(0, math.pi, steps + 1)
     middle, x = (ends[1:] + ends[:-1]) / 2, depth * np.abs(np.sin(ends)) ** 0.8
     pace = 0.8 * depth / speed * np.sin(middle) ** -0.2 * math.pi / steps
-    t, way, width = np.cumsum(pace) - pace / 2, np.diff(x), np.sqrt(RADIUS * depth * np.sin(middle) ** 0.8)
+    t, increments, width = np.cumsum(pace) - pace / 2, np.diff(x), np.sqrt(RADIUS * depth * np.sin(middle) ** 0.8)
     kernel = np.exp(-np.abs(t[:, None] - t) / RELAXES[1]) * np.minimum(width[:, None], width)
-    return YOUNG / (1 - NU**2) * coefficient(RELAXES[0], 0) * way @ kernel @ way / (MASS * speed**2 / 2)
+    return YOUNG / (1 - NU**2) * coefficient(RELAXES[0], 0) * increments @ kernel @ increments / (MASS * speed**2 / 2)
 
 
 def theory(kind: str, speed: float) -> tuple[float, float]:
@@ -154,9 +154,9 @@ def balls(out: Path) -> pd.DataFrame:
     names = {kind: ("relaxation_modulus", "relaxation_time") if kind == "branch" else ("viscosity", "bulk_viscosity") for kind in KINDS}
     points = [{"speed": speed, "penalty": float(f"{STIFF * YOUNG * 200 / math.pi / (1.31 * RADIUS * (speed / bar) ** 0.4):.4g}")}
               | {name: float(f"{value:.6g}") for name, value in zip(names[kind], KINDS[kind])} for kind, speed in cases]
-    found, rows = study.study(points, out / "ball", base, LIMIT, "ball-axisymmetric"), []
+    table, rows = study.study(points, out / "ball", base, LIMIT, "ball-axisymmetric"), []
     period = 2 * math.pi * RADIUS / 2.65 / math.sqrt(MU / DENSITY)
-    for (kind, speed), (_, run) in zip(cases, found.iterrows()):
+    for (kind, speed), (_, run) in zip(cases, table.iterrows()):
         expected, contact = theory(kind, speed)
         width, lost = math.sqrt(RADIUS * (1.25 * MASS * speed**2 / SPRING) ** 0.4), 1 - run.restitution
         row = {"viscous": kind, "speed": speed, "b/R": width / RADIUS, "T/own": contact / period, "theory": expected,
@@ -196,20 +196,21 @@ def exponents(ball: pd.DataFrame) -> dict[str, float]:
 def holds(ball: pd.DataFrame, disc: pd.DataFrame) -> bool:
     """Whether 1 - e of slow balls and its exponent agree with theory, and every energy balance
     closes."""
-    asked = ball[(ball.viscous != "elastic") & (ball.speed <= SLOW)]
-    return bool((asked["off [%]"].abs() <= 100 * AGREE).all() and all(abs(each - 0.2) <= STRAIGHT for each in exponents(ball).values())
+    slow = ball[(ball.viscous != "elastic") & (ball.speed <= SLOW)]
+    return bool((slow["off [%]"].abs() <= 100 * AGREE).all()
+                and all(abs(exponent - 0.2) <= STRAIGHT for exponent in exponents(ball).values())
                 and (pd.concat([ball, disc]).balance < CLOSED).all())
 
 
 def report(ball: pd.DataFrame, disc: pd.DataFrame) -> str:
     """The report: tables, findings and verdict."""
     slow, fits = ball[(ball.viscous != "elastic") & (ball.speed <= SLOW)], exponents(ball)
-    least, most = disc.loc[disc["tau/T"].notna(), "e"].idxmin(), max(disc.balance.max(), ball.balance.max())
-    ours, theirs = ([each(*KINDS[kind]) for kind in COLOURS] for each in (coefficient, brilliantov))
+    least, largest = disc.loc[disc["tau/T"].notna(), "e"].idxmin(), max(disc.balance.max(), ball.balance.max())
+    ours, theirs = ([function(*KINDS[kind]) for kind in COLOURS] for function in (coefficient, brilliantov))
     off, fitted = slow["off [%]"], ", ".join(f"{fit:.4f} ({kind})" for kind, fit in fits.items())
     branch = ball[(ball.viscous == "branch") & (ball.speed <= SLOW)]
     peak = branch.loc[branch["1 - e"].idxmax()]
-    said = [
+    lines = [
         f"Ball of revolution on a rigid plane, neo-Hookean, E = {1e-6 * YOUNG:g} MPa, nu = {NU:g}, R = {RADIUS:g} m, penalty {STIFF:g}",
         f"times the usual one. viscous: none (elastic), eta/mu = zeta/lambda = {TIME:g} s (both), eta alone (shear), a Maxwell branch of",
         f"{RELAXES[0] / MU:g} mu and {1e3 * RELAXES[1]:g} ms (branch; its theory is of first order in G). Theory of the others:",
@@ -230,8 +231,8 @@ def report(ball: pd.DataFrame, disc: pd.DataFrame) -> str:
         "  a spring, and the contact is shorter.",
         f"- Warnings: {study.warned(pd.concat([ball, disc]).warnings) or 'none'}.", "",
         f"Slow balls agree with quasi-static theory to {100 * AGREE:g} % of 1 - e, its exponent to {STRAIGHT:g} of 1/5, and every balance",
-        f"of energy closes to {CLOSED:g} (largest {most:.0e}): the requirement {'holds' if holds(ball, disc) else 'FAILS'}."]
-    return "\n".join(said)
+        f"of energy closes to {CLOSED:g} (largest {largest:.0e}): the requirement {'holds' if holds(ball, disc) else 'FAILS'}."]
+    return "\n".join(lines)
 
 
 def draw(ball: pd.DataFrame, disc: pd.DataFrame, path: Path) -> None:
@@ -256,9 +257,9 @@ def draw(ball: pd.DataFrame, disc: pd.DataFrame, path: Path) -> None:
         branch.set(xlabel="$v$ [m/s]", ylim=(0, None), title=f"ball, Maxwell branch of {RELAXES[0] / MU:g} μ, {1e3 * RELAXES[1]:g} ms")
         for panel in (viscous, branch):
             panel.set_ylabel("$1 - e$")
-            left, right = panel.get_xlim()
-            panel.axvspan(SLOW**(0.2 if panel is viscous else 1), right, color=GREY, alpha=0.15, linewidth=0, label="contact no longer small")
-            panel.set_xlim(left, right)
+            low, high = panel.get_xlim()
+            panel.axvspan(SLOW**(0.2 if panel is viscous else 1), high, color=GREY, alpha=0.15, linewidth=0, label="contact no longer small")
+            panel.set_xlim(low, high)
             panel.legend()
         for panel, x, words in zip(discs, ("loss", "tau/T"), ("loss factor tan δ", "relaxation time / contact time")):
             rows, beside = disc[disc[x].notna()], panel.twinx()

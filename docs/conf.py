@@ -132,31 +132,31 @@ def displayed_formula(self, node) -> None:
 # ---- classes of the Python interface
 
 
-def signature(app, what: str, name: str, one: object, options, found: str, returns: str):
+def signature(app, what: str, name: str, item: object, options, arguments: str, returns: str):
     """The signature of a class or function.
 
     For a table of a scene it lists the required entries only; the page has a table of all entries
     below.
     """
-    if inspect.isclass(one) and issubclass(one, models.Entries):
-        needed = [entry for entry, field in one.model_fields.items() if field.is_required()]
+    if inspect.isclass(item) and issubclass(item, models.Entries):
+        needed = [entry for entry, field in item.model_fields.items() if field.is_required()]
         return f"(*, {', '.join([*needed, '...'])})", None
-    if inspect.isclass(one) and issubclass(one, Exception):
+    if inspect.isclass(item) and issubclass(item, Exception):
         return "", None
-    return found, returns
+    return arguments, returns
 
 
-def docstring(app, what: str, name: str, one: object, options, lines: list[str]) -> None:
+def docstring(app, what: str, name: str, item: object, options, lines: list[str]) -> None:
     """Converts a docstring, which is plain text, to reStructuredText.
 
     The docstring of a table of a scene is followed by a table of its entries, that of an error by
     its exit code.
     """
     lines[:] = [literal(line) for line in lines]
-    if inspect.isclass(one) and issubclass(one, models.Entries):
-        lines += ["", *entries(one)]
-    elif inspect.isclass(one) and issubclass(one, ffimpact.Failure):
-        lines += ["", f"Exit code: {one.code}." if one is not ffimpact.Failure else ""]
+    if inspect.isclass(item) and issubclass(item, models.Entries):
+        lines += ["", *entries(item)]
+    elif inspect.isclass(item) and issubclass(item, ffimpact.Failure):
+        lines += ["", f"Exit code: {item.code}." if item is not ffimpact.Failure else ""]
 
 
 def literal(line: str) -> str:
@@ -178,16 +178,16 @@ def entries(model: type[models.Entries]) -> list[str]:
     lines = [".. list-table::", "   :header-rows: 1", "   :widths: 22 10 24 44", ""]
     rows = [("entry", "unit", "accepted", "meaning")]
     for name, field in model.model_fields.items():
-        told = pages.entry_of(name, field)
-        if told and (name not in common or field.is_required() != common[name].is_required()):
+        texts = pages.entry_of(name, field)
+        if texts and (name not in common or field.is_required() != common[name].is_required()):
             rows.append(
                 (
                     f"``{name}``{', needed' if field.is_required() else ''}",
-                    *(literal(each) for each in told),
+                    *(literal(text) for text in texts),
                 )
             )
     for row in rows:
-        lines += [f"   {'* -' if k == 0 else '  -'} {each}".rstrip() for k, each in enumerate(row)]
+        lines += [f"   {'* -' if k == 0 else '  -'} {cell}".rstrip() for k, cell in enumerate(row)]
     if model is ffimpact.Scene:
         names = [
             name
@@ -203,8 +203,8 @@ def entries(model: type[models.Entries]) -> list[str]:
             if names
             else lines
         )
-    found = lines if len(rows) > 1 else []
-    return found + (
+    table = lines if len(rows) > 1 else []
+    return table + (
         [
             "",
             f"Further entries: those of `~ffimpact.{base.__name__}`.".replace("`~", ":py:class:`~"),

@@ -126,14 +126,14 @@ def entries() -> str:
     text = "\n## Parameters of a run\nAt the top of a scene file, by `--set name=value`, "
     text += "as flags of the scripts, and in Python.\n"
     text += "\n| name | unit | default | accepted | meaning |\n|---|---|---|---|---|\n"
-    for one in parameters.PARAMETERS.values():
-        default = one.default if isinstance(one.default, str) else f"{one.default:g}"
-        accepted = cell(words(one.accepted))
-        text += f"| `{one.name}` | {one.unit} | {default} | {accepted} | {cell(one.help)} |\n"
+    for parameter in parameters.PARAMETERS.values():
+        default = parameter.default if isinstance(parameter.default, str) else f"{parameter.default:g}"
+        accepted = cell(words(parameter.accepted))
+        text += f"| `{parameter.name}` | {parameter.unit} | {default} | {accepted} | {cell(parameter.help)} |\n"
     text += "\n## Materials\nIn Python `material = NeoHookean(...)` and so on; in a file the same "
     text += "entries in a body's table, or at the top for all bodies.\n\n"
     text += "".join(
-        f"- `{name}`, `{one.__name__}`: {first_line(one)}\n" for name, one in models.LAWS.items()
+        f"- `{name}`, `{law.__name__}`: {first_line(law)}\n" for name, law in models.LAWS.items()
     )
     text += table_of(
         "Bodies", "`[[body]]`, `Body` in Python: what bodies of all shapes have.", models.Body
@@ -177,16 +177,16 @@ def rows(model: type[models.Entries], but: Collection[str] = (), first: str = ""
     """The rows of a table of the entries of a model, without the entries in `but`."""
     text = ""
     for name, field in model.model_fields.items():
-        if (told := entry_of(name, field)) and name not in but:
+        if (texts := entry_of(name, field)) and name not in but:
             needed = ", needed" if field.is_required() else ""
-            text += f"|{first} `{name}`{needed} | {' | '.join(map(cell, told))} |\n"
+            text += f"|{first} `{name}`{needed} | {' | '.join(map(cell, texts))} |\n"
     return text
 
 
 def entry_of(name: str, field: FieldInfo) -> tuple[str, str, str] | None:
     """Unit, accepted values and meaning of an entry. Returns None for an entry that contains
     tables."""
-    rule = next((one for one in field.metadata if isinstance(one, Rule)), None)
+    rule = next((entry for entry in field.metadata if isinstance(entry, Rule)), None)
     if not rule:
         return None
     unit, meaning = (rule.unit, rule.help) if isinstance(rule, Parameter) else ("", rule.meaning)
@@ -198,7 +198,7 @@ def kinds(word: str, table: Mapping[str, type], common: type[models.Entries]) ->
     the common entries."""
     text = f"\n| {word}, entry | unit | accepted | meaning |\n|---|---|---|---|\n"
     for name, model in table.items():
-        dimensions = ", ".join(one.name for one in model.dimensions)
+        dimensions = ", ".join(dimension.name for dimension in model.dimensions)
         text += f"| **`{name}`** | | {dimensions} | {cell(first_line(model))} |\n"
         text += rows(model, common.model_fields)
     return text
@@ -206,20 +206,20 @@ def kinds(word: str, table: Mapping[str, type], common: type[models.Entries]) ->
 
 def results() -> str:
     """Tables of the files, columns and numbers of a run."""
-    told = [describe_results({}, script) for script in SCRIPTS]
-    text, meanings = "", told[0]["meanings"]
+    descriptions = [describe_results({}, script) for script in SCRIPTS]
+    text, meanings = "", descriptions[0]["meanings"]
     for file, table, lists in TABLES:
-        known = {
-            name: entry for each in reversed(meanings.values()) for name, entry in each.items()
+        explanations = {
+            name: entry for group in reversed(meanings.values()) for name, entry in group.items()
         } | meanings[table]
-        names = {name: None for each in told for key in lists for name in each[key]}
+        names = {name: None for description in descriptions for key in lists for name in description[key]}
         names |= {name: None for name in meanings[table]}
         of_body = {
-            name for each in told for key in lists if key.startswith("body") for name in each[key]
+            name for description in descriptions for key in lists if key.startswith("body") for name in description[key]
         }
         text += f"\n## `{file}`\n| name | unit | meaning |\n|---|---|---|\n"
         text += "".join(
-            f"| `{name}`{' `_1` …' if name in of_body else ''} | {known[name][0]} | {cell(known[name][1])} |\n"
+            f"| `{name}`{' `_1` …' if name in of_body else ''} | {explanations[name][0]} | {cell(explanations[name][1])} |\n"
             for name in names
         )
     return text
@@ -235,17 +235,17 @@ def warnings() -> str:
             rows.setdefault(sentence.partition(":")[0], []).append(
                 (call.func.id, sentence.partition(": ")[2])
             )
-    found = ""
-    for name, told in sorted(rows.items()):
-        if told[0][1]:
-            said = [split(words) for _, words in told]
-            kind = " / ".join(dict.fromkeys(KINDS[each] for each, _ in told))
+    table = ""
+    for name, messages in sorted(rows.items()):
+        if messages[0][1]:
+            parts = [split(words) for _, words in messages]
+            kind = " / ".join(dict.fromkeys(KINDS[key] for key, _ in messages))
             facts, advice = (
-                " / ".join(dict.fromkeys(each[k] for each in said if each[k])) for k in (0, 1)
+                " / ".join(dict.fromkeys(part[k] for part in parts if part[k])) for k in (0, 1)
             )
             advice = advice or ADVICE.get(name, "")
-            found += f"| {name} | {kind} | {cell(facts)} | {cell(advice)} |\n"
-    return "| name | kind | what it says | what to do |\n|---|---|---|---|\n" + found + OF_ESTIMATES
+            table += f"| {name} | {kind} | {cell(facts)} | {cell(advice)} |\n"
+    return "| name | kind | what it says | what to do |\n|---|---|---|---|\n" + table + OF_ESTIMATES
 
 
 def split(words: str) -> tuple[str, str]:
@@ -279,16 +279,16 @@ def _literal(expression: ast.expr) -> str:
 def equations(prefix: str = "") -> str:
     """A table of the equations of the paper: for each the lines of scripts and of kernels that have
     it, and what these say of it."""
-    found: dict[int, dict[str, list[tuple[Path, int, str]]]] = {k: {"idp": [], "hpp": []} for k in range(1, 16)}
+    definitions: dict[int, dict[str, list[tuple[Path, int, str]]]] = {k: {"idp": [], "hpp": []} for k in range(1, 16)}
     for path in sorted([*(ROOT / "edp/core").rglob("*.idp"), *(ROOT / "edp/kernels").glob("*.hpp")]):
         for number, line in enumerate(path.read_text().splitlines(), 1):
             match = EQUATION.search(line)
             if match and line[: match.start()].strip():  # a line of code, not a comment
                 for equation in re.findall(r"\d+", match[1]):
                     place = path, number, line[match.end() :].strip()
-                    found[int(equation)][path.suffix[1:]].append(place)
+                    definitions[int(equation)][path.suffix[1:]].append(place)
     text = "| equation | script | kernel | what stands there |\n|---|---|---|---|\n"
-    for equation, places in found.items():
+    for equation, places in definitions.items():
         links = [
             ", ".join(
                 f"[{path.parent.name}/{path.name}:{number}]({prefix}{path.relative_to(ROOT)}#L{number})"
@@ -304,14 +304,14 @@ def equations(prefix: str = "") -> str:
 def exit_codes() -> str:
     """A table of the exit codes, their meanings and the Python exceptions."""
     kinds = [
-        one
-        for _, one in inspect.getmembers(failure, inspect.isclass)
-        if issubclass(one, failure.Failure)
+        kind
+        for _, kind in inspect.getmembers(failure, inspect.isclass)
+        if issubclass(kind, failure.Failure)
     ]
     rows = [
-        (one.code, f"`{one.__name__}`", first_line(one))
-        for one in kinds
-        if one is not failure.Failure
+        (kind.code, f"`{kind.__name__}`", first_line(kind))
+        for kind in kinds
+        if kind is not failure.Failure
     ]
     rows += [
         (0, "", "Finished."),
@@ -351,7 +351,7 @@ def parsers() -> Iterator[tuple[str, argparse.ArgumentParser]]:
     listed = next(
         action for action in whole._actions if isinstance(action, argparse._SubParsersAction)
     )
-    helps = {one.dest: one.help for one in listed._choices_actions}
+    helps = {action.dest: action.help for action in listed._choices_actions}
     for name, parser in listed.choices.items():
         if name in command_line.OWN_MAIN:
             parser = caught(command_line.OWN_MAIN[name])
@@ -361,14 +361,14 @@ def parsers() -> Iterator[tuple[str, argparse.ArgumentParser]]:
 
 def caught(module: str) -> argparse.ArgumentParser:
     """The parser that the main() of a module builds."""
-    found, print_help = [], argparse.ArgumentParser.print_help
-    argparse.ArgumentParser.print_help = lambda self, file=None: found.append(self)
+    captured, print_help = [], argparse.ArgumentParser.print_help
+    argparse.ArgumentParser.print_help = lambda self, file=None: captured.append(self)
     try:
         with contextlib.suppress(SystemExit), contextlib.redirect_stdout(io.StringIO()):
             importlib.import_module(module).main(["--help"])
     finally:
         argparse.ArgumentParser.print_help = print_help
-    return found[0]
+    return captured[0]
 
 
 def sentences(description: str) -> str:
@@ -409,7 +409,7 @@ def plain(parser: argparse.ArgumentParser, action: argparse.Action) -> str:
 
 def exports() -> dict[str, list[str]]:
     """The names that the package exports, by page."""
-    found = {
+    names = {
         "functions": [],
         "results": [],
         "scenes": [],
@@ -419,19 +419,19 @@ def exports() -> dict[str, list[str]]:
         "exceptions": [],
     }
     for name in ffimpact.__all__:
-        one = getattr(ffimpact, name)
-        if not inspect.isclass(one):
-            found["functions"].append(name)
-        elif issubclass(one, Exception):
-            found["exceptions"].append(name)
-        elif issubclass(one, models.Entries):
-            kind = next((part for part, base in BASES.items() if issubclass(one, base)), "scenes")
-            found[kind].append(name)
+        item = getattr(ffimpact, name)
+        if not inspect.isclass(item):
+            names["functions"].append(name)
+        elif issubclass(item, Exception):
+            names["exceptions"].append(name)
+        elif issubclass(item, models.Entries):
+            kind = next((part for part, base in BASES.items() if issubclass(item, base)), "scenes")
+            names[kind].append(name)
         else:
-            found["results"].append(name)
+            names["results"].append(name)
     for part, base in BASES.items():
-        found[part].sort(key=lambda name: (getattr(ffimpact, name) is not base, name))
-    return found
+        names[part].sort(key=lambda name: (getattr(ffimpact, name) is not base, name))
+    return names
 
 
 BASES = {"materials": models.Material, "bodies": models.Body, "obstacles": models.Obstacle}
@@ -475,8 +475,8 @@ def run_times() -> str:
     programs = list(table.program.unique())
     text = f"| case, error | {' | '.join(programs)} |\n|---|{'---:|' * len(programs)}\n"
     for (case, level), rows in table.groupby(["case", "level %"], sort=False):
-        found = {row.program: f"{row.march:.2f} / {row.process:.2f}" for row in rows.itertuples()}
-        text += f"| {case}, {level:g} % | {' | '.join(found.get(one, '—') for one in programs)} |\n"
+        times = {row.program: f"{row.march:.2f} / {row.process:.2f}" for row in rows.itertuples()}
+        text += f"| {case}, {level:g} % | {' | '.join(times.get(program, '—') for program in programs)} |\n"
     return text
 
 

@@ -39,7 +39,7 @@ MEASURED = {"comparison.md"}
 def prose(text: str) -> str:
     """The text of a page without code, HTML comments and targets of links. The number of lines
     stays the same."""
-    text = re.sub(r"(?s)```.*?```|<!--.*?-->", lambda found: "\n" * found[0].count("\n"), text)
+    text = re.sub(r"(?s)```.*?```|<!--.*?-->", lambda match: "\n" * match[0].count("\n"), text)
     return re.sub(r"\]\([^)]*\)", "]", re.sub(r"`[^`\n]*`|\$[^$\n]+\$", "", text))
 
 
@@ -47,10 +47,10 @@ def messages(path: Path) -> list[tuple[int, str]]:
     """The messages of a module with their lines: strings of three words or more that are not
     docstrings."""
     tree = ast.parse(path.read_text())
-    documented = {id(one.body[0].value) for one in ast.walk(tree) if isinstance(one, ast.Module | ast.ClassDef | ast.FunctionDef) and one.body
-                  and isinstance(one.body[0], ast.Expr)}
-    return [(one.lineno, one.value) for one in ast.walk(tree) if isinstance(one, ast.Constant) and isinstance(one.value, str)
-            and id(one) not in documented and len(one.value.split()) > 2]
+    documented = {id(node.body[0].value) for node in ast.walk(tree) if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and node.body
+                  and isinstance(node.body[0], ast.Expr)}
+    return [(node.lineno, node.value) for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)
+            and id(node) not in documented and len(node.value.split()) > 2]
 
 
 def comments(path: Path) -> list[tuple[int, str]]:
@@ -58,13 +58,13 @@ def comments(path: Path) -> list[tuple[int, str]]:
     their lines. `Code` in them is left out."""
     text = path.read_text()
     if path.suffix == ".py":
-        found = [(token.start[0], token.string) for token in tokenize.generate_tokens(io.StringIO(text).readline) if token.type == tokenize.COMMENT]
+        texts = [(token.start[0], token.string) for token in tokenize.generate_tokens(io.StringIO(text).readline) if token.type == tokenize.COMMENT]
         for node in ast.walk(ast.parse(text)):
             if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and (words := ast.get_docstring(node)):
-                found.append((node.body[0].lineno, words))
+                texts.append((node.body[0].lineno, words))
     else:
-        found = [(k, line.partition("//")[2]) for k, line in enumerate(text.splitlines(), 1)]
-    return [(k, re.sub(r"`[^`]*`|\b\w*[a-z][A-Z]\w*", "", words)) for k, words in found]
+        texts = [(k, line.partition("//")[2]) for k, line in enumerate(text.splitlines(), 1)]
+    return [(k, re.sub(r"`[^`]*`|\b\w*[a-z][A-Z]\w*", "", words)) for k, words in texts]
 
 
 def pages() -> list[Path]:
@@ -78,10 +78,10 @@ def lines(path: Path) -> list[tuple[str, str]]:
     return [(f"{path.relative_to(ROOT)}:{k}", line) for k, line in enumerate(prose(path.read_text()).splitlines(), 1)]
 
 
-def count(found: list[tuple[str, str]], terms: dict[str, re.Pattern], where: bool = False) -> Counter:
-    """The number of occurrences of each term in `found`, a list of position and text."""
+def count(texts: list[tuple[str, str]], terms: dict[str, re.Pattern], where: bool = False) -> Counter:
+    """The number of occurrences of each term in `texts`, a list of position and text."""
     total = Counter()
-    for place, text in found:
+    for place, text in texts:
         for term, pattern in terms.items():
             for match in pattern.finditer(text):
                 total[term] += 1
@@ -106,9 +106,9 @@ def main(where: bool) -> int:
     theirs = count(printed, TERMS, where)
     print(f"private terms in texts of orchestrate/: {theirs.total()}  {dict(theirs)}")
     for folder, suffixes in (("orchestrate", (".py",)), ("benchmarks", (".py",)), ("verification", (".py",)), ("tests", (".py",)), ("edp", (".edp", ".idp", ".hpp", ".cpp"))):
-        said = [(f"{path.relative_to(ROOT)}:{k}", text) for path in sorted((ROOT / folder).rglob("*")) if path.suffix in suffixes
-                for k, text in comments(path)]
-        inside = count(said, TERMS, where)
+        texts = [(f"{path.relative_to(ROOT)}:{k}", text) for path in sorted((ROOT / folder).rglob("*")) if path.suffix in suffixes
+                 for k, text in comments(path)]
+        inside = count(texts, TERMS, where)
         print(f"private terms in comments of {folder}/: {inside.total()}  {dict(inside)}")
     return int(own.total() > 0)
 

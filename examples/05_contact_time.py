@@ -86,10 +86,10 @@ rows = [("contact time at 8 m/s, SVK", "s", svk.contact_time, svk.error, 4.8e-3,
          "NGSolve and GetFEM, converged", ""),
         ("largest rise of the neo-Hookean curve", "s", max(rises[k], 0.0), bars[k] + bars[k + 1],
          0.0, 0.0, "paper, figure 8: it falls", "")]
-for one, error in zip(slow.table.itertuples(), slow_errors):
-    note = "misses: waves cross the disc only six times in the contact" if one.speed > 0.2 else ""
-    rows.append((f"contact time at {one.speed:g} m/s, neo-Hookean, stiff contact", "s",
-                 one.contact_time, error, compressed(one.speed), 0.0,
+for row, error in zip(slow.table.itertuples(), slow_errors):
+    note = "misses: waves cross the disc only six times in the contact" if row.speed > 0.2 else ""
+    rows.append((f"contact time at {row.speed:g} m/s, neo-Hookean, stiff contact", "s",
+                 row.contact_time, error, compressed(row.speed), 0.0,
                  "compression without waves, Gerl and Zippelius 1999", note))
 numbers = pd.DataFrame(
     rows, columns="quantity unit computed error reference uncertainty source note".split()

@@ -40,8 +40,8 @@ def superball(loss, young=5e6):
 # ---------------
 # Two quick runs give the restitution over the loss factor, and the loss factor at 0.78.
 losses = np.array([0.4, 0.6])
-found = [ff.run(superball(loss), estimate=False)["restitution"] for loss in losses]
-fitted = np.interp(0.78, found[::-1], losses[::-1])
+restitutions = [ff.run(superball(loss), estimate=False)["restitution"] for loss in losses]
+fitted = np.interp(0.78, restitutions[::-1], losses[::-1])
 result = ff.run(superball(fitted))
 print(f"loss factor {fitted:.3f}")
 result

@@ -40,8 +40,8 @@ def golf_ball(loss, friction=0.18):
 # ---------------
 # Two quick runs give the restitution over the loss factor, and the loss factor at 0.87.
 losses = np.array([0.3, 0.6])
-found = [ff.run(golf_ball(loss), estimate=False)["restitution"] for loss in losses]
-fitted = np.interp(0.87, found[::-1], losses[::-1])
+restitutions = [ff.run(golf_ball(loss), estimate=False)["restitution"] for loss in losses]
+fitted = np.interp(0.87, restitutions[::-1], losses[::-1])
 result = ff.run(golf_ball(fitted))
 print(f"loss factor {fitted:.3f}")
 result

@@ -44,8 +44,8 @@ def superball(loss):
 # ---------------
 # Two quick runs give the restitution over the loss factor, and the loss factor at 0.91.
 losses = np.array([0.1, 0.3])
-found = [ff.run(superball(loss), estimate=False)["restitution"] for loss in losses]
-fitted = np.interp(0.91, found[::-1], losses[::-1])
+restitutions = [ff.run(superball(loss), estimate=False)["restitution"] for loss in losses]
+fitted = np.interp(0.91, restitutions[::-1], losses[::-1])
 result = ff.run(superball(fitted))
 print(f"loss factor {fitted:.3f}")
 result

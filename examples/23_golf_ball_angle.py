@@ -33,8 +33,8 @@ def golf_ball(loss, **where):
 
 losses = np.array([0.2, 0.6])
 drops = [golf_ball(loss, position=1.001 * radius, velocity=-speed) for loss in losses]
-found = [ff.run(drop, estimate=False)["restitution"] for drop in drops]
-fitted = np.interp(0.90, found[::-1], losses[::-1])
+restitutions = [ff.run(drop, estimate=False)["restitution"] for drop in drops]
+fitted = np.interp(0.90, restitutions[::-1], losses[::-1])
 
 # %%
 # The throws
@@ -81,7 +81,7 @@ plt.show()
 top = int(np.argmax(-table.rebound_spin))
 near = slice(max(top - 1, 0), top + 2)
 curve = np.polyfit(angles[near], -table.rebound_spin[near], 2)
-most = -curve[1] / (2 * curve[0])
+best_angle = -curve[1] / (2 * curve[0])
 spread = table.restitution.max() - table.restitution.min()
 
 # %%
@@ -97,7 +97,7 @@ rows = [
      0.02, cross, "fitted: loss factor, in a normal impact"),
     ("spread of the restitution, 20 to 60 degrees", "1", spread, 2 * flat.errors["restitution"],
      0, 0.04, cross, ""),
-    ("angle of most spin", "degrees", most, 5, 40, 5, cross,
+    ("angle of most spin", "degrees", best_angle, 5, 40, 5, cross,
      "misses: likely the layers; this ball gives back shear where it grips, and spins more"),
     ("tangential over normal impulse at 20 degrees", "1", impulses, impulse_error, friction, 0,
      "exact: slides throughout", ""),

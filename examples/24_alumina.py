@@ -54,7 +54,7 @@ def thrown(angle):
 
 
 runs = [ff.run(thrown(angle), estimate=bool(k == 0), fields=2) for k, angle in enumerate(angles)]
-slips = np.array([one["rebound_vx"] + radius * one["rebound_spin"] for one in runs])
+slips = np.array([run["rebound_vx"] + radius * run["rebound_spin"] for run in runs])
 beta = -slips / (speed * np.sin(angles))
 errors = runs[0].errors["rebound_vx"] + radius * runs[0].errors["rebound_spin"]
 errors = errors / (speed * np.sin(angles))
@@ -85,7 +85,7 @@ def theory(psi):
 line = np.linspace(0.5, 17, 18)
 exact = -1 + 7 * (1 + 0.98) * (1 - nu) / ((2 - nu) * psi)
 fig, ax = plt.subplots(figsize=(6, 4), layout="constrained")
-ax.plot(line, [theory(one) for one in line], "k-", label="theory, elastic")
+ax.plot(line, [theory(value) for value in line], "k-", label="theory, elastic")
 ax.plot(psi[1:], exact[1:], "s", mfc="none", label="exact where it slides, e = 0.98")
 ax.errorbar(psi, beta, errors, fmt="o", capsize=3, label="computed")
 ax.set(xlabel=r"incidence $\psi_1$ [-]", ylabel=r"reversed slip $\beta$ [-]")

@@ -20,7 +20,7 @@ import ffimpact as ff
 rubber = ff.NeoHookean(young=3e5, nu=0.3, density=1100)
 random = np.random.default_rng(3)
 corners = np.arange(5) * 2 * np.pi / 5 + 0.3
-pentagon = [(0.023 * float(np.cos(one)), 0.023 * float(np.sin(one))) for one in corners]
+pentagon = [(0.023 * float(np.cos(angle)), 0.023 * float(np.sin(angle))) for angle in corners]
 shapes = [
     lambda **more: ff.Disc(radius=0.022, **more),
     lambda **more: ff.Ring(radius=0.024, inner_radius=0.014, **more),

@@ -22,10 +22,10 @@ arc = np.radians(np.linspace(90, 270, 13))
 outer, inner = gap / 2 + thickness, gap / 2
 outline = [
     (length, outer),
-    *((float(outer * np.cos(one)), float(outer * np.sin(one))) for one in arc),
+    *((float(outer * np.cos(angle)), float(outer * np.sin(angle))) for angle in arc),
     (length, -outer),
     (length, -inner),
-    *((float(inner * np.cos(one)), float(inner * np.sin(one))) for one in arc[::-1]),
+    *((float(inner * np.cos(angle)), float(inner * np.sin(angle))) for angle in arc[::-1]),
     (length, inner),
 ]
 rubber = ff.NeoHookean(young=1e6, nu=0.4, density=1100, loss=0.05)

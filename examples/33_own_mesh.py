@@ -29,8 +29,8 @@ gmsh.model.add("button")
 disc = gmsh.model.occ.addDisk(0, 0, 0, radius, radius)
 angles = np.radians([45, 135, 225, 315])
 holes = [
-    (2, gmsh.model.occ.addDisk(offset * np.cos(one), offset * np.sin(one), 0, hole, hole))
-    for one in angles
+    (2, gmsh.model.occ.addDisk(offset * np.cos(angle), offset * np.sin(angle), 0, hole, hole))
+    for angle in angles
 ]
 gmsh.model.occ.cut([(2, disc)], holes)
 gmsh.model.occ.synchronize()

@@ -54,18 +54,18 @@ def complaints(table: pd.DataFrame) -> list[str]:
     """
     if list(table.columns) != COLUMNS:
         return [f"columns {', '.join(table.columns)} (accepted: {', '.join(COLUMNS)})"]
-    found = [] if len(table) else ["no rows"]
+    messages = [] if len(table) else ["no rows"]
     for _, row in table.iterrows():
         if not pd.notna(row.computed) or abs(row.computed) == float("inf"):
-            found.append(f"{row.quantity}: computed is {row.computed}")
+            messages.append(f"{row.quantity}: computed is {row.computed}")
         elif not row.quantity or not row.unit:
-            found.append(f"'{row.quantity}': no name or no unit")
+            messages.append(f"'{row.quantity}': no name or no unit")
         elif not is_consistent(row) and len(row.note.removeprefix("misses:")) in (0, len(row.note)):
-            found.append(
+            messages.append(
                 f"{row.quantity}: {row.computed:g} +- {row.error:g} against {row.reference:g} "
                 f"+- {row.uncertainty:g} ({row.source}), and the note does not say why"
             )
-    return found
+    return messages
 
 
 def main(argv: list[str]) -> int:

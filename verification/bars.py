@@ -36,9 +36,9 @@ def two_bars(folder: Path, elements: int, law: str = "neohookean") -> Iterator[R
     not coincide.
     """
     size = 10 / elements
-    left = _bar(3 * size, 10, position=[-5, 0], velocity=[SPEED, 0])
-    right = _bar(3 * size, 10, position=[5, 0], velocity=[-SPEED, 0]) | {"mesh_size": 0.9 * size, "contact_mesh_size": 0.9 * size}
-    run = bodies(folder, {"accuracy": 0.05, "law": law, "young": 1, "nu": 0, "density": 1, "dt": size / 2, "chatter": "continue", "body": [left, right],
+    left_bar = _bar(3 * size, 10, position=[-5, 0], velocity=[SPEED, 0])
+    right_bar = _bar(3 * size, 10, position=[5, 0], velocity=[-SPEED, 0]) | {"mesh_size": 0.9 * size, "contact_mesh_size": 0.9 * size}
+    run = bodies(folder, {"accuracy": 0.05, "law": law, "young": 1, "nu": 0, "density": 1, "dt": size / 2, "chatter": "continue", "body": [left_bar, right_bar],
                           "contact": {"penalty": 1e3}})
     summary, history = run.summary, run.history
     time = summary["contact_time"]

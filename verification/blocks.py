@@ -24,10 +24,10 @@ def pressed(folder: Path, elements: int) -> Iterator[Row]:
     scene = {"law": "neohookean", "young": 1, "nu": 0.3, "density": 1, "accuracy": 0.05, "integrator": "backward-euler", "dt": 1,
              "end_time": 30, "tolerance": 1e-10, "body": [block(0.25, 1 / elements), block(0.75, 0.7 / elements)], "obstacle": planes,
              "contact": {"penalty": PENALTY}}
-    found = measure("pressed", **prepared(folder, scene), out=folder)
-    yield Row("area", 1 / elements, found["area"], 1)
-    yield Row("force on the planes", 1 / elements, found["balance"], 0)
-    yield Row("pressure: root mean square deviation", 1 / elements, found["uneven"], 0, 1)
+    numbers = measure("pressed", **prepared(folder, scene), out=folder)
+    yield Row("area", 1 / elements, numbers["area"], 1)
+    yield Row("force on the planes", 1 / elements, numbers["balance"], 0)
+    yield Row("pressure: root mean square deviation", 1 / elements, numbers["uneven"], 0, 1)
 
 
 def blocks(folder: Path) -> Iterator[Row]:

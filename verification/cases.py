@@ -31,9 +31,9 @@ def independent(folder: Path) -> Iterator[Row]:
         script = peers["script"]
         body = script.partition("-")[0]
         for accuracy in (0.02, 0.005, 0.0025, 0.00125, 0.0006):
-            found = disc(folder, script=script, accuracy=accuracy, **peers["when"]).summary
+            summary = disc(folder, script=script, accuracy=accuracy, **peers["when"]).summary
             for key, words in (("contact_time", "contact time"), ("impulse", "impulse"), ("rebound_vy", "rebound")):
-                yield Row(f"{body}: {words}", accuracy, found[key], peers["numbers"][key]["value"])
+                yield Row(f"{body}: {words}", accuracy, summary[key], peers["numbers"][key]["value"])
 
 
 CASES = (

@@ -48,12 +48,12 @@ def sheared(folder: Path, share: float) -> tuple[dict[str, float], pd.DataFrame]
     """
     folder.mkdir(parents=True, exist_ok=True)
     held(folder / "disc.msh", share)
-    found = measure("cattaneo", mesh=folder / "disc.msh", law="neohookean", young=1, nu=NU, density=1, radius=1, height=DEPTH, speed=SPEED, dt=STEP,
-                    end_time=STEPS * STEP, integrator="backward-euler", friction_static=FRICTION, slip_velocity=CREEP * SPEED,
-                    penalty=10 * STIFFNESS / (share * WIDTH), out=folder)
-    if found["state"] or found["kinetic"] > 1e-6:
+    numbers = measure("cattaneo", mesh=folder / "disc.msh", law="neohookean", young=1, nu=NU, density=1, radius=1, height=DEPTH, speed=SPEED, dt=STEP,
+                      end_time=STEPS * STEP, integrator="backward-euler", friction_static=FRICTION, slip_velocity=CREEP * SPEED,
+                      penalty=10 * STIFFNESS / (share * WIDTH), out=folder)
+    if numbers["state"] or numbers["kinetic"] > 1e-6:
         raise Failure("cattaneo: not at rest")
-    return found, pd.read_csv(folder / "tractions.csv")
+    return numbers, pd.read_csv(folder / "tractions.csv")
 
 
 def exact(x: np.ndarray, b: float, c: float) -> np.ndarray:
@@ -61,10 +61,10 @@ def exact(x: np.ndarray, b: float, c: float) -> np.ndarray:
     return np.sqrt(np.maximum(1 - (x / b) ** 2, 0)) - c / b * np.sqrt(np.maximum(1 - (x / c) ** 2, 0))
 
 
-def widths(found: dict[str, float]) -> tuple[float, float, float]:
+def widths(numbers: dict[str, float]) -> tuple[float, float, float]:
     """b and c [m], and p0 [Pa], for the computed forces P and Q."""
-    b = 2 * math.sqrt(found["normal"] / (math.pi * STIFFNESS))
-    return b, b * math.sqrt(1 - found["along"] / (FRICTION * found["normal"])), 2 * found["normal"] / (math.pi * b)
+    b = 2 * math.sqrt(numbers["normal"] / (math.pi * STIFFNESS))
+    return b, b * math.sqrt(1 - numbers["along"] / (FRICTION * numbers["normal"])), 2 * numbers["normal"] / (math.pi * b)
 
 
 def by_edge(table: pd.DataFrame, b: float, c: float, p0: float) -> pd.DataFrame:
@@ -81,8 +81,8 @@ def by_edge(table: pd.DataFrame, b: float, c: float, p0: float) -> pd.DataFrame:
 def annulus(folder: Path, share: float) -> Iterator[Row]:
     """Half of the length that sticks, |v_T| < slip_velocity, over c; and the root mean square error
     of q in |x| < b over mu p0."""
-    found, table = sheared(folder, share)
-    b, c, p0 = widths(found)
+    numbers, table = sheared(folder, share)
+    b, c, p0 = widths(numbers)
     edges = by_edge(table, b, c, p0)
     yield Row("stick half-width c", share, table.length[table.v.abs() < CREEP * SPEED].sum() / 2, c, 1)
     yield Row("mean error of q", share, math.sqrt(np.average((edges.q - edges.exact) ** 2, weights=edges.length)), 0, 1)

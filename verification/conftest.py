@@ -20,8 +20,8 @@ def disc(tmp_path_factory):
     """disc(name=value, ...): a run of edp/disc-plane.edp with these flags, without Python;
     disc(script="disc-block", ...) runs another script."""
     @cache
-    def go(**given) -> runs.Outcome:
-        return runs.disc(tmp_path_factory.mktemp("disc"), **given)
+    def go(**flags) -> runs.Outcome:
+        return runs.disc(tmp_path_factory.mktemp("disc"), **flags)
     return go
 
 
@@ -29,7 +29,7 @@ def disc(tmp_path_factory):
 def march(tmp_path):
     """march(tables, name=value, ...): a run of edp/bodies.edp for the scene in these tables."""
     numbers = count()
-    return lambda tables, **given: runs.bodies(tmp_path / str(next(numbers)), tables, **given)
+    return lambda tables, **flags: runs.bodies(tmp_path / str(next(numbers)), tables, **flags)
 
 
 @pytest.fixture

@@ -77,12 +77,12 @@ def early(folder: Path, speed: float, share: float) -> Iterator[Row]:
     until, middles = RADIUS * speed / (2 * WAVE**2), ends - steps / 2
     late, whole = (middles > until / 2) & (middles < until), (ends > 0) & (ends <= until)
     root = np.sqrt(middles[late])
-    found = (forces[late] * root * steps[late]).sum() / (root**2 * steps[late]).sum() * math.sqrt(until)
+    fitted_force = (forces[late] * root * steps[late]).sum() / (root**2 * steps[late]).sum() * math.sqrt(until)
     end = ends[whole][-1]
-    yield Row(f"{speed:g} m/s: force", share, found, force(speed, until, shock(speed)))
+    yield Row(f"{speed:g} m/s: force", share, fitted_force, force(speed, until, shock(speed)))
     yield Row(f"{speed:g} m/s: impulse", share, (forces[whole] * steps[whole]).sum(), 2 / 3 * end * force(speed, end, shock(speed)))
     if share == SHARES[-1]:
-        yield Row(f"{speed:g} m/s: with c_L", share, found, force(speed, until, WAVE))
+        yield Row(f"{speed:g} m/s: with c_L", share, fitted_force, force(speed, until, WAVE))
 
 
 def touches(folder: Path) -> Iterator[Row]:
@@ -98,7 +98,8 @@ def forces(axes: plt.Axes, folder: Path) -> None:
     axes.plot(t, np.sqrt(t), color=BLACK, linewidth=1, label="$2\\rho c_L v\\sqrt{2Rvt}$")
     for speed, colour in zip(SPEEDS, (ORANGE, BLUE)):
         until = RADIUS * speed / (2 * WAVE**2)
-        ends, steps, found = since_touch(folder / f"{speed:g}-{SHARES[-1]:g}")
-        axes.plot((ends - steps / 2) / until, found / force(speed, until, WAVE), color=colour, linewidth=0.9, label=f"{speed:g} m/s")
+        ends, steps, contact_forces = since_touch(folder / f"{speed:g}-{SHARES[-1]:g}")
+        axes.plot((ends - steps / 2) / until, contact_forces / force(speed, until, WAVE), color=colour, linewidth=0.9,
+                  label=f"{speed:g} m/s")
     axes.set(xlabel="time over $Rv/(2c_L^2)$", ylabel="force over that of $c_L$ at the end", xlim=(0, 1.05), ylim=(0, 1.15))
     axes.legend(loc="lower right")

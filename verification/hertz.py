@@ -32,13 +32,13 @@ def hertz(folder: Path, share: float, law: str = "neohookean", nu: float = 0.3, 
     folder.mkdir(parents=True, exist_ok=True)
     stiffness, ball = 1 / (1 - nu**2), body == "ball"
     load = 4 / 3 * stiffness * NARROW**3 if ball else math.pi * stiffness * NARROW**2 / 4
-    found = measure("hertz-ball" if ball else "hertz", law=law, young=1, nu=nu, density=1, radius=1, speed=0,
-                    gravity=load / (4 / 3 * math.pi if ball else math.pi), dt=20, integrator="backward-euler",
-                    penalty=10 * stiffness / (share * NARROW), end_time=1200, mesh_size=0.2, contact_mesh_size=share * NARROW, out=folder)
-    if abs(found["imbalance"]) > 1e-6 or found["kinetic"] > 1e-9:
+    numbers = measure("hertz-ball" if ball else "hertz", law=law, young=1, nu=nu, density=1, radius=1, speed=0,
+                      gravity=load / (4 / 3 * math.pi if ball else math.pi), dt=20, integrator="backward-euler",
+                      penalty=10 * stiffness / (share * NARROW), end_time=1200, mesh_size=0.2, contact_mesh_size=share * NARROW, out=folder)
+    if abs(numbers["imbalance"]) > 1e-6 or numbers["kinetic"] > 1e-9:
         raise Failure("hertz: not at rest")
-    yield Row(f"{body}: half-width b", share, found["width"], NARROW, 1)
-    yield Row(f"{body}: pressure p₀", share, found["peak"], peak(nu, body), 1)
+    yield Row(f"{body}: half-width b", share, numbers["width"], NARROW, 1)
+    yield Row(f"{body}: pressure p₀", share, numbers["peak"], peak(nu, body), 1)
 
 
 def peak(nu: float, body: str = "cylinder") -> float:
@@ -105,14 +105,15 @@ def balls(folder: Path, speed: float, **more) -> Iterator[Row]:
     return _compare("two balls", outcome(folder), speed, 0.5, BALL | more)
 
 
-def _compare(what: str, found: Outcome, speed: float, share: float, of: dict) -> Iterator[Row]:
+def _compare(what: str, result: Outcome, speed: float, share: float, properties: dict) -> Iterator[Row]:
     """Compares a run with impact(). `share` is 1 for a ball on the plane, and 1/2 for two balls,
     whose mass, radius and E* are halved."""
-    mass = 4 / 3 * math.pi * of["radius"] ** 3 * of["density"]
-    time, force, width = impact(share * mass, share * of["radius"], share * of["young"] / (1 - of["nu"] ** 2), speed)
-    size = width / of["radius"]
-    yield Row(f"{what}: contact time", size, found.summary["contact_time"], time, 1)
-    yield Row(f"{what}: largest force", size, found.summary["peak_force"], force, 1)
+    mass = 4 / 3 * math.pi * properties["radius"] ** 3 * properties["density"]
+    time, force, width = impact(share * mass, share * properties["radius"],
+                                share * properties["young"] / (1 - properties["nu"] ** 2), speed)
+    size = width / properties["radius"]
+    yield Row(f"{what}: contact time", size, result.summary["contact_time"], time, 1)
+    yield Row(f"{what}: largest force", size, result.summary["peak_force"], force, 1)
 
 
 def impacts(folder: Path) -> Iterator[Row]:

@@ -24,8 +24,8 @@ def bar(folder: Path, elements: int) -> Iterator[Row]:
     # The end of the bar chatters on a nearly rigid plane.
     measure("impact", nu=0, radius=LENGTH, density=DENSITY, speed=speed, young=young, penalty=1e12, mesh_size=LENGTH / elements,
             dt=LENGTH / elements / c / 2, chatter="continue", out=folder / str(elements))
-    found = outcome(folder / str(elements))
-    summary, history = found.summary, found.history
+    result = outcome(folder / str(elements))
+    summary, history = result.summary, result.history
     time = summary["contact_time"]
     plateau = (history["t"] > 0.1 * time) & (history["t"] < 0.9 * time)
     force = np.average(history["normal_force"][plateau], weights=history["dt"][plateau])

@@ -39,24 +39,24 @@ class Outcome:
 
 
 @cache
-def measure(script: str, **given: Value | Path) -> dict[str, float]:
+def measure(script: str, **flags: Value | Path) -> dict[str, float]:
     """The numbers that verification/<script>.edp prints with these flags. Each call runs once.
 
     Raises Failure if the script does not finish.
     """
     # FreeFem++ resolves includes relative to the folder in which it starts.
-    said = _start(f"{script}.edp", given, SCRIPTS)
-    values = dict(LINE.findall(said))
+    output = _start(f"{script}.edp", flags, SCRIPTS)
+    values = dict(LINE.findall(output))
     if values.pop("done", None) != "1":
-        raise Failure(f"{script}: did not finish: {_end(said)}")
+        raise Failure(f"{script}: did not finish: {_end(output)}")
     return {name: float(value) for name, value in values.items()}
 
 
-def disc(folder: Path, script: str = "disc-plane", **given: Value | Path) -> Outcome:
+def disc(folder: Path, script: str = "disc-plane", **flags: Value | Path) -> Outcome:
     """A run of edp/<script>.edp with these flags in `folder`."""
     for name in ("summary.json", "record.json"):  # of an earlier run in the folder
         (folder / name).unlink(missing_ok=True)
-    _start(f"edp/{script}.edp", given | {"out": folder})
+    _start(f"edp/{script}.edp", flags | {"out": folder})
     return outcome(folder)
 
 
@@ -66,21 +66,21 @@ def outcome(folder: Path) -> Outcome:
     return Outcome(results.read_summary(folder), results.read_history(folder))
 
 
-def bodies(folder: Path, tables: dict, **given: Value | Path) -> Outcome:
+def bodies(folder: Path, tables: dict, **flags: Value | Path) -> Outcome:
     """A run of the script of bodies for the scene in these tables (ffimpact.scene), with further
     flags, in `folder`/run."""
     out = folder / "run"
     shutil.rmtree(out, ignore_errors=True)
-    _start(f"edp/{dimension.of_scene(tables).script}.edp", prepared(folder, tables) | given | {"out": out})
+    _start(f"edp/{dimension.of_scene(tables).script}.edp", prepared(folder, tables) | flags | {"out": out})
     return outcome(out)
 
 
-def solid_bodies(folder: Path, scene: solids.Scene, **given: Value | Path) -> Outcome:
+def solid_bodies(folder: Path, scene: solids.Scene, **flags: Value | Path) -> Outcome:
     """A run of edp/bodies-3d.edp for a scene in three dimensions (solids.py), with further flags,
     in `folder`/run."""
     out = folder / "run"
     shutil.rmtree(out, ignore_errors=True)
-    _start("edp/bodies-3d.edp", solids.write(scene, folder) | given | {"out": out})
+    _start("edp/bodies-3d.edp", solids.write(scene, folder) | flags | {"out": out})
     return outcome(out)
 
 
@@ -94,21 +94,21 @@ def prepared(folder: Path, tables: dict) -> dict[str, Value | Path]:
     return flags | {"mesh": folder / scene.mesh_name, "bodies": folder / "scene.dat"}
 
 
-def _start(script: str, given: dict[str, Value | Path], folder: Path = ROOT) -> str:
+def _start(script: str, flags: dict[str, Value | Path], folder: Path = ROOT) -> str:
     """The output of FreeFem++. Raises Failure unless it ends with exit code 0 within LIMIT seconds.
     """
     with tempfile.NamedTemporaryFile("r", errors="replace") as log:
         try:
             with freefem.limited(LIMIT):
-                code, line = freefem.run(freefem.find(), script, given, Path(log.name), folder=folder)
+                code, line = freefem.run(freefem.find(), script, flags, Path(log.name), folder=folder)
         except TooLong as error:
             raise Failure(f"{script}: {error}") from None
-        said = log.read()
+        output = log.read()
     if code != 0:
-        raise Failure(f"{script}: exit code {code}: {f'ffimpact: {line}' if line else _end(said)}   (flags {' '.join(freefem.words_of(given))})")
-    return said
+        raise Failure(f"{script}: exit code {code}: {f'ffimpact: {line}' if line else _end(output)}   (flags {' '.join(freefem.words_of(flags))})")
+    return output
 
 
-def _end(said: str) -> str:
+def _end(output: str) -> str:
     """The end of the output of FreeFem++ on one line."""
-    return " ".join(said.split())[-300:]
+    return " ".join(output.split())[-300:]

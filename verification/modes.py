@@ -35,16 +35,16 @@ def wave_ratio(nu: float) -> float:
     return sqrt((1 - 2 * nu) / (2 * (1 - nu)))
 
 
-def roots(of: Callable[[np.ndarray], np.ndarray], end: float, start: float = 0.3) -> np.ndarray:
+def roots(function: Callable[[np.ndarray], np.ndarray], end: float, start: float = 0.3) -> np.ndarray:
     """Zeros of a smooth function in (start, end), by bisection of its changes of sign."""
     x = np.linspace(start, end, 4000)
-    f = of(x)
+    f = function(x)
     at = np.flatnonzero(f[1:] * f[:-1] < 0)
     low, high, sign = x[at], x[at + 1], np.sign(f[at])
     for _ in range(50):
         middle = (low + high) / 2
-        left = np.sign(of(middle)) == sign
-        low, high = np.where(left, middle, low), np.where(left, high, middle)
+        same_sign = np.sign(function(middle)) == sign
+        low, high = np.where(same_sign, middle, low), np.where(same_sign, high, middle)
     return low
 
 
@@ -54,7 +54,7 @@ def disc(nu: float, end: float) -> np.ndarray:
     Each mode appears as often as it occurs: twice for n > 0, once for n = 0 and for the torsional
     modes with n = 0.
     """
-    ratio, found = wave_ratio(nu), []
+    ratio, frequencies = wave_ratio(nu), []
 
     def free(n: int) -> Callable[[np.ndarray], np.ndarray]:
         def determinant(k: np.ndarray) -> np.ndarray:
@@ -64,10 +64,10 @@ def disc(nu: float, end: float) -> np.ndarray:
             return a * d - b * c
         return determinant
     for n in range(1, int(end) + 3):
-        found += [*roots(free(n), end)] * 2
-    found += [*roots(lambda k: -k**2 / 2 * bessel(0, ratio * k) + ratio * k * bessel(1, ratio * k), end)]
-    found += [*roots(lambda k: bessel(2, k), end)]
-    return np.sort(found)
+        frequencies += [*roots(free(n), end)] * 2
+    frequencies += [*roots(lambda k: -k**2 / 2 * bessel(0, ratio * k) + ratio * k * bessel(1, ratio * k), end)]
+    frequencies += [*roots(lambda k: bessel(2, k), end)]
+    return np.sort(frequencies)
 
 
 def spheroidal(nu: float, n: int, end: float) -> np.ndarray:

@@ -46,9 +46,9 @@ def rigid(folder: Path, angle: float, friction: float, **more) -> tuple[dict, fl
 
     Also returns the initial speeds along and across the plane, and mu (1 + e) v_n/v_t.
     """
-    found = disc(folder, "ball-plane", **RIGID | dict(angle=angle, friction_static=friction) | more).summary
+    summary = disc(folder, "ball-plane", **RIGID | dict(angle=angle, friction_static=friction) | more).summary
     along, across = math.cos(math.radians(angle)), math.sin(math.radians(angle))
-    return found, along, across, friction * (across + found["rebound_vy"]) / along
+    return summary, along, across, friction * (across + summary["rebound_vy"]) / along
 
 
 def springs(psi: ArrayLike, nu: float) -> np.ndarray:
@@ -95,8 +95,8 @@ def lost_slip(folder: Path, psi: float, normal: float, **more) -> tuple[float, d
     of the run."""
     start = psi * FRICTION * (2 - NU) / (2 * (1 - NU)) * normal
     flags = dict(speed=math.hypot(start, normal), angle=math.degrees(math.atan2(normal, start)), friction_static=FRICTION, slip_velocity=1e-3 * normal)
-    found = disc(folder, **ELASTIC | flags | more).summary
-    return 1 - (found["rebound_vx"] + RADIUS * found["rebound_spin"]) / start, found
+    summary = disc(folder, **ELASTIC | flags | more).summary
+    return 1 - (summary["rebound_vx"] + RADIUS * summary["rebound_spin"]) / start, summary
 
 
 def elastic(folder: Path, psi: float) -> Iterator[Row]:
@@ -113,10 +113,10 @@ def stiff(folder: Path, angle: float) -> Iterator[Row]:
     """Speed and spin over the radius of the intersection of plane and ball at the largest depth,
     over the ball radius."""
     depth = (3 * MASS / (2 * math.pi * RADIUS * RIGID["penalty"])) ** (1 / 3)
-    found, along, _, lost = rigid(folder / f"rigid-{angle:g}", angle, 0.2)
+    summary, along, _, lost = rigid(folder / f"rigid-{angle:g}", angle, 0.2)
     (centre, rim), words, size = leaves(lost, INERTIA), f"rigid, {angle}°", math.sqrt(2 * depth / RADIUS)
-    yield Row(f"{words}: speed", size, found["rebound_vx"] / along, centre)
-    yield Row(f"{words}: spin", size, -found["rebound_spin"] * RADIUS / along, rim)
+    yield Row(f"{words}: speed", size, summary["rebound_vx"] / along, centre)
+    yield Row(f"{words}: spin", size, -summary["rebound_spin"] * RADIUS / along, rim)
 
 
 # The impacts can run at the same time.
@@ -129,8 +129,8 @@ def curve(axes: plt.Axes, folder: Path) -> None:
     axes.plot(psi, springs(psi, NU) - 1, color=BLACK, linewidth=1, label="theory")
     runs = np.concatenate([np.loadtxt(path, delimiter=",", ndmin=2) for path in sorted(folder.glob("elastic-*.csv"))])
     for normal, colour in zip(sorted(set(runs[:, 1]), reverse=True), (GREY, ORANGE, BLUE)):
-        of = runs[runs[:, 1] == normal]
-        axes.plot(of[:, 0], of[:, 2] - 1, "o", color=colour, markersize=4.5, label=f"{normal:g} m/s")
+        points = runs[runs[:, 1] == normal]
+        axes.plot(points[:, 0], points[:, 2] - 1, "o", color=colour, markersize=4.5, label=f"{normal:g} m/s")
     axes.axhline(0, color=BLACK, linewidth=0.6)
     axes.set(xlabel="$\\psi_1$", ylabel="$\\beta$")
     axes.legend()

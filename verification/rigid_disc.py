@@ -31,11 +31,11 @@ def oblique(folder: Path) -> Iterator[Row]:
     with the measured restitution."""
     for penalty in (1e11, 3e10, 1e10, 3e9):
         for law, friction, angle in (("neohookean", 0.2, 30), ("svk", 0.3, 20), ("neohookean", 0.2, 60), ("svk", 0.2, 75)):
-            found = disc(folder, law=law, angle=angle, friction_static=friction, friction_dynamic=friction, penalty=penalty,
-                         **STIFF).summary
+            summary = disc(folder, law=law, angle=angle, friction_static=friction, friction_dynamic=friction, penalty=penalty,
+                           **STIFF).summary
             along, across = math.cos(math.radians(angle)), math.sin(math.radians(angle))
-            lost = friction * (across + found["rebound_vy"]) / along
+            lost = friction * (across + summary["rebound_vy"]) / along
             (centre, rim), slides, size = leaves(lost), 1 > 3 * lost, penalty * STIFF["radius"] / STIFF["young"]
             words = f"{'slides' if slides else 'rolls'}, {angle}°, {LAWS[law]}"
-            yield Row(f"{words}: centre", size, found["rebound_vx"] / along, centre)
-            yield Row(f"{words}: rim", size, -found["rebound_spin"] * STIFF["radius"] / along, rim)
+            yield Row(f"{words}: centre", size, summary["rebound_vx"] / along, centre)
+            yield Row(f"{words}: rim", size, -summary["rebound_spin"] * STIFF["radius"] / along, rim)

@@ -11,11 +11,11 @@ from .measure import measure
 def rod(elements: int) -> Iterator[Row]:
     """A clamped rod comes into contact with the wall; t in units of L/c, strains of 5e-5, penalty
     1000 E/L."""
-    found = measure("rod", young=1, density=1, nu=0, speed=1e-4, penalty=1e3, mesh_size=1 / elements, dt=0.5 / elements)
+    numbers = measure("rod", young=1, density=1, nu=0, speed=1e-4, penalty=1e3, mesh_size=1 / elements, dt=0.5 / elements)
     for what, value, expected in (
-            ("contact begins", found["start"], 1), ("contact ends", found["leave"], 2),
-            ("period", found["again"] - found["start"], 3), ("stress: mean", found["mean"], 1 / 2),
-            ("stress: middle", found["stress"], 1 / 2), ("energy", found["energy"], 1 / 8)):
+            ("contact begins", numbers["start"], 1), ("contact ends", numbers["leave"], 2),
+            ("period", numbers["again"] - numbers["start"], 3), ("stress: mean", numbers["mean"], 1 / 2),
+            ("stress: middle", numbers["stress"], 1 / 2), ("energy", numbers["energy"], 1 / 8)):
         yield Row(what, 1 / elements, value, expected, FRONT)
 
 

@@ -19,11 +19,11 @@ MODES = {"disc, SVK": ("damped-mode", {}, 0.015), "disc, neo-Hookean": ("damped-
          "ball, SVK": ("damped-mode-3d", {"symmetry": "full"}, 0.03)}
 
 
-def tip(strains: str, elements: int, **given) -> float:
+def tip(strains: str, elements: int, **flags) -> float:
     """Vertical displacement of the upper right corner, scaled to the published load, with
     `elements` elements on each side."""
     load, parts = LOADS[strains]
-    return measure("cook", gravity=load, end_time=parts, mesh_size=1 / elements, contact_mesh_size=1 / elements, **COOK | given)["tip"] * 6.25 / load
+    return measure("cook", gravity=load, end_time=parts, mesh_size=1 / elements, contact_mesh_size=1 / elements, **COOK | flags)["tip"] * 6.25 / load
 
 
 def membranes(folder: Path) -> Iterator[Row]:
@@ -36,5 +36,5 @@ def decays(folder: Path) -> Iterator[Row]:
     """V24: the decay over three periods, relative to eta omega^2 t/(2 mu)."""
     for name, (script, flags, size) in MODES.items():
         for times in (1, 2):
-            found = measure(script, tolerance=1e-12, mesh_size=size, contact_mesh_size=size, exponent=times, **flags | VISCOUS)
-            yield Row(f"decay: {name}", 1 / (120 * times), found["decay"], 1, 2)
+            numbers = measure(script, tolerance=1e-12, mesh_size=size, contact_mesh_size=size, exponent=times, **flags | VISCOUS)
+            yield Row(f"decay: {name}", 1 / (120 * times), numbers["decay"], 1, 2)

@@ -33,15 +33,15 @@ def block(folder: Path) -> Iterator[Row]:
     """
     top = math.atan(1.05 * 0.7)
     for dt in (8e-3, 4e-3, 2e-3, 1e-3):
-        found = measure("sliding-block", speed=1, angle=0, end_time=0.24, friction_static=0.7, friction_dynamic=0.5,
-                        slip_velocity=dt, dt=dt, **BLOCK)
-        yield Row("stop: time", dt, found["stop"], stop_time(1, 0.5), 1)
-        yield Row("stop: way", dt, found["distance"], stop_way(1, 0.5))
-        yield Row("stop: friction work", dt, found["work"], MASS / 2)
-        found = measure("sliding-block", speed=0, angle=math.degrees(top), end_time=0.6, friction_static=0.7,
-                        friction_dynamic=0.4, slip_velocity=0.02 * dt, dt=dt, **BLOCK)
-        yield Row("starts to slide: tan α", dt, found["breakaway"], 0.7)
+        numbers = measure("sliding-block", speed=1, angle=0, end_time=0.24, friction_static=0.7, friction_dynamic=0.5,
+                          slip_velocity=dt, dt=dt, **BLOCK)
+        yield Row("stop: time", dt, numbers["stop"], stop_time(1, 0.5), 1)
+        yield Row("stop: way", dt, numbers["distance"], stop_way(1, 0.5))
+        yield Row("stop: friction work", dt, numbers["work"], MASS / 2)
+        numbers = measure("sliding-block", speed=0, angle=math.degrees(top), end_time=0.6, friction_static=0.7,
+                          friction_dynamic=0.4, slip_velocity=0.02 * dt, dt=dt, **BLOCK)
+        yield Row("starts to slide: tan α", dt, numbers["breakaway"], 0.7)
         for law in ("linear", "sqrt", "tanh"):
-            found = measure("sliding-block", speed=0, angle=math.degrees(math.atan(0.6 * 0.9)), end_time=0.2, friction_static=0.6,
-                            friction_dynamic=0.6, regularization=law, slip_velocity=dt, dt=dt, **BLOCK)
-            yield Row(f"creep: {law}", dt, found["creep"], CREEP[law](0.9))
+            numbers = measure("sliding-block", speed=0, angle=math.degrees(math.atan(0.6 * 0.9)), end_time=0.2, friction_static=0.6,
+                              friction_dynamic=0.6, regularization=law, slip_velocity=dt, dt=dt, **BLOCK)
+            yield Row(f"creep: {law}", dt, numbers["creep"], CREEP[law](0.9))

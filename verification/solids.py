@@ -123,6 +123,6 @@ def data(scene: Scene) -> str:
     lines += [f"body{b} {body.material[0]} " + numbers(body.material[1:], body.centre, body.shift, body.velocity, body.spin) for b, body in enumerate(scene.bodies)]
     spheres = [f"{b} " + numbers(sphere) for b, body in enumerate(scene.bodies) for sphere in body.spheres]
     lines += [f"spheres {len(spheres)}", *spheres, "cylinders 0", "files 0", f"obstacles {len(scene.obstacles)}"]
-    lines += [f"obstacle{k} {kind} {len(given)} " + numbers(given, velocity) for k, (kind, given, velocity) in enumerate(scene.obstacles, 1)]
+    lines += [f"obstacle{k} {kind} {len(values)} " + numbers(values, velocity) for k, (kind, values, velocity) in enumerate(scene.obstacles, 1)]
     lines += [f"pairs {len(scene.pairs)}", *(f"{a} {b} " + numbers(values) for a, b, *values in scene.pairs), ""]
     return "\n".join(lines)

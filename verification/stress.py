@@ -27,11 +27,11 @@ def cauchy(law: str, F: np.ndarray = F) -> np.ndarray:
 def assert_stress(largest: dict, folder: Path, sigma: np.ndarray, F: np.ndarray) -> None:
     """Cauchy stress, its von Mises stress and det F of the state recorded in `folder` are these at every node; von Mises, tension and shear of stress.idp are those of this stress."""
     write_fields(folder)
-    found, principal = vtu.read(folder / "fields/0000.vtu").fields, np.linalg.eigvalsh(sigma)
-    mises, count = np.sqrt(((principal - np.roll(principal, 1)) ** 2).sum() / 2), len(found["jacobian"])
+    fields, principal = vtu.read(folder / "fields/0000.vtu").fields, np.linalg.eigvalsh(sigma)
+    mises, count = np.sqrt(((principal - np.roll(principal, 1)) ** 2).sum() / 2), len(fields["jacobian"])
     # xx yy zz xy yz xz
-    assert count > 20 and found["cauchy_stress"] == pytest.approx(np.tile(sigma[[0, 1, 2, 0, 1, 0], [0, 1, 2, 1, 2, 2]], (count, 1)), rel=1e-7)
-    assert found["von_mises"] == pytest.approx(np.full(count, mises), rel=1e-7)
-    assert found["jacobian"] == pytest.approx(np.full(count, np.linalg.det(F)), rel=1e-7)
+    assert count > 20 and fields["cauchy_stress"] == pytest.approx(np.tile(sigma[[0, 1, 2, 0, 1, 0], [0, 1, 2, 1, 2, 2]], (count, 1)), rel=1e-7)
+    assert fields["von_mises"] == pytest.approx(np.full(count, mises), rel=1e-7)
+    assert fields["jacobian"] == pytest.approx(np.full(count, np.linalg.det(F)), rel=1e-7)
     assert largest["mises"] == pytest.approx(mises, rel=1e-10)
     assert largest["tension"] == pytest.approx(max(principal[2], 0.0), rel=1e-9) and largest["shear"] == pytest.approx((principal[2] - principal[0]) / 2, rel=1e-9)

@@ -20,9 +20,9 @@ def test_homogeneous_deformation_is_exact(measure, law):
 
     The discrete-gradient correction of finite steps agrees with the energies.
     """
-    found = measure("homogeneous-3d", law=law, symmetry="full", **COARSE)
-    assert found["gradient"] < 1e-13 and found["stress"] < 1e-12 and found["energy"] < 1e-12 and found["stretch"] < 1e-12
-    assert found["excess"] < 1e-13 and (found["largest"] > 0.1 or law == "svk")
+    numbers = measure("homogeneous-3d", law=law, symmetry="full", **COARSE)
+    assert numbers["gradient"] < 1e-13 and numbers["stress"] < 1e-12 and numbers["energy"] < 1e-12 and numbers["stretch"] < 1e-12
+    assert numbers["excess"] < 1e-13 and (numbers["largest"] > 0.1 or law == "svk")
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -73,11 +73,11 @@ def test_spinning_ball_keeps_energy_and_momenta(measure, law, turns):
 
     A rigid motion of a deformed body changes neither its energy nor det F.
     """
-    found = measure("spinning-3d", law=law, spin=200, exponent=3, tolerance=5e-14, mesh_size=0.035, contact_mesh_size=0.035, symmetry="half",
-                    end_time=2 * np.pi * turns / 200)
-    assert found["state"] == 0 and found["strain"] > 0.02 and found["turns"] == turns
-    assert found["energy"] < 1e-10 and found["momentum"] < 1e-10 and found["angular"] < 1e-10
-    assert found["rigid"] < 1e-11
+    numbers = measure("spinning-3d", law=law, spin=200, exponent=3, tolerance=5e-14, mesh_size=0.035, contact_mesh_size=0.035, symmetry="half",
+                      end_time=2 * np.pi * turns / 200)
+    assert numbers["state"] == 0 and numbers["strain"] > 0.02 and numbers["turns"] == turns
+    assert numbers["energy"] < 1e-10 and numbers["momentum"] < 1e-10 and numbers["angular"] < 1e-10
+    assert numbers["rigid"] < 1e-11
 
 
 @pytest.mark.few(2)
@@ -90,9 +90,9 @@ def test_ellipticity_is_the_least_of_all_directions(measure, law, nu):
     No direction gives a smaller value than the program, which searches the principal planes of C;
     the difference is within the spacing of the directions.
     """
-    found = measure("ellipticity-3d", law=law, nu=nu, **COARSE)
-    closed = np.array([found[f"closed{i}"] for i in STATES])
-    entries = np.array([[found[f"C{name}_{i}"] for i in STATES] for name in ("11", "12", "13", "12", "22", "23", "13", "23", "33")])
+    numbers = measure("ellipticity-3d", law=law, nu=nu, **COARSE)
+    closed = np.array([numbers[f"closed{i}"] for i in STATES])
+    entries = np.array([[numbers[f"C{name}_{i}"] for i in STATES] for name in ("11", "12", "13", "12", "22", "23", "13", "23", "33")])
     golden = np.arange(20000) + 0.5
     height, turn = 1 - golden / 20000, np.pi * (1 + 5**0.5) * golden  # evenly over half a sphere
     N = np.stack([np.sqrt(1 - height**2) * np.cos(turn), np.sqrt(1 - height**2) * np.sin(turn), height])
@@ -137,8 +137,8 @@ def test_impact_is_that_of_a_body_of_revolution(disc, law, speed):
     of the contact, L2 norm) agree to 4 %. For St. Venant-Kirchhoff the speed is low enough for
     ellipticity.
     """
-    given = {"law": law, "speed": speed, "penalty": 1e10, "accuracy": 0.01}
-    runs = [disc(script="ball-plane", **given), disc(script="ball-axisymmetric", **given | {"accuracy": 0.005})]
+    flags = {"law": law, "speed": speed, "penalty": 1e10, "accuracy": 0.01}
+    runs = [disc(script="ball-plane", **flags), disc(script="ball-axisymmetric", **flags | {"accuracy": 0.005})]
     solid, revolved = (run.summary for run in runs)
     assert solid["min_ellipticity"] > 0 and revolved["min_ellipticity"] > 0
     assert solid["thresholded_contact_time"] == pytest.approx(revolved["thresholded_contact_time"], rel=0.01)
@@ -158,11 +158,11 @@ def test_friction_in_space_is_the_law_in_every_direction(measure, regularization
 
     Stiffness, drag and coupling are derivatives of the forces to 1e-6.
     """
-    found = measure("friction-3d", friction_static=0.7, friction_dynamic=0.5, regularization=regularization, friction_transition=transition,
-                    symmetry="full", **COARSE)
-    assert found["plane"] < 1e-13 and found["turned"] < 1e-13
-    assert found["stiff"] < 1e-6 and found["drag"] < 1e-6 and found["coupling"] < 1e-6
-    assert found["depth"] < 5e-3 and found["others"] == 0
+    numbers = measure("friction-3d", friction_static=0.7, friction_dynamic=0.5, regularization=regularization,
+                      friction_transition=transition, symmetry="full", **COARSE)
+    assert numbers["plane"] < 1e-13 and numbers["turned"] < 1e-13
+    assert numbers["stiff"] < 1e-6 and numbers["drag"] < 1e-6 and numbers["coupling"] < 1e-6
+    assert numbers["depth"] < 5e-3 and numbers["others"] == 0
 
 
 OBLIQUE = {"law": "neohookean", "accuracy": 0.2, "speed": 8, "angle": 45, "spin": 20, "mesh_size": 0.03, "contact_mesh_size": 0.015}

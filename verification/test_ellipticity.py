@@ -23,24 +23,24 @@ def acoustic(C: np.ndarray, nu: float, law: str, N: np.ndarray) -> np.ndarray:
     Q is as in textbooks: svk (N.S N) I + (lambda + mu) FN (x) FN + mu F F^T, neo-Hookean mu I +
     (lambda (1 - ln J) + mu) g (x) g.
     """
-    ratio, one, found = 2 * nu / (1 - 2 * nu), np.eye(len(N)), []
+    ratio, identity, extremes = 2 * nu / (1 - 2 * nu), np.eye(len(N)), []
     for c in C:
         F = np.linalg.cholesky(c).T  # any F with F^T F = C will do
         if law == "svk":
-            S = ratio * (np.trace(c) - len(N)) / 2 * one + c - one
+            S = ratio * (np.trace(c) - len(N)) / 2 * identity + c - identity
             FN = F @ N
-            Q = (np.einsum("id,ij,jd->d", N, S, N)[:, None, None] * one + (ratio + 1) * np.einsum("id,jd->dij", FN, FN) + F @ F.T)
+            Q = (np.einsum("id,ij,jd->d", N, S, N)[:, None, None] * identity + (ratio + 1) * np.einsum("id,jd->dij", FN, FN) + F @ F.T)
         else:
             g = np.linalg.inv(F).T @ N
-            Q = one + (ratio * (1 - np.log(np.linalg.det(F))) + 1) * np.einsum("id,jd->dij", g, g)
+            Q = identity + (ratio * (1 - np.log(np.linalg.det(F))) + 1) * np.einsum("id,jd->dij", g, g)
         eigenvalues = np.linalg.eigvalsh(Q)
-        found.append((eigenvalues.min(), eigenvalues.max()))
-    return np.array(found)
+        extremes.append((eigenvalues.min(), eigenvalues.max()))
+    return np.array(extremes)
 
 
-def states(found: dict) -> np.ndarray:
+def states(numbers: dict) -> np.ndarray:
     """The states C (100, 2, 2) of ellipticity.edp."""
-    a, b, c = (np.array([found[f"C{name}_{i}"] for i in STATES]) for name in ("11", "22", "12"))
+    a, b, c = (np.array([numbers[f"C{name}_{i}"] for i in STATES]) for name in ("11", "22", "12"))
     return np.moveaxis(np.array([[a, c], [c, b]]), 2, 0)
 
 
@@ -50,8 +50,8 @@ def states(found: dict) -> np.ndarray:
 def test_closed_form_is_the_least_of_all_directions(measure, law, nu):
     """For stretches from 0.05 to 2.5 the closed form is below all of 2,000 directions, by no more
     than their spacing explains."""
-    found = measure("ellipticity", law=law, nu=nu)
-    closed, C = np.array([found[f"closed{i}"] for i in STATES]), states(found)
+    numbers = measure("ellipticity", law=law, nu=nu)
+    closed, C = np.array([numbers[f"closed{i}"] for i in STATES]), states(numbers)
     tried = acoustic(C, nu, law, in_plane(2000))[:, 0]
     # Magnitude of the largest eigenvalue of Q.
     largest = np.array([np.trace(c) for c in C]) / (1 - 2 * nu)
@@ -73,9 +73,9 @@ def test_closed_form_is_that_of_the_stress_of_the_program(measure, law, nu, body
     The derivative comes from differences of the program's own stress. For bodies of revolution it
     is in the meridian plane, with circumferential stretches from 0.3 to 2.
     """
-    found = measure(f"ellipticity{body}", law=law, nu=nu)
-    closed, tried = (np.array([found[f"{name}{i}"] for i in STATES]) for name in ("closed", "found"))
-    scale = 1 + abs(closed) + (np.array([np.trace(c) for c in states(found)]) if law == "svk" else 0)
+    numbers = measure(f"ellipticity{body}", law=law, nu=nu)
+    closed, tried = (np.array([numbers[f"{name}{i}"] for i in STATES]) for name in ("closed", "found"))
+    scale = 1 + abs(closed) + (np.array([np.trace(c) for c in states(numbers)]) if law == "svk" else 0)
     assert (abs(tried - closed) <= 1e-4 * scale).all(), (abs(tried - closed) / scale).max()
 
 

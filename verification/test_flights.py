@@ -19,9 +19,9 @@ def test_a_flat_face_lands_when_the_closed_form_says(march, height, gravity, vel
     relative error of 1e-9."""
     body = square(position=[0, height + 0.05], velocity=[0, velocity], mesh_size=0.05, contact_mesh_size=0.05)
     time = (velocity + math.sqrt(velocity**2 + 2 * gravity * height)) / gravity if gravity else -height / velocity
-    found = march(scene(body, obstacles=(plane(),), gravity=gravity, end_time=time * (1 + 1e-6)))
-    assert found.history["t"][1] == pytest.approx(time, rel=1e-9)
-    assert found.history["y"][1] == pytest.approx(0.05, abs=1e-9 * height)
+    result = march(scene(body, obstacles=(plane(),), gravity=gravity, end_time=time * (1 + 1e-6)))
+    assert result.history["t"][1] == pytest.approx(time, rel=1e-9)
+    assert result.history["y"][1] == pytest.approx(0.05, abs=1e-9 * height)
 
 
 @pytest.mark.robustness
@@ -34,8 +34,8 @@ def test_a_square_strikes_with_three_corners(march):
     change of spin.
     """
     body = square(position=[0, 0.08], angle=20, velocity=[0, -2])
-    found = march(scene(body, obstacles=(plane(),), **RUBBER, accuracy=1.25e-3))
-    s, history = found.summary, found.history
+    result = march(scene(body, obstacles=(plane(),), **RUBBER, accuracy=1.25e-3))
+    s, history = result.summary, result.history
     assert s["impulse"] == pytest.approx(55.6, abs=0.6) and s["rebound_vy"] == pytest.approx(1.23, abs=0.03) and s["rebound_spin"] == pytest.approx(-37.9, abs=0.6)
     assert s["contact_intervals"] >= 2 and s["energy_drift"] < 1e-9
     assert s["impulse"] == pytest.approx(history["momentum_y"][-1] - history["momentum_y"][0], rel=1e-9) and abs(history["momentum_x"]).max() < 1e-9 * s["impulse"]

@@ -64,11 +64,11 @@ def test_each_step_obeys_the_momentum_principles(measure, law, integrator):
     Their sums give the changes of momentum, of angular momentum about a fixed point and of friction
     work. They obey Coulomb's law.
     """
-    found = measure("rubbing-disc", law=law, integrator=integrator, speed=6, spin=40, angle=50, gravity=300, body_force_x=100,
-                    dt=4e-5, end_time=6e-3, mesh_size=0.02, contact_mesh_size=0.006, tolerance=2e-14, **RUBBING)
-    assert found["state"] == 0 and 50 < found["touched"] < found["steps"] and found["spun"] < -10
-    assert found["momentum"] < 1e-11 and found["angular"] < 1e-8 and found["work"] < 1e-13 and found["law"] <= 1e-14
-    assert found["drift"] < 1e-10 or integrator == "midpoint"
+    numbers = measure("rubbing-disc", law=law, integrator=integrator, speed=6, spin=40, angle=50, gravity=300, body_force_x=100,
+                      dt=4e-5, end_time=6e-3, mesh_size=0.02, contact_mesh_size=0.006, tolerance=2e-14, **RUBBING)
+    assert numbers["state"] == 0 and 50 < numbers["touched"] < numbers["steps"] and numbers["spun"] < -10
+    assert numbers["momentum"] < 1e-11 and numbers["angular"] < 1e-8 and numbers["work"] < 1e-13 and numbers["law"] <= 1e-14
+    assert numbers["drift"] < 1e-10 or integrator == "midpoint"
 
 
 @pytest.mark.parametrize("spin, sense", [(-400, 1), (400, -1)])
@@ -148,11 +148,11 @@ def test_half_a_rubbing_disc_is_the_whole_disc(disc, tmp_path, regularization, s
 
 def test_two_ways_are_mirror_images(disc):
     """At a normal impact the opposite spin gives the mirror image of the motion."""
-    left, right = (disc(**OBLIQUE | dict(angle=90, speed=6, spin=spin)).summary for spin in (400, -400))
+    forward, backward = (disc(**OBLIQUE | dict(angle=90, speed=6, spin=spin)).summary for spin in (400, -400))
     # The mesh itself is not symmetric.
-    assert left["rebound_vx"] == pytest.approx(-right["rebound_vx"], rel=0.01)
-    assert left["rebound_spin"] == pytest.approx(-right["rebound_spin"], rel=0.01)
-    assert left["friction_work"] == pytest.approx(right["friction_work"], rel=0.03)
+    assert forward["rebound_vx"] == pytest.approx(-backward["rebound_vx"], rel=0.01)
+    assert forward["rebound_spin"] == pytest.approx(-backward["rebound_spin"], rel=0.01)
+    assert forward["friction_work"] == pytest.approx(backward["friction_work"], rel=0.03)
 
 
 # ---- integrators
@@ -166,12 +166,12 @@ def test_integrators_agree_at_small_steps(disc, integrator, rebound, work, balan
     """With friction, too, every implicit integrator converges to the results of the energy-momentum
     integrator."""
     settings = OBLIQUE | dict(dt=1e-5, penalty=1e9)
-    reference, found = disc(**settings).summary, disc(integrator=integrator, **settings).summary
+    reference, summary = disc(**settings).summary, disc(integrator=integrator, **settings).summary
     for name in ("rebound_vx", "rebound_vy", "rebound_spin"):
-        assert found[name] == pytest.approx(reference[name], rel=rebound), name
-    assert found["friction_work"] == pytest.approx(reference["friction_work"], rel=work)
-    assert found["sticking_time"] == pytest.approx(reference["sticking_time"], rel=0.05)
-    assert found["energy_drift"] < balance
+        assert summary[name] == pytest.approx(reference[name], rel=rebound), name
+    assert summary["friction_work"] == pytest.approx(reference["friction_work"], rel=work)
+    assert summary["sticking_time"] == pytest.approx(reference["sticking_time"], rel=0.05)
+    assert summary["energy_drift"] < balance
 
 
 def test_explicit_steps_agree(disc):
@@ -181,10 +181,10 @@ def test_explicit_steps_agree(disc):
     The sticking time agrees, too.
     """
     settings = OBLIQUE | dict(penalty=1e9, slip_velocity=1)
-    reference, found = disc(dt=1e-5, **settings).summary, disc(integrator="central-difference", **settings).summary
+    reference, summary = disc(dt=1e-5, **settings).summary, disc(integrator="central-difference", **settings).summary
     for name, band in (("rebound_vx", 0.03), ("rebound_vy", 0.03), ("rebound_spin", 0.03), ("friction_work", 0.1), ("sticking_time", 0.05)):
-        assert found[name] == pytest.approx(reference[name], rel=band), name
-    assert found["energy_drift"] < 1e-3
+        assert summary[name] == pytest.approx(reference[name], rel=band), name
+    assert summary["energy_drift"] < 1e-3
 
 
 # ---- body forces

@@ -36,23 +36,23 @@ def energy(law: str, L: np.ndarray, nu: float) -> float:
     return sum(2 * s / a**2 * (np.sum(L**a) - 3 - a * np.log(J)) for a, s in TERMS) + ratio / 2 * np.log(J) ** 2
 
 
-def slope(law: str, of, x: float, nu: float) -> float:
-    """dW/dx over mu for the stretches of(x), by differences of eighth order with a step of 0.01."""
+def slope(law: str, stretches, x: float, nu: float) -> float:
+    """dW/dx over mu for stretches(x), by differences of eighth order with a step of 0.01."""
     weights = {1: 4 / 5, 2: -1 / 5, 3: 4 / 105, 4: -1 / 280}
-    return sum(w * (energy(law, of(x + 0.01 * k), nu) - energy(law, of(x - 0.01 * k), nu)) for k, w in weights.items()) / 0.01
+    return sum(w * (energy(law, stretches(x + 0.01 * k), nu) - energy(law, stretches(x - 0.01 * k), nu)) for k, w in weights.items()) / 0.01
 
 
-def free(law: str, of, nu: float) -> float:
-    """The stretch a of free sides, at which W(of(a)) is least, by bisection of its slope."""
+def free(law: str, stretches, nu: float) -> float:
+    """The stretch a of free sides, at which W(stretches(a)) is least, by bisection of its slope."""
     low, high = 0.15, 3.0
     for _ in range(60):
         a = (low + high) / 2
-        low, high = (low, a) if slope(law, of, a, nu) > 0 else (a, high)
+        low, high = (low, a) if slope(law, stretches, a, nu) > 0 else (a, high)
     return a
 
 
-@pytest.mark.parametrize("given", [MOONEY, OGDEN], ids=lambda given: given["law"])
-def test_curves_of_tension_and_shear_are_those_of_the_formula(measure, given):
+@pytest.mark.parametrize("flags", [MOONEY, OGDEN], ids=lambda flags: flags["law"])
+def test_curves_of_tension_and_shear_are_those_of_the_formula(measure, flags):
     """Tension and shear curves agree with derivatives of the energy in principal stretches.
 
     P = dW/dL with free sides, half of it in equibiaxial tension, and dW/dg in shear agree to 1e-6
@@ -60,35 +60,35 @@ def test_curves_of_tension_and_shear_are_those_of_the_formula(measure, given):
     0) there is no stress; equal stretches, two of which are equal in all of tension, give finite
     numbers.
     """
-    found, law = measure("curves", nu=NU, mesh_size=0.025, contact_mesh_size=0.015, **given), given["law"]
+    numbers, law = measure("curves", nu=NU, mesh_size=0.025, contact_mesh_size=0.015, **flags), flags["law"]
     for i in range(10):
         L, g = 0.5 + 0.25 * i, 0.25 * i
         a, b = free(law, lambda x: np.array([L, x, x]), NU), free(law, lambda x: np.array([L, L, x]), NU)
         sheared = lambda x: np.array([np.sqrt(1 + x**2 / 4) + x / 2, np.sqrt(1 + x**2 / 4) - x / 2, 1.0])
-        assert found[f"uniaxial{i}"] == pytest.approx(slope(law, lambda x: np.array([x, a, a]), L, NU), rel=1e-6, abs=1e-9)
-        assert found[f"equibiaxial{i}"] == pytest.approx(slope(law, lambda x: np.array([x, x, b]), L, NU) / 2, rel=1e-6, abs=1e-9)
-        assert found[f"shear{i}"] == pytest.approx(slope(law, sheared, g, NU), rel=1e-6, abs=1e-9)
-        assert found[f"shearEnergy{i}"] == pytest.approx(energy(law, sheared(g), NU), rel=1e-12, abs=1e-14)
-        assert found[f"uniaxialEnergy{i}"] == pytest.approx(energy(law, np.array([L, a, a]), NU), rel=1e-6, abs=1e-14)
+        assert numbers[f"uniaxial{i}"] == pytest.approx(slope(law, lambda x: np.array([x, a, a]), L, NU), rel=1e-6, abs=1e-9)
+        assert numbers[f"equibiaxial{i}"] == pytest.approx(slope(law, lambda x: np.array([x, x, b]), L, NU) / 2, rel=1e-6, abs=1e-9)
+        assert numbers[f"shear{i}"] == pytest.approx(slope(law, sheared, g, NU), rel=1e-6, abs=1e-9)
+        assert numbers[f"shearEnergy{i}"] == pytest.approx(energy(law, sheared(g), NU), rel=1e-12, abs=1e-14)
+        assert numbers[f"uniaxialEnergy{i}"] == pytest.approx(energy(law, np.array([L, a, a]), NU), rel=1e-6, abs=1e-14)
 
 
-@pytest.mark.parametrize("numbers, said", [("2", "shares that add up to 0"), ("2,0.5,4,0.4", "shares that add up to 0.9"), ("0,1", "the exponent 0 with share 1"),
-                                           ("2,1.5,-2,-0.5", "the exponent -2 with share -0.5"), ("1,1,1,1,1,1,1,1", "is not what ogden takes (accepted: one to three")])
-def test_bad_terms_are_refused(disc, numbers, said):
+@pytest.mark.parametrize("numbers, message", [("2", "shares that add up to 0"), ("2,0.5,4,0.4", "shares that add up to 0.9"), ("0,1", "the exponent 0 with share 1"),
+                                              ("2,1.5,-2,-0.5", "the exponent -2 with share -0.5"), ("1,1,1,1,1,1,1,1", "is not what ogden takes (accepted: one to three")])
+def test_bad_terms_are_refused(disc, numbers, message):
     """Exponents without shares, zero or too many exponents, negative shares or a sum other than 1
     raise one line."""
-    with pytest.raises(Exception, match=re.escape(said)):
+    with pytest.raises(Exception, match=re.escape(message)):
         disc(law="ogden", law_parameters=numbers, accuracy=0.2)
 
 
 @pytest.mark.few(2)
-@pytest.mark.parametrize("own", [MOONEY, OGDEN], ids=lambda given: given["law"])
+@pytest.mark.parametrize("own", [MOONEY, OGDEN], ids=lambda flags: flags["law"])
 @pytest.mark.parametrize("script", SCRIPTS)
 def test_impact_keeps_the_energy(disc, script, own):
     """Energy is constant to 1e-9 and momentum to round-off. Results differ from neo-Hookean, unless
     the parameters make the law neo-Hookean."""
-    runs = {law: disc(script=script, speed=5, nu=0.45, **SCRIPTS[script], **given).summary
-            for law, given in {"own": own, "none": own | {"law_parameters": NEOHOOKEAN[own["law"]]}, "neo-Hookean": {"law": "neohookean"}}.items()}
+    runs = {law: disc(script=script, speed=5, nu=0.45, **SCRIPTS[script], **flags).summary
+            for law, flags in {"own": own, "none": own | {"law_parameters": NEOHOOKEAN[own["law"]]}, "neo-Hookean": {"law": "neohookean"}}.items()}
     assert all(run["energy_drift"] < 1e-9 and run["momentum_drift"] < 1e-12 for run in runs.values())
     assert runs["none"]["impulse"] == pytest.approx(runs["neo-Hookean"]["impulse"], rel=1e-8)
     assert 1e-6 < abs(runs["own"]["contact_time"] / runs["neo-Hookean"]["contact_time"] - 1) < 0.3

@@ -31,7 +31,7 @@ def test_what_steers_the_step_is_a_bound(step, integrator):
     """(b): the controlling estimate dt |N1 - N0| / 12 is one order lower and exceeds the true error
     while the force rises, by more for smaller steps."""
     coarse, fine = (step(integrator, dt) for dt in STEPS)
-    for each in (coarse, fine):
-        assert each["estimate"] == pytest.approx(each["change"] / 12, rel=1e-9) and each["estimate"] > each["true"]
+    for errors in (coarse, fine):
+        assert errors["estimate"] == pytest.approx(errors["change"] / 12, rel=1e-9) and errors["estimate"] > errors["true"]
     assert math.log2(coarse["estimate"] / fine["estimate"]) == pytest.approx(1, abs=0.25)
     assert fine["estimate"] / fine["true"] > 1.7 * coarse["estimate"] / coarse["true"]

@@ -16,12 +16,12 @@ def test_rigid_ball(tmp_path, angle, slides):
     A sliding ball loses mu (1 + e) v_n along the plane and turns forward with 5/2 mu (1 + e) v_n/R.
     A rolling ball keeps 5/7 of its speed along the plane.
     """
-    found, along, _, lost = rigid(tmp_path, angle, 0.2)
+    summary, along, _, lost = rigid(tmp_path, angle, 0.2)
     centre, rim = leaves(lost, INERTIA)
-    assert (1 > 3.5 * lost) == slides and found["energy_drift"] < 1e-8
-    assert 1 - found["rebound_vx"] / along == pytest.approx(1 - centre, rel=0.02)
-    assert -found["rebound_spin"] * RADIUS / along == pytest.approx(rim, rel=0.02)
-    assert (found["sticking_time"] < 0.01 * found["contact_time"]) == slides
+    assert (1 > 3.5 * lost) == slides and summary["energy_drift"] < 1e-8
+    assert 1 - summary["rebound_vx"] / along == pytest.approx(1 - centre, rel=0.02)
+    assert -summary["rebound_spin"] * RADIUS / along == pytest.approx(rim, rel=0.02)
+    assert (summary["sticking_time"] < 0.01 * summary["contact_time"]) == slides
 
 
 @pytest.mark.parametrize("nu", [0.3, 0.45, 0.5])
@@ -48,5 +48,5 @@ def test_elastic_ball(tmp_path, psi, error):
     its contact radius is an eighth of its radius and the theory is for half-spaces; this deviation
     falls with the contact radius (`make verify`).
     """
-    lost, found = lost_slip(tmp_path, psi, 0.2)
-    assert lost == pytest.approx(springs(psi, NU), rel=error) and found["energy_drift"] < 1e-9
+    lost, summary = lost_slip(tmp_path, psi, 0.2)
+    assert lost == pytest.approx(springs(psi, NU), rel=error) and summary["energy_drift"] < 1e-9

@@ -17,66 +17,66 @@ SHAPES = ["plane", "inclined", *CURVED, *CORNERS, *IMPLICIT]
 
 
 @pytest.fixture(scope="module")
-def found(measure):
+def numbers(measure):
     return measure("obstacles")
 
 
 @pytest.mark.few(4)
 @pytest.mark.parametrize("shape", SHAPES)
-def test_gap_and_normal(found, shape):
+def test_gap_and_normal(numbers, shape):
     """The gap agrees with the closed form, also far inside. It is continuous, and the unit normal
     is its gradient."""
-    assert found[f"gap{shape}"] < 1e-14
-    assert found[f"stretch{shape}"] < 1 + 1e-9
-    assert found[f"unit{shape}"] < 1e-15 and found[f"slope{shape}"] < 1e-7
+    assert numbers[f"gap{shape}"] < 1e-14
+    assert numbers[f"stretch{shape}"] < 1 + 1e-9
+    assert numbers[f"unit{shape}"] < 1e-15 and numbers[f"slope{shape}"] < 1e-7
 
 
 @pytest.mark.parametrize("shape", SHAPES)
-def test_rows_give_the_change_of_the_gap(found, shape):
+def test_rows_give_the_change_of_the_gap(numbers, shape):
     """q0 + B d + motion = q1 and the slip along the middle tangent are exact to round-off for steps
     of 1 m to 1e-9 m, also across corners."""
-    assert found[f"begin{shape}"] < 1e-14 and found[f"end{shape}"] < 1e-14
-    assert found[f"place{shape}"] < 1e-14 and found[f"slip{shape}"] < 1e-14
+    assert numbers[f"begin{shape}"] < 1e-14 and numbers[f"end{shape}"] < 1e-14
+    assert numbers[f"place{shape}"] < 1e-14 and numbers[f"slip{shape}"] < 1e-14
 
 
 @pytest.mark.parametrize("shape", SHAPES)
-def test_normal_force_is_along_the_normal_of_the_middle(found, shape):
+def test_normal_force_is_along_the_normal_of_the_middle(numbers, shape):
     """The gap Jacobian B and the slip Jacobian S are orthogonal if a contact candidate stays on one
     plane or round segment.
 
     If it changes segments, or the segment is neither flat nor round, the remainder of B is along
     the motion.
     """
-    assert found[f"across{shape}"] < (1e-12 if shape in IMPLICIT else 1e-14) and found[f"beside{shape}"] < 1e-13
-    assert (found[f"pieces{shape}"] > 0.01) == (shape in [*CORNERS, "circleImplicit"])
+    assert numbers[f"across{shape}"] < (1e-12 if shape in IMPLICIT else 1e-14) and numbers[f"beside{shape}"] < 1e-13
+    assert (numbers[f"pieces{shape}"] > 0.01) == (shape in [*CORNERS, "circleImplicit"])
 
 
 @pytest.mark.parametrize("shape", CURVED)
-def test_frictionless_forces_have_no_moment_about_the_centre(found, shape):
-    assert found[f"moment{shape}"] < 1e-14
+def test_frictionless_forces_have_no_moment_about_the_centre(numbers, shape):
+    assert numbers[f"moment{shape}"] < 1e-14
 
 
-def test_inclined_plane_is_the_level_one_turned(found):
+def test_inclined_plane_is_the_level_one_turned(numbers):
     """Penetrations, normal and tangential motion agree, also for moving planes."""
-    assert found["turned"] < 1e-14
+    assert numbers["turned"] < 1e-14
 
 
-def test_work_of_the_obstacles_is_force_times_way(found):
-    assert found["work"] < 1e-13
+def test_work_of_the_obstacles_is_force_times_way(numbers):
+    assert numbers["work"] < 1e-13
 
 
-def test_only_slots_within_reach_have_rows(found):
-    assert found["within"] == found["expected"] and 0 < found["within"] < found["slots"]
-    assert found["touching"] > 0.01 and found["placeNear"] < 1e-14 and found["stray"] == 0
-    assert found["size"] == 1 and found["fixed"] == 0
+def test_only_slots_within_reach_have_rows(numbers):
+    assert numbers["within"] == numbers["expected"] and 0 < numbers["within"] < numbers["slots"]
+    assert numbers["touching"] > 0.01 and numbers["placeNear"] < 1e-14 and numbers["stray"] == 0
+    assert numbers["size"] == 1 and numbers["fixed"] == 0
     # An upper bound of the largest motion.
-    assert 1 <= found["way"] < 1.5
+    assert 1 <= numbers["way"] < 1.5
 
 
-def test_slots_within_reach_are_found_wherever_the_body_goes(found):
+def test_slots_within_reach_are_found_wherever_the_body_goes(numbers):
     """While the body and the obstacles move to and fro, exactly the contact candidates with a gap
     below the search distance are found."""
-    assert found["none"] == 0 and found["missed"] == 0 and found["most"] < found["slots"]
+    assert numbers["none"] == 0 and numbers["missed"] == 0 and numbers["most"] < numbers["slots"]
 
 
 def test_rows_of_planes_are_built_once(measure):
@@ -112,22 +112,23 @@ def test_an_expression_of_a_plane_or_circle_is_one(march, position, kind, distan
     Only the built-in kind includes penetrations between contact points in the largest penetration.
     """
     expression = {key: value for key, value in kind.items() if key == "velocity"} | {"kind": "implicit", "distance": distance}
-    one, other = (march(falling(obstacle, position=position)) for obstacle in (kind, expression))
-    for column in set(one.history) - {"balance", "newton_iterations", "sliding_fraction", "max_penetration"}:
+    reference, other = (march(falling(obstacle, position=position)) for obstacle in (kind, expression))
+    for column in set(reference.history) - {"balance", "newton_iterations", "sliding_fraction", "max_penetration"}:
         # Points with a force below round-off are counted, too.
-        pressed = one.history["normal_force"] > (1e-6 * max(one.history["normal_force"]) if column.startswith("contact_") else -1)
-        ours, theirs = (np.asarray(run.history[column])[pressed] for run in (other, one))
+        pressed = reference.history["normal_force"] > (
+            1e-6 * max(reference.history["normal_force"]) if column.startswith("contact_") else -1)
+        ours, theirs = (np.asarray(run.history[column])[pressed] for run in (other, reference))
         assert ours == pytest.approx(theirs, rel=1e-6, abs=1e-6 * abs(theirs).max()), column
 
 
 def test_a_disc_on_a_wavy_floor_keeps_energy_and_momentum(march, tmp_path):
     """The energy is constant to 1e-9 of its initial value. The change of momentum of the disc is
     the impulse of the floor."""
-    found = march(falling({"kind": "implicit", "distance": "y - 0.002*sin(200*x)"}))
+    result = march(falling({"kind": "implicit", "distance": "y - 0.002*sin(200*x)"}))
     impulse = pd.read_csv(next(tmp_path.glob("**/contacts.csv")), comment="#")
-    assert found.summary["energy_drift"] < 1e-9 and found.summary["contact_time"] > 1e-3
+    assert result.summary["energy_drift"] < 1e-9 and result.summary["contact_time"] > 1e-3
     for axis in "xy":
-        momentum = np.asarray(found.history[f"momentum_{axis}"])
+        momentum = np.asarray(result.history[f"momentum_{axis}"])
         assert momentum[-1] - momentum[0] == pytest.approx(impulse[f"impulse_{axis}"].sum(), abs=1e-8 * abs(momentum).max())
 
 
@@ -137,8 +138,8 @@ def test_a_dish_of_revolution_is_the_same_in_space(tmp_path):
     impulse within 1 %, energy to 1e-9."""
     ball = {"law": "neohookean", "young": 7e6, "nu": 0.4, "density": 1722, "accuracy": 0.1}
     shape = {"name": "ball", "shape": "ball", "radius": 0.05}
-    found = [runs.bodies(tmp_path / of, ball | {"dimension": of, "body": [shape | place], "obstacle": [{"kind": "implicit", "distance": distance}]})
-             for of, place, distance in (("axisymmetric", {"position": 0.06, "velocity": -3}, "y - 2*x^2"),
-                                         ("3d", {"position": [0, 0.06, 0], "velocity": [0, -3, 0]}, "y - 2*(x^2 + z^2)"))]
-    assert found[1].summary["impulse"] == pytest.approx(found[0].summary["impulse"], rel=0.01)
-    assert all(one.summary["energy_drift"] < 1e-9 for one in found)
+    results = [runs.bodies(tmp_path / dimension, ball | {"dimension": dimension, "body": [shape | place], "obstacle": [{"kind": "implicit", "distance": distance}]})
+               for dimension, place, distance in (("axisymmetric", {"position": 0.06, "velocity": -3}, "y - 2*x^2"),
+                                                  ("3d", {"position": [0, 0.06, 0], "velocity": [0, -3, 0]}, "y - 2*(x^2 + z^2)"))]
+    assert results[1].summary["impulse"] == pytest.approx(results[0].summary["impulse"], rel=0.01)
+    assert all(result.summary["energy_drift"] < 1e-9 for result in results)

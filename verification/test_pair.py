@@ -48,10 +48,10 @@ def winding(x: np.ndarray, nodes: np.ndarray) -> float:
     return (angle[-1] - angle[0]).sum() / (2 * np.pi)
 
 
-def kernel_is_the_scripts(found: dict) -> None:
+def kernel_is_the_scripts(numbers: dict) -> None:
     """Asserts that the compiled gap (edp/kernels/pairs.hpp) has the same contact candidates and
     unknowns as the scripts, with equal numbers to round-off, over all steps."""
-    assert not found["built"] or found["slotsOff"] == 0 and max(found[name] for name in ("gapsOff", "rowsOff")) < 1e-12
+    assert not numbers["built"] or numbers["slotsOff"] == 0 and max(numbers[name] for name in ("gapsOff", "rowsOff")) < 1e-12
 
 
 CASES = [(2, 0.02, 0.05, 0), (1, 0.02, 0.05, 0.7), (2, 0.1, 0.1, 2.5), (1, 0.1, 0.1, 0.4), (2, 0, 0, 0)]
@@ -68,14 +68,15 @@ def test_rows_conserve(measure, degree, depth, noise, tilt, without):
     about the middle configuration, on edges, vertices and kinks. A step begins with the
     penetrations at the end of the last step.
     """
-    found = measure("pair", degree=degree, depth=depth, noise=noise, tilt=tilt, without=without)
-    assert found["randomInside"] > 10 and found["vertices"] > 0 or noise == 0
-    assert found["cornerGap"] < ROUND_OFF  # a point exactly on a corner of the other body
+    numbers = measure("pair", degree=degree, depth=depth, noise=noise, tilt=tilt, without=without)
+    assert numbers["randomInside"] > 10 and numbers["vertices"] > 0 or noise == 0
+    assert numbers["cornerGap"] < ROUND_OFF  # a point exactly on a corner of the other body
     for name in ("random", "turn", "corner"):
-        assert found[name + "Exact"] < ROUND_OFF and found[name + "Force"] < ROUND_OFF and found[name + "Moment"] < ROUND_OFF
-        assert 0.1 < found[name + "Largest"] < 1.2
-    assert max(found["turnChange"], found["slideExact"], found["slideJump"]) < ROUND_OFF and found["turnSlots"] == found["randomSlots"]
-    kernel_is_the_scripts(found)
+        assert numbers[name + "Exact"] < ROUND_OFF and numbers[name + "Force"] < ROUND_OFF and numbers[name + "Moment"] < ROUND_OFF
+        assert 0.1 < numbers[name + "Largest"] < 1.2
+    assert max(numbers["turnChange"], numbers["slideExact"], numbers["slideJump"]) < ROUND_OFF
+    assert numbers["turnSlots"] == numbers["randomSlots"]
+    kernel_is_the_scripts(numbers)
 
 
 @pytest.mark.few(2)
@@ -106,6 +107,6 @@ def test_gaps_are_those_of_an_exhaustive_search(measure, tmp_path_factory, degre
 def test_pairwise_rows_conserve(measure, degree, depth, noise, tilt, printed):
     """The pairwise form (14), (15), as a repulsion and as printed, satisfies B d = q1 - q0 without
     resultant force and moment."""
-    found = measure("pair", degree=degree, depth=depth, noise=noise, tilt=tilt, printed=printed)
-    assert found["pairwise"] > 20 and found["pairwiseNear"] > 0
-    assert found["pairwiseExact"] < ROUND_OFF and found["pairwiseForce"] < ROUND_OFF and found["pairwiseMoment"] < ROUND_OFF
+    numbers = measure("pair", degree=degree, depth=depth, noise=noise, tilt=tilt, printed=printed)
+    assert numbers["pairwise"] > 20 and numbers["pairwiseNear"] > 0
+    assert numbers["pairwiseExact"] < ROUND_OFF and numbers["pairwiseForce"] < ROUND_OFF and numbers["pairwiseMoment"] < ROUND_OFF

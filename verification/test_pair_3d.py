@@ -18,7 +18,7 @@ CASES = [{}, {"degree": 1, "tilt": 0.7}, {"tilt": 2.5, "depth": 0.1}, {"corner":
 @pytest.fixture
 def march(tmp_path):
     """march(scene, name=value, ...): a run of edp/bodies-3d.edp for the scene."""
-    return lambda scene, name="run", **given: runs.solid_bodies(tmp_path / name, scene, **{"accuracy": 0.1} | given)
+    return lambda scene, name="run", **flags: runs.solid_bodies(tmp_path / name, scene, **{"accuracy": 0.1} | flags)
 
 
 # ---- gap Jacobians
@@ -36,13 +36,13 @@ def test_rows_conserve(measure, case, without):
     penetrations at the end of the last step. Which faces share a closest point, and that they share
     it, does not depend on where Newton's method stops on each of them (tilt 2.5).
     """
-    found = measure("pair-3d", **case, without=without)
-    assert found["randomInside"] > 10 and (found["edges"] > 8 or case.get("noise") == 0)
+    numbers = measure("pair-3d", **case, without=without)
+    assert numbers["randomInside"] > 10 and (numbers["edges"] > 8 or case.get("noise") == 0)
     for name in ("random", "turn"):
-        assert max(found[name + "Exact"], found[name + "Force"], found[name + "Moment"]) < ROUND_OFF
-        assert 0.1 < found[name + "Largest"] < 3
-    assert max(found["turnChange"], found["slideExact"], found["slideJump"]) < ROUND_OFF
-    kernel_is_the_scripts(found)
+        assert max(numbers[name + "Exact"], numbers[name + "Force"], numbers[name + "Moment"]) < ROUND_OFF
+        assert 0.1 < numbers[name + "Largest"] < 3
+    assert max(numbers["turnChange"], numbers["slideExact"], numbers["slideJump"]) < ROUND_OFF
+    kernel_is_the_scripts(numbers)
 
 
 def shapes(r, s):
@@ -100,9 +100,9 @@ def test_rigid_obstacles(measure, degree):
     B d and S d with the motion of the obstacles are exact, t1, t2, n is a frame, and the force of a
     round obstacle goes through its centre.
     """
-    found = measure("obstacles-3d", degree=degree)
-    assert found["near"] > 500
-    assert max(found[name] for name in ("gap", "exact", "slip", "frame", "moment", "force")) < ROUND_OFF
+    numbers = measure("obstacles-3d", degree=degree)
+    assert numbers["near"] > 500
+    assert max(numbers[name] for name in ("gap", "exact", "slip", "frame", "moment", "force")) < ROUND_OFF
 
 
 # ---- runs
@@ -143,9 +143,9 @@ def head_on(count, obstacles=()) -> Scene:
     With `obstacles`, one of the two balls on a plane.
     """
     material, R = ("neohookean", 1e8, 0.3, 2500.0), 0.01
-    one = ball((0, 0, 0), R, count, 4, focus=-1, material=material, shift=(0, R + 1e-6, 0), velocity=(0, -0.5, 0))
-    two = ball((0, -0.03, 0), R, count, 4, focus=1, material=material, shift=(0, 0.03 - R - 1e-6, 0), velocity=(0, 0.5, 0))
-    return Scene([one] if obstacles else [one, two], list(obstacles), [(0, -1, 2e11, 0, 0)] if obstacles else [(0, 1, 1e11, 0, 0)],
+    upper = ball((0, 0, 0), R, count, 4, focus=-1, material=material, shift=(0, R + 1e-6, 0), velocity=(0, -0.5, 0))
+    lower = ball((0, -0.03, 0), R, count, 4, focus=1, material=material, shift=(0, 0.03 - R - 1e-6, 0), velocity=(0, 0.5, 0))
+    return Scene([upper] if obstacles else [upper, lower], list(obstacles), [(0, -1, 2e11, 0, 0)] if obstacles else [(0, 1, 1e11, 0, 0)],
                  (R, 1e8, 0.3, 2500.0, 0.5, 90.0, 0.0), 4)
 
 
@@ -159,14 +159,14 @@ def test_two_equal_balls_are_a_ball_on_a_plane_of_doubled_penalty(march):
     They agree with Hertz' T = 2.943 delta / v and F = 4/3 E* R*^1/2 delta^3/2 to 10 % with two
     elements across the contact.
     """
-    two, one = march(head_on((4, 3, 4)), "two").summary, march(head_on((4, 3, 4), (FLOOR,)), "one").summary
+    pair, single = march(head_on((4, 3, 4)), "two").summary, march(head_on((4, 3, 4), (FLOOR,)), "one").summary
     for name in ("contact_time", "peak_force"):
-        assert two[name] == pytest.approx(one[name], rel=5e-3)
-    assert two["rebound_vy_1"] == pytest.approx(one["rebound_vy"], rel=5e-3)
+        assert pair[name] == pytest.approx(single[name], rel=5e-3)
+    assert pair["rebound_vy_1"] == pytest.approx(single["rebound_vy"], rel=5e-3)
     modulus, mass = 1e8 / 2 / (1 - 0.3**2), 2500 * math.pi * 4e-6 / 3 / 2
     delta = (15 * mass / (16 * modulus * math.sqrt(0.005))) ** 0.4
-    assert two["contact_time"] == pytest.approx(2.943 * delta, rel=0.1)
-    assert two["peak_force"] == pytest.approx(4 / 3 * modulus * math.sqrt(0.005) * delta**1.5, rel=0.1)
+    assert pair["contact_time"] == pytest.approx(2.943 * delta, rel=0.1)
+    assert pair["peak_force"] == pytest.approx(4 / 3 * modulus * math.sqrt(0.005) * delta**1.5, rel=0.1)
 
 
 def pressed(measure, folder: Path, below: tuple, above: tuple, penalty: float) -> dict:
@@ -184,8 +184,8 @@ def test_unlike_meshes_carry_a_constant_pressure(measure, tmp_path):
     It is 1 % if this ratio is a quarter; with equal meshes it is 1e-6.
     """
     like, unlike = pressed(measure, tmp_path / "like", (3, 2, 3), (3, 2, 3), 10), pressed(measure, tmp_path / "unlike", (4, 2, 4), (3, 2, 3), 1)
-    for found in (like, unlike):
-        assert found["area"] == pytest.approx(1, rel=1e-9) and abs(found["balance"]) < 1e-3
+    for numbers in (like, unlike):
+        assert numbers["area"] == pytest.approx(1, rel=1e-9) and abs(numbers["balance"]) < 1e-3
     assert like["uneven"] < 1e-6
     assert unlike["uneven"] < 1e-2 and unlike["most"] < 1.015 * unlike["mean"] and unlike["least"] > 0.985 * unlike["mean"]
 

@@ -13,7 +13,7 @@ CONSERVED = 1e-9
 
 @pytest.fixture(name="block")
 def _block(disc):
-    return lambda **given: disc(script="disc-block", **(SCENE | given))
+    return lambda **flags: disc(script="disc-block", **(SCENE | flags))
 
 
 def drift(values: np.ndarray, scale: float) -> float:
@@ -21,10 +21,10 @@ def drift(values: np.ndarray, scale: float) -> float:
 
 
 @pytest.mark.few(2)
-@pytest.mark.parametrize("given", [{}, {"law": "svk"}, {"angle": 60}, {"angle": 60, "law": "svk", "spin": 20}, {"degree": 1}, {"exponent": 2}], ids=str)
-def test_energy_and_momenta_are_conserved(block, given):
+@pytest.mark.parametrize("flags", [{}, {"law": "svk"}, {"angle": 60}, {"angle": 60, "law": "svk", "spin": 20}, {"degree": 1}, {"exponent": 2}], ids=str)
+def test_energy_and_momenta_are_conserved(block, flags):
     """Energy, both momenta and angular momentum are constant over an impact with contact."""
-    run = block(pairing="pairwise", **given)
+    run = block(pairing="pairwise", **flags)
     momentum = abs(run.history["momentum_y"][0])
     assert run.summary["status"] == "ok" and run.summary["impulse_y_1"] > momentum
     assert run.summary["energy_drift"] < CONSERVED
@@ -39,11 +39,11 @@ def test_it_agrees_with_closest_points(block, law):
     the impulse to 1 %, the contact time to 4 %."""
     nearest, usual = block(law=law).summary, block(law=law, pairing="pairwise").summary
     width = 0.06  # the element size is 0.12 m
-    for found in (usual, block(law=law, pairing="pairwise", pairing_range=width).summary):
+    for summary in (usual, block(law=law, pairing="pairwise", pairing_range=width).summary):
         for name in ("rebound_vy_1", "rebound_vy_2"):
-            assert found[name] == pytest.approx(nearest[name], abs=0.01 * SCENE["speed"])
-        assert found["impulse_y_1"] == pytest.approx(nearest["impulse_y_1"], rel=0.01)
-        assert found["thresholded_contact_time"] == pytest.approx(nearest["thresholded_contact_time"], rel=0.04)
+            assert summary[name] == pytest.approx(nearest[name], abs=0.01 * SCENE["speed"])
+        assert summary["impulse_y_1"] == pytest.approx(nearest["impulse_y_1"], rel=0.01)
+        assert summary["thresholded_contact_time"] == pytest.approx(nearest["thresholded_contact_time"], rel=0.04)
 
 
 def test_half_and_whole_are_the_same(block):
@@ -56,26 +56,27 @@ def test_half_and_whole_are_the_same(block):
 def test_a_range_below_the_distance_of_points_is_said(block):
     """If the range is so small that points slip between each other, the run warns; it does not warn
     for a range of an element."""
-    assert any(said.startswith("pairing range: ") for said in block(pairing="pairwise", pairing_range=0.02, end_time=0.01).summary["warnings"])
-    assert not any(said.startswith("pairing range: ") for said in block(pairing="pairwise").summary["warnings"])
+    assert any(warning.startswith("pairing range: ") for warning in block(pairing="pairwise", pairing_range=0.02, end_time=0.01).summary["warnings"])
+    assert not any(warning.startswith("pairing range: ") for warning in block(pairing="pairwise").summary["warnings"])
 
 
 def test_the_printed_form_keeps_energy_and_chatters(block):
     """The force -k d jumps when points come into range. The scheme conserves energy, but the bodies
     separate and come into contact repeatedly; how often depends on the steps."""
-    found = block(pairing="pairwise-printed", chatter="continue")
-    assert found.summary["energy_drift"] < CONSERVED and drift(found.history["momentum_y"], abs(found.history["momentum_y"][0])) < CONSERVED
-    assert found.summary["contact_intervals"] > 2 and block().summary["contact_intervals"] == 1
+    result = block(pairing="pairwise-printed", chatter="continue")
+    assert result.summary["energy_drift"] < CONSERVED
+    assert drift(result.history["momentum_y"], abs(result.history["momentum_y"][0])) < CONSERVED
+    assert result.summary["contact_intervals"] > 2 and block().summary["contact_intervals"] == 1
 
 
 @pytest.mark.few(2)
-@pytest.mark.parametrize("given, words", [
+@pytest.mark.parametrize("flags, words", [
     ({"friction_static": 0.3}, "pairing: pairwise has no slip, and so no friction (accepted: friction_static 0, or closest-point)"),
     ({"pairing": "pairwise-printed", "exponent": 2}, "pairing: pairwise-printed has a law of its own"),
     ({"pairing_range": 0}, "pairing_range: 0 is out of range (accepted: auto, 1e-12 to 1e+09)"),
     ({"pairing": "pairs"}, "pairing: 'pairs' is not known (accepted: closest-point|pairwise|pairwise-printed)"),
     ({"script": "disc-plane"}, "pairing: disc-plane takes no such parameter (accepted: in disc-block|bodies)")], ids=str)
-def test_refusals(disc, given, words):
+def test_refusals(disc, flags, words):
     with pytest.raises(Failure) as failure:
-        disc(**({"script": "disc-block", "pairing": "pairwise"} | SCENE | given))
+        disc(**({"script": "disc-block", "pairing": "pairwise"} | SCENE | flags))
     assert "exit code 10" in str(failure.value) and words in str(failure.value)

@@ -50,8 +50,8 @@ def test_partial_slip(tmp_path):
 
     Every point outside 1.1 c slides with its full friction; every point inside 0.9 c sticks.
     """
-    found, table = cattaneo.sheared(tmp_path, 0.1)
-    b, c, p0 = cattaneo.widths(found)
+    numbers, table = cattaneo.sheared(tmp_path, 0.1)
+    b, c, p0 = cattaneo.widths(numbers)
     assert all(row.error < 0.03 for row in cattaneo.annulus(tmp_path, 0.1))
     away, slides = table.x.abs(), table.v.abs() >= cattaneo.CREEP * cattaneo.SPEED
     assert slides[away > 1.1 * c].all() and not slides[away < 0.9 * c].any() and 0.6 < c / b < 0.8

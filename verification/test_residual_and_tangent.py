@@ -27,10 +27,10 @@ TANGENTS = [*((body, {"law": law, "degree": degree, "integrator": integrator} | 
 def test_residual_is_the_one_of_the_equations(measure, law, integrator, exponent):
     """Inertia, stress, load and contact of one step equal a varf that is written from the
     equations, to round-off."""
-    found = measure("residual", law=law, integrator=integrator, exponent=exponent)
-    assert found["state"] == 0 and found["strain"] > 0.3
-    assert found["before"] > 0 and found["switching"] > 0 and found["after"] < found["points"]
-    assert found["elastic"] < 1e-10 and found["contact"] < 1e-10 and found["total"] < 1e-10
+    numbers = measure("residual", law=law, integrator=integrator, exponent=exponent)
+    assert numbers["state"] == 0 and numbers["strain"] > 0.3
+    assert numbers["before"] > 0 and numbers["switching"] > 0 and numbers["after"] < numbers["points"]
+    assert numbers["elastic"] < 1e-10 and numbers["contact"] < 1e-10 and numbers["total"] < 1e-10
 
 
 @pytest.mark.few(12)
@@ -43,16 +43,16 @@ def test_tangent_is_the_derivative_of_the_residual(measure, body, flags):
     solves the system and does not move constrained unknowns. The kernels do the same. svk at nu =
     0.45, and all laws at 0.4999, are not elliptic in this state, so that the tangent has no factor.
     """
-    found = measure(f"tangent-{body}", **COARSE.get(body, {"accuracy": 0.1}) | flags)
-    assert found["tangent"] < 1e-6
+    numbers = measure(f"tangent-{body}", **COARSE.get(body, {"accuracy": 0.1}) | flags)
+    assert numbers["tangent"] < 1e-6
     degree, usual = flags.get("degree"), flags["law"] in LAWS and "degree" in flags
-    kernels_are_the_scripts(found)
+    kernels_are_the_scripts(numbers)
     if usual:
-        assert found["state"] == 0 and (found["strain"] > {"ball": 1, "3d": 0.5}[body] if body in ("ball", "3d") else found["smallest"] < 0.6)
+        assert numbers["state"] == 0 and (numbers["strain"] > {"ball": 1, "3d": 0.5}[body] if body in ("ball", "3d") else numbers["smallest"] < 0.6)
     if usual and body in ("disc", "ball"):
-        assert found["solve"] < {"disc": 1e-11, "ball": 1e-10}[body] and found["stray"] < {"disc": 1e-15, "ball": 1e-12}[body]
+        assert numbers["solve"] < {"disc": 1e-11, "ball": 1e-10}[body] and numbers["stray"] < {"disc": 1e-15, "ball": 1e-12}[body]
     if usual and body == "3d":
-        assert found["area"] == pytest.approx(4 / 3 * math.pi * 0.05**3, rel=3e-3 if degree == 2 else 0.15)
+        assert numbers["area"] == pytest.approx(4 / 3 * math.pi * 0.05**3, rel=3e-3 if degree == 2 else 0.15)
 
 
 def test_curved_outline_has_the_area_of_the_disc(measure):
@@ -68,10 +68,10 @@ def test_curved_outline_has_the_area_of_the_disc(measure):
 def test_contact_stiffness_is_the_derivative_of_the_traction(measure, exponent):
     """This holds for points that stay open or closed, rest, open and close, for every position in
     the step at which the law is evaluated."""
-    found = measure("contact-law", exponent=exponent)
+    numbers = measure("contact-law", exponent=exponent)
     for place in range(3):
-        assert found[f"stiffness{place}"] < 1e-6 and found[f"open{place}"] == 0
-    assert abs(found["work"]) < 1e-13 and found["alone"] < 1e-10
+        assert numbers[f"stiffness{place}"] < 1e-6 and numbers[f"open{place}"] == 0
+    assert abs(numbers["work"]) < 1e-13 and numbers["alone"] < 1e-10
 
 
 @pytest.mark.few(4)
@@ -85,10 +85,10 @@ def test_friction_force_is_the_one_of_the_equations(measure, integrator, transit
     The next test shows that every law is the same for every position in the step at which it is
     evaluated.
     """
-    found = measure("residual", law="svk", integrator=integrator, exponent=1.5, friction_static=0.7, friction_dynamic=0.5,
-                    slip_velocity=2.5, regularization=regularization, friction_transition=transition)
-    assert found["slow"] > 1 and found["fast"] > 1 and found["backwards"] > 1 and found["switching"] > 0
-    assert found["friction"] < 1e-10 and found["contact"] < 1e-10 and found["total"] < 1e-10
+    numbers = measure("residual", law="svk", integrator=integrator, exponent=1.5, friction_static=0.7, friction_dynamic=0.5,
+                      slip_velocity=2.5, regularization=regularization, friction_transition=transition)
+    assert numbers["slow"] > 1 and numbers["fast"] > 1 and numbers["backwards"] > 1 and numbers["switching"] > 0
+    assert numbers["friction"] < 1e-10 and numbers["contact"] < 1e-10 and numbers["total"] < 1e-10
 
 
 @pytest.mark.few(6)
@@ -102,12 +102,12 @@ def test_friction_derivatives(measure, coefficients, transition, regularization)
     exponents and every position in the step. The scripts are tested; the compiled law is compared
     with them.
     """
-    found = measure("friction-law", without="kernels", friction_static=coefficients[0], friction_dynamic=coefficients[1])
+    numbers = measure("friction-law", without="kernels", friction_static=coefficients[0], friction_dynamic=coefficients[1])
     kind = f"{regularization.removeprefix('linear-')}_{transition}"
-    assert found[f"law_{kind}"] < 1e-13 and found[f"normal_{kind}"] == 0
-    assert found[f"stiff_{kind}"] < 1e-6 and found[f"drag_{kind}"] < 1e-6 and found[f"coupling_{kind}"] < 1e-6
-    assert found[f"cross_{kind}"] == 0
-    assert found[f"falls_{kind}"] == 0  # no branch decreases with speed
+    assert numbers[f"law_{kind}"] < 1e-13 and numbers[f"normal_{kind}"] == 0
+    assert numbers[f"stiff_{kind}"] < 1e-6 and numbers[f"drag_{kind}"] < 1e-6 and numbers[f"coupling_{kind}"] < 1e-6
+    assert numbers[f"cross_{kind}"] == 0
+    assert numbers[f"falls_{kind}"] == 0  # no branch decreases with speed
 
 
 @pytest.mark.parametrize("law, breakdown, height, refused", [("svk", "stop", 0.19, 1), ("svk", "stop", 0.21, 0), ("neohookean", "stop", 0.19, 1),
@@ -115,6 +115,6 @@ def test_friction_derivatives(measure, coefficients, transition, regularization)
 def test_a_step_that_loses_four_fifths_of_a_volume_is_refused(measure, law, breakdown, height, refused):
     """An implicit step has several solutions; the collapsed ones are not motions.
     `breakdown=continue` accepts them for svk."""
-    found = measure("collapse", law=law, breakdown=breakdown, speed=height)
-    assert found["left"] == pytest.approx(height)
-    assert found["refused"] == refused
+    numbers = measure("collapse", law=law, breakdown=breakdown, speed=height)
+    assert numbers["left"] == pytest.approx(height)
+    assert numbers["refused"] == refused

@@ -15,13 +15,13 @@ def test_clamped_rod_against_a_wall(measure):
     coarse, fine = ({row.what: row.error for row in rod(elements)} for elements in (50, 100))
     for what in ("contact begins", "period", "energy", "stress: middle"):
         assert coarse[what] < 0.01 and fine[what] < 0.01, what
-    for what, asked in (("contact ends", 0.015), ("stress: mean", 0.04)):
-        assert fine[what] < coarse[what] < asked, what
+    for what, limit in (("contact ends", 0.015), ("stress: mean", 0.04)):
+        assert fine[what] < coarse[what] < limit, what
 
 
 @pytest.mark.parametrize("law", ["svk", "neohookean"])
 def test_rod_keeps_its_energy_and_does_not_chatter(measure, law):
     """Two contacts do not change the energy, and the first is a single interval."""
-    found = measure("rod", law=law, young=1, density=1, nu=0, speed=1e-4, penalty=1e3, mesh_size=0.01, dt=0.01)
-    assert found["state"] == 0 and found["intervals"] == 1
-    assert found["drift"] < 1e-8
+    numbers = measure("rod", law=law, young=1, density=1, nu=0, speed=1e-4, penalty=1e3, mesh_size=0.01, dt=0.01)
+    assert numbers["state"] == 0 and numbers["intervals"] == 1
+    assert numbers["drift"] < 1e-8

@@ -16,10 +16,10 @@ def test_rows_of_a_body_on_itself_conserve(measure, degree, depth, noise, tilt):
     Only points on the walls of the slot are inside the body; none is without deformation. A step
     begins with the penetrations at the end of the last step.
     """
-    found = measure("self-contact", degree=degree, depth=depth, noise=noise, tilt=tilt)
-    if not found["built"]:
+    numbers = measure("self-contact", degree=degree, depth=depth, noise=noise, tilt=tilt)
+    if not numbers["built"]:
         pytest.skip("no compiler here")
-    assert found["randomInside"] > 10 and found["outside"] == 0 and found["undeformed"] < 0
+    assert numbers["randomInside"] > 10 and numbers["outside"] == 0 and numbers["undeformed"] < 0
     for name in ("random", "turn"):
-        assert found[name + "Exact"] < ROUND_OFF and found[name + "Force"] < ROUND_OFF and found[name + "Moment"] < ROUND_OFF
-    assert found["turnChange"] < ROUND_OFF and found["slideExact"] < ROUND_OFF and found["slideJump"] < ROUND_OFF
+        assert numbers[name + "Exact"] < ROUND_OFF and numbers[name + "Force"] < ROUND_OFF and numbers[name + "Moment"] < ROUND_OFF
+    assert numbers["turnChange"] < ROUND_OFF and numbers["slideExact"] < ROUND_OFF and numbers["slideJump"] < ROUND_OFF

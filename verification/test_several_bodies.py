@@ -24,12 +24,12 @@ def test_every_step_conserves(steps, hit, degree):
     A step begins with the gaps at the end of the last step. Over the impact the energy with
     friction work is constant to 1e-9, momentum to 1e-12, angular momentum to 1e-9.
     """
-    found = steps({"end_time": 6e-3, "dt": 1e-4, "degree": degree} | HITS[hit])
-    assert found["state"] == 0 and found["rejected"] < 3 and found["touching"] > 20 and found["depth"] > 1e-5
-    assert found["exact"] < 1e-12 and found["begin"] < 1e-11
-    assert max(found["rowForce"], found["rowMoment"], found["force"], found["moment"]) < 1e-14
-    assert found["balance"] < 1e-9 and found["momentum"] < 1e-12 and found["angular"] < 1e-9
-    assert (found["friction"] > 1e-4) == (HITS[hit]["contact"]["friction_static"] > 0)
+    numbers = steps({"end_time": 6e-3, "dt": 1e-4, "degree": degree} | HITS[hit])
+    assert numbers["state"] == 0 and numbers["rejected"] < 3 and numbers["touching"] > 20 and numbers["depth"] > 1e-5
+    assert numbers["exact"] < 1e-12 and numbers["begin"] < 1e-11
+    assert max(numbers["rowForce"], numbers["rowMoment"], numbers["force"], numbers["moment"]) < 1e-14
+    assert numbers["balance"] < 1e-9 and numbers["momentum"] < 1e-12 and numbers["angular"] < 1e-9
+    assert (numbers["friction"] > 1e-4) == (HITS[hit]["contact"]["friction_static"] > 0)
 
 
 @pytest.mark.few(2)
@@ -60,10 +60,10 @@ MEASURES = ("impulse", "contact_time", "peak_force")
 def test_two_equal_discs_are_a_disc_on_a_plane_of_doubled_penalty(march):
     """In a central impact impulse, contact time and rebound agree to 0.5 %. The accuracy is 0.2 %,
     as the end of contact scatters more."""
-    two = march(scene(disc(-0.0501, 0, 4, 0), disc(0.0501, 0, -4, 0), penalty=1e10, accuracy=2e-3))
-    one = march(scene(disc(-0.0501, 0, 4, 0), obstacles=(plane(normal=(-1, 0)),), penalty=2e10, accuracy=2e-3))
-    assert differ(two, one, "impulse", "contact_time") < 5e-3
-    assert two.summary["rebound_vx_1"] == pytest.approx(one.summary["rebound_vx"], rel=5e-3)
+    pair = march(scene(disc(-0.0501, 0, 4, 0), disc(0.0501, 0, -4, 0), penalty=1e10, accuracy=2e-3))
+    single = march(scene(disc(-0.0501, 0, 4, 0), obstacles=(plane(normal=(-1, 0)),), penalty=2e10, accuracy=2e-3))
+    assert differ(pair, single, "impulse", "contact_time") < 5e-3
+    assert pair.summary["rebound_vx_1"] == pytest.approx(single.summary["rebound_vx"], rel=5e-3)
 
 
 def test_stiff_heavy_block_is_a_plane(march):
@@ -83,7 +83,7 @@ def test_order_of_the_bodies(march, first, second, friction):
     """Bodies of different materials and laws, swapped in the file: nothing changes beyond
     round-off, which friction amplifies."""
     bodies = [disc(-0.055, 0, 4, 1, law=first), disc(0.055, 0.02, -3, 0, law=second, young=2e6, nu=0.3, density=900)]
-    there, back = (march(scene(*each, friction=friction, **UNIFORM)) for each in (bodies, bodies[::-1]))
+    there, back = (march(scene(*order, friction=friction, **UNIFORM)) for order in (bodies, bodies[::-1]))
     assert differ(there, back, *MEASURES) < 1e-4
     assert there.summary["rebound_vy_1"] == pytest.approx(back.summary["rebound_vy_2"], rel=1e-4)
 

@@ -18,13 +18,13 @@ def test_block_slides_to_a_stop(measure, law, static, dynamic):
     """A block with speed v0 stops after v0/(mu_d g) and v0^2/(2 mu_d g); the friction work is then
     1/2 m v0^2."""
     speed = 1
-    found = measure("sliding-block", speed=speed, angle=0, end_time=0.22, friction_static=static, friction_dynamic=dynamic,
-                    regularization=law, **BLOCK)
-    assert found["state"] == 0
-    assert found["stop"] == pytest.approx(stop_time(speed, dynamic), rel=0.01)
-    assert found["distance"] == pytest.approx(stop_way(speed, dynamic), rel=0.01)
-    assert found["work"] == pytest.approx(MASS * speed**2 / 2, rel=1e-5)
-    assert found["backwards"] == 0 and found["drift"] < 1e-9
+    numbers = measure("sliding-block", speed=speed, angle=0, end_time=0.22, friction_static=static, friction_dynamic=dynamic,
+                      regularization=law, **BLOCK)
+    assert numbers["state"] == 0
+    assert numbers["stop"] == pytest.approx(stop_time(speed, dynamic), rel=0.01)
+    assert numbers["distance"] == pytest.approx(stop_way(speed, dynamic), rel=0.01)
+    assert numbers["work"] == pytest.approx(MASS * speed**2 / 2, rel=1e-5)
+    assert numbers["backwards"] == 0 and numbers["drift"] < 1e-9
 
 
 @pytest.mark.few(3)
@@ -44,12 +44,12 @@ def test_block_starts_to_slide_on_an_incline(measure, law, transition, expected)
     """
     step = dict(slip_velocity=5e-4, dt=5e-4) if transition == "smooth" else dict(slip_velocity=2e-5, dt=1e-3)
     tilt = math.atan(1.05 * expected)
-    found = measure("sliding-block", speed=0, angle=math.degrees(tilt), end_time=0.6, friction_static=0.7, friction_dynamic=0.4,
-                    regularization=law, friction_transition=transition, **BLOCK | step)
-    assert found["state"] == 0
-    assert found["breakaway"] == pytest.approx(expected, rel=0.01)
-    assert found["pull"] == pytest.approx(GRAVITY * (math.sin(tilt) - 0.4 * math.cos(tilt)), rel=0.01)
-    assert found["backwards"] == 0 and found["drift"] < 1e-9
+    numbers = measure("sliding-block", speed=0, angle=math.degrees(tilt), end_time=0.6, friction_static=0.7, friction_dynamic=0.4,
+                      regularization=law, friction_transition=transition, **BLOCK | step)
+    assert numbers["state"] == 0
+    assert numbers["breakaway"] == pytest.approx(expected, rel=0.01)
+    assert numbers["pull"] == pytest.approx(GRAVITY * (math.sin(tilt) - 0.4 * math.cos(tilt)), rel=0.01)
+    assert numbers["backwards"] == 0 and numbers["drift"] < 1e-9
 
 
 @pytest.mark.few(3)
@@ -57,9 +57,9 @@ def test_block_starts_to_slide_on_an_incline(measure, law, transition, expected)
 def test_block_creeps_on_an_incline(measure, law, share):
     """Below tan alpha = mu the block creeps at the speed at which phi of the regularisation is tan
     alpha / mu."""
-    found = measure("sliding-block", speed=0, angle=math.degrees(math.atan(0.6 * share)), end_time=0.2, friction_static=0.6,
-                    friction_dynamic=0.6, regularization=law, **BLOCK)
-    assert found["state"] == 0
-    assert found["creep"] == pytest.approx(CREEP[law](share), rel=0.01)
-    assert found["normal"] == pytest.approx(1, rel=0.01)
-    assert found["backwards"] == 0 and found["drift"] < 1e-9
+    numbers = measure("sliding-block", speed=0, angle=math.degrees(math.atan(0.6 * share)), end_time=0.2, friction_static=0.6,
+                      friction_dynamic=0.6, regularization=law, **BLOCK)
+    assert numbers["state"] == 0
+    assert numbers["creep"] == pytest.approx(CREEP[law](share), rel=0.01)
+    assert numbers["normal"] == pytest.approx(1, rel=0.01)
+    assert numbers["backwards"] == 0 and numbers["drift"] < 1e-9

@@ -13,10 +13,10 @@ def test_homogeneous_deformation_has_the_stress_of_the_closed_form(measure, tmp_
     assert_stress(measure("homogeneous", law=law, degree=degree, young=YOUNG, nu=NU, accuracy=0.1, out=tmp_path), tmp_path, cauchy(law), F)
 
 
-def longer(found: dict, name: str) -> np.ndarray:
+def longer(numbers: dict, name: str) -> np.ndarray:
     """Components 11, 22, 12, 33 of M or H at the ten points of work-excess.edp, (4, 10), in
     extended precision."""
-    return np.array([[found[f"{name}{entry}_{i}"] for i in range(10)] for entry in ("11", "22", "12", "33")]).astype(np.longdouble)
+    return np.array([[numbers[f"{name}{entry}_{i}"] for i in range(10)] for entry in ("11", "22", "12", "33")]).astype(np.longdouble)
 
 
 def neo(C: np.ndarray) -> np.ndarray:
@@ -34,13 +34,13 @@ def test_work_of_a_step_against_extended_precision(measure, size, body):
     They are exact to 13 digits of H times the modulus. A difference of two energies would be exact
     to as many digits of the modulus only.
     """
-    found = measure(f"work-excess{body}", law="neohookean", young=YOUNG, nu=NU, speed=size)
-    M, H = longer(found, "M"), longer(found, "H")
+    numbers = measure(f"work-excess{body}", law="neohookean", young=YOUNG, nu=NU, speed=size)
+    M, H = longer(numbers, "M"), longer(numbers, "H")
     det = M[0] * M[1] - M[2] ** 2
     inverse = np.array([M[1] / det, M[0] / det, -M[2] / det, 1 / M[3]])
     # Over mu.
     S = np.array([1, 1, 0, 1])[:, None] * np.longdouble(1) + (LAMBDA / MU * np.log(det * M[3]) / 2 - 1) * inverse
     excess = 2 * (neo(M + H) - neo(M - H) - (S * H * np.array([1, 1, 2, 1])[:, None]).sum(axis=0))
-    error = abs(np.array([found[f"excess{i}"] for i in range(10)]) - excess)
+    error = abs(np.array([numbers[f"excess{i}"] for i in range(10)]) - excess)
     assert (error <= 1e-12 * abs(excess) + 3e-14 * abs(H).max(axis=0)).all(), error / abs(H).max(axis=0)
-    assert [found[f"energy{i}"] for i in range(10)] == pytest.approx(neo(M).astype(float), rel=1e-12, abs=3e-15 * size)
+    assert [numbers[f"energy{i}"] for i in range(10)] == pytest.approx(neo(M).astype(float), rel=1e-12, abs=3e-15 * size)

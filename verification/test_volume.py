@@ -29,8 +29,9 @@ def test_a_manufactured_motion_at_its_order(measure, law, nu):
     For nu = 0.4999 the numbers of iterations on all meshes differ by a quarter at most, as a small
     mesh updates its matrix earlier.
     """
-    found = [measure("manufactured-rubber", law=law, nu=nu, mesh_size=h, contact_mesh_size=h, dt=0.0025, end_time=0.05, young=10, density=1, radius=1)
-             for h in (1 / 8, 1 / 16, 1 / 32)]
-    order = {name: log2(found[0][name] / found[2][name]) / 2 for name in ("error", "off")}
+    results = [measure("manufactured-rubber", law=law, nu=nu, mesh_size=h, contact_mesh_size=h, dt=0.0025, end_time=0.05, young=10, density=1, radius=1)
+               for h in (1 / 8, 1 / 16, 1 / 32)]
+    order = {name: log2(results[0][name] / results[2][name]) / 2 for name in ("error", "off")}
     assert order["error"] > 1.85 and order["off"] > 0.85
-    assert law == "incompressible" or max(one["iterations"] for one in found) < 1.25 * min(one["iterations"] for one in found)
+    assert law == "incompressible" or max(numbers["iterations"] for numbers in results) < 1.25 * min(
+        numbers["iterations"] for numbers in results)

@@ -84,7 +84,7 @@ def run_all(out: Path, cores: int = study.CORES) -> pd.DataFrame:
 
     Writes verify.csv, the figures and, last, summary.json.
     """
-    program, frames, found = freefem.find(), [], {}
+    program, frames, results = freefem.find(), [], {}
     for old in (out / "summary.json", *out.glob("*.png")):
         old.unlink(missing_ok=True)
     shutil.rmtree(out / "runs", ignore_errors=True)
@@ -92,10 +92,10 @@ def run_all(out: Path, cores: int = study.CORES) -> pd.DataFrame:
         (out / "runs" / slug(case)).mkdir(parents=True)
     acts = {(c, p): partial(perform, part, out / "runs" / slug(case)) for c, case in enumerate(CASES) for p, part in enumerate(case.parts)}
     for key, outcome in study.side_by_side(acts, cores, "verify"):
-        found[key] = ([], str(outcome)) if isinstance(outcome, Failure) else outcome
+        results[key] = ([], str(outcome)) if isinstance(outcome, Failure) else outcome
     for c, case in enumerate(CASES):
-        outcomes = [found[c, p] for p in range(len(case.parts))]
-        rows, message = [row for some, _ in outcomes for row in some], next((said for _, said in outcomes if said), "")
+        outcomes = [results[c, p] for p in range(len(case.parts))]
+        rows, message = [row for some, _ in outcomes for row in some], next((text for _, text in outcomes if text), "")
         frames.append(judge(case, rows, message))
         if not message:
             draw(case, rows, out)
@@ -128,18 +128,18 @@ def slug(case: Case) -> str:
 def judge(case: Case, rows: list[Row], message: str = "") -> pd.DataFrame:
     """The numbers as rows of COLUMNS. Judged numbers have a tolerance; further rows judge the
     convergence over several sizes."""
-    asked = math.nan if case.by_order else case.tolerance
+    tolerance = math.nan if case.by_order else case.tolerance
     names = list(dict.fromkeys(row.what for row in rows))
     finest = {name: series(rows, name)[-1].size for name in names}
-    lines = [(row.what, row.size, row.value, row.expected, row.error, asked if row.size == finest[row.what] else math.nan)
+    lines = [(row.what, row.size, row.value, row.expected, row.error, tolerance if row.size == finest[row.what] else math.nan)
              for row in rows]
     if message:
         lines.append((message.splitlines()[0][:200], *[math.nan] * 4, case.tolerance))
     elif case.by_order:
         for name in names:
             before, last = series(rows, name)[-2:]
-            found = math.log(before.error / last.error) / math.log(before.size / last.size)
-            lines.append((f"order of {name}", last.size, found, last.order, abs(found - last.order), case.tolerance))
+            observed_order = math.log(before.error / last.error) / math.log(before.size / last.size)
+            lines.append((f"order of {name}", last.size, observed_order, last.order, abs(observed_order - last.order), case.tolerance))
     else:
         order, size = observed(rows)
         lines.append((CONVERGES, size, order, math.nan, max(-order, 0.0), 0.0))
@@ -154,8 +154,8 @@ def series(rows: list[Row], what: str) -> list[Row]:
 def observed(rows: list[Row]) -> tuple[float, float]:
     """The order of the largest error between the coarsest and the finest size, over the numbers
     with several sizes; and the finest size."""
-    several = [each for what in dict.fromkeys(row.what for row in rows) if len(each := series(rows, what)) > 1]
-    first, last = max(each[0].error for each in several), max(each[-1].error for each in several)
+    several = [refinement for what in dict.fromkeys(row.what for row in rows) if len(refinement := series(rows, what)) > 1]
+    first, last = max(group[0].error for group in several), max(group[-1].error for group in several)
     return math.log(first / last) / math.log(several[0][0].size / several[0][-1].size), several[0][-1].size
 
 

@@ -73,7 +73,7 @@ class Oblique(Body):
         sides = self.change.CreateVector()
         _, w = self.space.TnT()
         sides.data = ng.LinearForm(self.weighted * w[0] * self.bulk).Assemble().vec
-        centre = [ng.InnerProduct(each, place.vec) / self.weight for each in (sides, self.upwards)]
+        centre = [ng.InnerProduct(component, place.vec) / self.weight for component in (sides, self.upwards)]
         vx, vy = ng.InnerProduct(sides, self.v0.vec) / self.weight, self.velocity()
         turning = ng.InnerProduct(moment, self.change) - self.weight * (centre[0] * vy - centre[1] * vx)
         return {"rebound_vx": vx, "angular_momentum": 2 * turning, "friction_work": 2 * self.rubbed}
@@ -203,28 +203,28 @@ class TunedOblique(Oblique):
         rest = free[:, window].reshape(-1)
 
         def balance(place):
-            found = self.tractions(start, place.reshape(2, n) @ N.T, self.sticks[points])
-            force = np.concatenate([(w * found[1]) @ N, (w * found[0]) @ N])
-            return found, force, place - rest - C @ force
+            tractions = self.tractions(start, place.reshape(2, n) @ N.T, self.sticks[points])
+            force = np.concatenate([(w * tractions[1]) @ N, (w * tractions[0]) @ N])
+            return tractions, force, place - rest - C @ force
 
-        found, force, off = balance(place)
+        tractions, force, off = balance(place)
         for _ in range(400):
             if np.linalg.norm(off) <= 1e-12 * self.o.radius * math.sqrt(n):
-                v, sticks = abs(found[2]), self.sticks[points]
-                wrong = (found[0] > 0) & (turned <= TURNS) & np.where(sticks, v >= self.o.slip_velocity, v < self.o.slip_velocity)
+                v, sticks = abs(tractions[2]), self.sticks[points]
+                wrong = (tractions[0] > 0) & (turned <= TURNS) & np.where(sticks, v >= self.o.slip_velocity, v < self.o.slip_velocity)
                 turned += wrong
                 wrong &= sticks | (turned <= TURNS)
                 if not wrong.any():
                     return place.reshape(2, n), force.reshape(2, n)
                 self.sticks[points[wrong]] ^= True
-                found, force, off = balance(place)
+                tractions, force, off = balance(place)
                 continue
-            _, _, _, stiff, dragged, steep = found
+            _, _, _, stiff, dragged, steep = tractions
             K = np.block([[N.T @ ((w * steep)[:, None] * N), -N.T @ ((w * dragged)[:, None] * N)],
                           [np.zeros((n, n)), -N.T @ ((w * stiff)[:, None] * N)]])
             move, length, size = np.linalg.solve(np.eye(2 * n) - C @ K, -off), 1.0, np.linalg.norm(off)
             while True:
-                found, force, off = balance(place + length * move)
+                tractions, force, off = balance(place + length * move)
                 if np.linalg.norm(off) < (1 - 0.1 * length) * size or length < 0.01:
                     break
                 length /= 2

@@ -12,8 +12,8 @@ N = np.column_stack([np.cos(turn), np.sin(turn)])
 stretch = np.linspace(0.5, 1.05, 300)
 for nu, color in ((0.0, GREEN), (0.3, BLUE), (0.45, RED)):
     lam, smallest = 2 * nu / (1 - 2 * nu), []  # relative to mu = 1
-    for one in stretch:
-        F = np.diag([one, 1.0])
+    for value in stretch:
+        F = np.diag([value, 1.0])
         E = (F.T @ F - np.eye(2)) / 2
         S = lam * np.trace(E) * np.eye(2) + 2 * E
         n = N @ F.T

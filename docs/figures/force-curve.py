@@ -29,8 +29,8 @@ ax.plot(middle[k], force[k], "o", color=RED, ms=5)
 ax.annotate("peak_force", (middle[k], force[k]), (middle[k] + 0.75, force[k] + 1), color=RED, family="monospace", fontsize=9, va="center",
             arrowprops={"arrowstyle": "-", "color": RED, "lw": 0.8})
 for x, label in ((on, r"$t_{on}$"), (off, r"$t_{off}$")):
-    for one in (ax, low):
-        one.axvline(x, color=GREEN, lw=1, ls=":")
+    for panel in (ax, low):
+        panel.axvline(x, color=GREEN, lw=1, ls=":")
     ax.text(x, 76, label, color=GREEN, ha="center", va="bottom", fontsize=11)
 ax.annotate("", (off, 72), (on, 72), arrowprops={"arrowstyle": "<->", "color": GREEN, "lw": 1.2})
 ax.text(0.9, 72.8, "contact_time", color=GREEN, ha="center", va="bottom", family="monospace", fontsize=9)

@@ -10,8 +10,8 @@ for name, ax in zip(NAMES, axes.flat):
     result = ff.run(name, accuracy=0.02, estimate=False, out=FOLDER / f".runs/{name}", progress=False)
     drawn = set(figure.axes)
     result.plot.shapes(ax)
-    for one in set(figure.axes) - drawn:
-        one.remove()  # the colour bar
+    for bar in set(figure.axes) - drawn:
+        bar.remove()  # the colour bar
     ax.set(title=name, xlabel="", ylabel="", xticks=(), yticks=())
     ax.title.set(fontsize=9.5, family="monospace")
     for side in ax.spines.values():

@@ -19,9 +19,9 @@ from style import (
 )
 
 figure, (ax, right) = plt.subplots(1, 2, figsize=(WIDTH, 2.75), layout="constrained")
-for one in (ax, right):
-    one.set_aspect("equal")
-    one.axis("off")
+for panel in (ax, right):
+    panel.set_aspect("equal")
+    panel.axis("off")
 ground(ax, -1.9, 1.7, 0, 0.14)
 shape(ax, [(-1.2, 0), (1.0, 0), (1.0, 0.75), (-1.2, 0.75)], OTHER)
 shape(ax, circle((-0.2, 1.4), 0.55))

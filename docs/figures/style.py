@@ -71,10 +71,10 @@ def spin(ax, centre, radius, start, end, color=INK, text="", offset=(0, 0)):
         ax.text(centre[0] + offset[0], centre[1] + offset[1], text, color=color, ha="center", va="center")
 
 
-def ground(ax, left, right, y=0.0, depth=0.12):
+def ground(ax, start, end, y=0.0, depth=0.12):
     """Draws a rigid plane: a line with a hatched strip below it."""
-    ax.fill_between([left, right], y - depth, y, facecolor=SOLID, edgecolor=GREY, hatch="////", lw=0)
-    ax.plot([left, right], [y, y], color=INK, lw=1.4)
+    ax.fill_between([start, end], y - depth, y, facecolor=SOLID, edgecolor=GREY, hatch="////", lw=0)
+    ax.plot([start, end], [y, y], color=INK, lw=1.4)
 
 
 def shape(ax, points, face=BODY, edge=INK, **more):

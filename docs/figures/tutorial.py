@@ -10,8 +10,8 @@ figure, axes = plt.subplots(1, 4, figsize=(WIDTH, 1.85), layout="constrained", s
 for time, ax in zip((0.3e-3, 1e-3, 2.1e-3, 4.6e-3), axes):
     drawn = set(figure.axes)
     result.plot.shapes(ax, time=time)
-    for one in set(figure.axes) - drawn:
-        one.remove()
+    for bar in set(figure.axes) - drawn:
+        bar.remove()
     ax.set(xlabel="", ylabel="", xticks=(), yticks=(), xlim=(-0.065, 0.065), ylim=(-0.012, 0.125))
     ax.title.set_fontsize(9)
     for side in ax.spines.values():
@@ -20,8 +20,8 @@ save(figure, "tutorial-shapes", "png")
 
 slow = ff.run("disc-normal", speed=4, law="neohookean", out=FOLDER / ".runs/slow", progress=False)
 figure, ax = graph(2.6)
-for one, color, label in ((result, BLUE, "8 m/s, St. Venant–Kirchhoff"), (slow, ORANGE, "4 m/s, neo-Hookean")):
-    ax.plot(1e3 * one.history.t, 1e-3 * one.history.normal_force, color=color, label=label)
+for run, color, label in ((result, BLUE, "8 m/s, St. Venant–Kirchhoff"), (slow, ORANGE, "4 m/s, neo-Hookean")):
+    ax.plot(1e3 * run.history.t, 1e-3 * run.history.normal_force, color=color, label=label)
 ax.set(xlabel="time [ms]", ylabel="normal force [kN/m]", ylim=(0, None), xlim=(0, 5.2))
 ax.legend(fontsize=9)
 save(figure, "tutorial-force")

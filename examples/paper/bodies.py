@@ -89,8 +89,8 @@ def total_energy(results: Results, law: str) -> tuple[bool, str]:
     initial value over the whole run."""
     history = results.history(BLOCK[law])
     energy = mechanical_energy(history)
-    moved, most = np.ptp(energy) / energy[0], (history["contact"] / energy[0]).max()
-    return moved < CONSTANT, f"constant to {moved:.0e}, at most {100 * most:.1f} % of it in the contact"
+    moved, largest = np.ptp(energy) / energy[0], (history["contact"] / energy[0]).max()
+    return moved < CONSTANT, f"constant to {moved:.0e}, at most {100 * largest:.1f} % of it in the contact"
 
 
 def _velocities(results: Results, name: str) -> tuple[tuple[float, float], float, float]:
@@ -118,10 +118,10 @@ def converges(results: Results) -> tuple[str, str, Lost]:
         words.append(f"{scheme}: drift {drift[0]:.0e} to {drift[-1]:.0e} (order {order:.1f}), rebound {group.rebound_vy.iloc[0]:.3f} to "
                      f"{group.rebound_vy.iloc[-1]:.3f} m/s")
     bdf2, own = (tells.get(scheme, False) for scheme in ("bdf2", "energy-momentum"))
-    said = "" if own else ("A scheme that conserves at any step says nothing of convergence by it: error bars here are from refined meshes "
+    text = "" if own else ("A scheme that conserves at any step says nothing of convergence by it: error bars here are from refined meshes "
                            "and steps.")
-    said = f"from the step {1e6 * rows.dt.max():g} to {1e6 * rows.dt.min():g} μs on one mesh; {'; '.join(words)}. {said}"
-    return graded(bdf2 and own, bdf2), said, list(rows.ellipticity_lost_time)
+    text = f"from the step {1e6 * rows.dt.max():g} to {1e6 * rows.dt.min():g} μs on one mesh; {'; '.join(words)}. {text}"
+    return graded(bdf2 and own, bdf2), text, list(rows.ellipticity_lost_time)
 
 
 @states("Section 3.3, figure 10", "normal impact of the ball, SVK, without friction: the energy is constant", f"{BALL} {BALL_NEO} {DISC}",

@@ -64,7 +64,7 @@ def friction_laws(results: Results) -> tuple[str, str]:
     laws = results.friction_laws()
     formulas = {"φ¹": ("b", "sqrt", lambda v: v / np.hypot(v, EPSILON)), "φ²": ("b", "tanh", lambda v: np.tanh(v / EPSILON)),
                 "φ³ with v/(2ε)": ("b", "linear-printed", _steps(1 / 2)), "μ_e, μ_d": ("c", "linear", _steps(STATIC, DYNAMIC))}
-    apart = {name: _apart(laws, panel, law, of) for name, (panel, law, of) in formulas.items()}
+    apart = {name: _apart(laws, panel, law, formula) for name, (panel, law, formula) in formulas.items()}
     return graded(max(apart.values()) < EXACT), (
         "largest deviation of the law as tabulated (friction-laws/laws.csv) from its formula: "
         + ", ".join(f"{name} {value:.0e}" for name, value in apart.items()) + " (of the last with v/ε below ε).")
@@ -132,14 +132,15 @@ def reflected(results: Results, law: str) -> tuple[str, str, str]:
     a mode, as then any peak would be.
     """
     both = zip(impact(results, law), results.modes(JUMP, law=law, friction_static=STATIC))
-    peaks, modes, width, chance = zip(*(_oscillation(*each) for each in both))
+    peaks, modes, width, chance = zip(*(_oscillation(*arguments) for arguments in both))
     common = [peak for peak in peaks[0] if any(abs(peak - other) < max(width) for other in peaks[1])]
-    near = [peak for peak in common if all(np.abs(each - peak).min(initial=np.inf) < width[0] for each in modes)]
+    near = [peak for peak in common if all(np.abs(frequencies - peak).min(initial=np.inf) < width[0] for frequencies in modes)]
     verdict = OPEN if near and max(chance) > 0.5 else graded(bool(near) and len(near) == len(common), bool(near))
-    said = " The modes lie nearer to each other than an impact of this length tells apart." if verdict == OPEN else ""
+    remark = " The modes lie nearer to each other than an impact of this length tells apart." if verdict == OPEN else ""
     return verdict, (f"peaks of both meshes at {', '.join(f'{peak:.0f}' for peak in common) or 'no frequency'} Hz, "
                      f"{len(near)} of {len(common)} within {width[0]:.0f} Hz of such a mode, as are {100 * max(chance):.0f} % of all "
-                     f"frequencies from {min(each.min() for each in modes):.0f} to {max(each.max() for each in modes):.0f} Hz"), said
+                     f"frequencies from {min(frequencies.min() for frequencies in modes):.0f} to "
+                     f"{max(frequencies.max() for frequencies in modes):.0f} Hz"), remark
 
 
 def _oscillation(history: History, modes: np.recarray) -> tuple[np.ndarray, np.ndarray, float, float]:
@@ -175,9 +176,9 @@ def alternates(results: Results, law: str) -> tuple[str, str, str]:
     """
     jump, control = ([load_changes(history) for history in impact(results, law, static)] for static in (STATIC, DYNAMIC))
     alternate, more = min(jump) > 2, min(jump) - max(control) > max(np.ptp(jump), np.ptp(control))
-    said = "" if more else (" The points alternate between sliding and sticking, but the jump of the coefficient is not what makes "
-                            "them: equal coefficients do the same.")
-    return graded(alternate and more, alternate), f"{both(jump, '.1f')} times, in the control {both(control, '.1f')}", said
+    remark = "" if more else (" The points alternate between sliding and sticking, but the jump of the coefficient is not what makes "
+                              "them: equal coefficients do the same.")
+    return graded(alternate and more, alternate), f"{both(jump, '.1f')} times, in the control {both(control, '.1f')}", remark
 
 
 @states("Section 3.1, figure 5b",
@@ -194,12 +195,12 @@ def discontinuous(results: Results, law: str) -> tuple[str, str, str]:
     """
     jump, control = ([_changes(history) for history in impact(results, law, static, STEPS)] for static in (STATIC, DYNAMIC))
     # The exponents of the step in these changes.
-    (along, across), (ratio, _) = (np.log(np.divide(*each)) / np.log(STEP_RATIO) for each in (jump, control))
+    (along, across), (ratio, _) = (np.log(np.divide(*pair)) / np.log(STEP_RATIO) for pair in (jump, control))
     jumps, more = along < 0.5 < across, min(mine[0] / other[0] for mine, other in zip(jump, control)) > (1 + STATIC / DYNAMIC) / 2
-    said = "" if more or not jumps else " Equal coefficients, where nothing changes suddenly but the direction, do the same."
+    remark = "" if more or not jumps else " Equal coefficients, where nothing changes suddenly but the direction, do the same."
     return graded(jumps and more, jumps), (
         f"{' to '.join(f'{change:.0f}' for change, _ in jump)} m/s² along the plane (as the step to the power {along:.2f}; across it "
-        f"{across:.2f}), with equal coefficients {' to '.join(f'{change:.0f}' for change, _ in control)} ({ratio:.2f})"), said
+        f"{across:.2f}), with equal coefficients {' to '.join(f'{change:.0f}' for change, _ in control)} ({ratio:.2f})"), remark
 
 
 def _changes(history: History) -> tuple[float, float]:
@@ -256,10 +257,10 @@ def elastic(results: Results, law: str) -> tuple[str, str, str]:
     and it must have several maxima with a prominence above 1 % of the total. Partly if it rises and
     falls once.
     """
-    before, mirror, most, counts = zip(*map(_exchange, impact(results, law)))
+    before, mirror, share, counts = zip(*map(_exchange, impact(results, law)))
     exchanged, fluctuates = max(before) < CONSTANT and max(mirror) < -0.9, min(counts) > 1
     return graded(exchanged and fluctuates, exchanged), (
-        f"{max(before):.0e} before, in it up to {100 * max(most):.0f} % with {both(counts)} maxima, correlation with the kinetic "
+        f"{max(before):.0e} before, in it up to {100 * max(share):.0f} % with {both(counts)} maxima, correlation with the kinetic "
         f"{max(mirror):.3f}"), "" if fluctuates else " With SVK it rises and falls once."
 
 
@@ -296,12 +297,12 @@ def sliding_first(results: Results) -> tuple[str, str, Lost]:
     """
     every = results.stick_slip()
     every = every[every.exit == 0]
-    told, counts = [], {}
+    sentences, counts = [], {}
     for (angle, law), rows in every.groupby(["angle", "law"], sort=False):
         order, both = int(rows["order"].sum()), int((rows["order"] & rows["quiet"]).sum())
         counts |= {angle: (both, len(rows))} if law == "svk" else {}
-        told.append(f"{angle:g}°, {LAWS[law]}: {order} of {len(rows)} runs, {both} of them with at most {100 * stick_slip.QUIET:g} % of "
-                    f"the friction work in the last third")
+        sentences.append(f"{angle:g}°, {LAWS[law]}: {order} of {len(rows)} runs, {both} of them with at most "
+                         f"{100 * stick_slip.QUIET:g} % of the friction work in the last third")
     normal = SPEED * np.sin(np.radians(ANGLE))
     restitution = {name: results.summary(name)["rebound_vy"] / normal for name in ("disc-oblique-svk", "disc-oblique")}
     shares = " and ".join(f"{slip_share(e):.2f} with the e = {e:.3f} of {name}" for name, e in restitution.items())
@@ -309,7 +310,7 @@ def sliding_first(results: Results) -> tuple[str, str, Lost]:
     explained = "" if ANGLE in met else ", which explains it: the disc sticks long before two thirds, and slips back at the end"
     only = f" With SVK the order appears only at {FLAT:g}° from the plane, which is π/3 from the normal." if met == [FLAT] else ""
     return graded(any(both == runs for both, runs in counts.values()), bool(met)), (
-        f"slides first and sticks last: {'; '.join(told)}. The slip of a rigid disc ends at the share v_t/(3 μ_d (1 + e) v_n) of the "
+        f"slides first and sticks last: {'; '.join(sentences)}. The slip of a rigid disc ends at the share v_t/(3 μ_d (1 + e) v_n) of the "
         f"normal impulse, {shares}{explained}. At {FLAT:g}° from the plane it would end at "
         f"{slip_share(restitution['disc-oblique'], FLAT):.2f}.{only}"
     ), list(every[every.law == "svk"].ellipticity_lost_time)
@@ -328,12 +329,12 @@ def rolls(results: Results) -> tuple[str, str]:
     over the last third of the contact."""
     radius = results.scene("disc-oblique-svk")["radius"]
 
-    def of(results: Results, law: str) -> tuple[bool, str]:
+    def judge(results: Results, law: str) -> tuple[bool, str]:
         means = [_last_third(history, radius) for history in impact(results, law)]
         return all(abs(rim - centre) < 0.05 * abs(centre) for centre, rim in means), " and ".join(
             f"v_x = {centre:.2f}, −ω R = {rim:.2f} m/s" for centre, rim in means)
     own = results.summary("disc-rolling")["rebound_vx"] / results.scene("disc-rolling")["speed"]
-    return of_laws(of, results,
+    return of_laws(judge, results,
                    "means over the last third, on two meshes; {}. (Set down on the plane, in a scene of our own that the verdict does not "
                    f"rest on, it comes to roll at {own:.3f} v₀; rigid: 2/3.)")
 

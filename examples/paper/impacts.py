@@ -94,8 +94,8 @@ def monotone(results: Results) -> tuple[str, str]:
         return OPEN, f"{words} The contact time {sweep_figures.LEVEL}."
     good = all(trend and trend.falls and trend.beyond == 0 for trend in trends)
     sharp = all(trend and trend.bar < trend.step for trend in trends)
-    told = "" if sharp else " Many steps are smaller than their error bar: a small rise would not show."
-    return graded(good and sharp, good), words + told
+    remark = "" if sharp else " Many steps are smaller than their error bar: a small rise would not show."
+    return graded(good and sharp, good), words + remark
 
 
 @states("Section 3.1", "the neo-Hookean law demands larger computational times", FORCES, lost=lost(SLOW, FAST))
@@ -112,7 +112,7 @@ def slower(results: Results) -> tuple[str, str]:
             ratios = [neo[name] / svk[name] for name in COUNTS]
             more.append(max(ratios) > 1.1 and min(ratios) > 1 / 1.1)
             words.append(f"{speed:g} m/s, {svk['dofs']} dofs: "
-                         + ", ".join(f"{neo[name]} to {svk[name]} {said}" for name, said in COUNTS.items()))
+                         + ", ".join(f"{neo[name]} to {svk[name]} {text}" for name, text in COUNTS.items()))
             seconds.append(f"{neo['cpu_seconds'] / svk['cpu_seconds']:.2f}")
     return graded(all(more), any(more)), (f"neo-Hookean to SVK, {'; '.join(words)}. (Processor times, which scatter with the machine and "
                                           f"do not decide: {', '.join(seconds)} of those with SVK.)")
@@ -152,8 +152,8 @@ def vibro_impact(results: Results) -> tuple[str, str, Lost]:
     once = int((rows.contact_intervals + rows.contact_intervals_error > 1).sum()) - len(both)
     where = ", ".join(f"{row.of.removeprefix('contact-time-')}, ν = {row.nu:g}, {row.speed:g} m/s" for row in both.itertuples())
     verdict, where = AGREES if len(both) else OPEN if once else DIFFERS, f" ({where})" * bool(where)
-    said = f"of {len(rows)} impacts {len(both)} touch more than once on both meshes{where}, {once} on one of them only."
-    return verdict, said, list(both[LOST]) if both[LOST].notna().all() else []
+    text = f"of {len(rows)} impacts {len(both)} touch more than once on both meshes{where}, {once} on one of them only."
+    return verdict, text, list(both[LOST]) if both[LOST].notna().all() else []
 
 
 def _of(rows: pd.DataFrame, law: str, speed: float, column: str) -> tuple[float, float]:

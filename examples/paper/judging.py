@@ -80,9 +80,9 @@ class Results:
     def pair(self, name: str, **values) -> list[Path]:
         """The runs of the point of a sweep with these values: plain and, if the sweep has a
         refinement, refined."""
-        wanted = loaded(name)
-        point = next(point for point in wanted.points if values.items() <= point.items())
-        return [study.place(self.sweep(name), point | more) for more in ([{}, wanted.refine] if wanted.refine else [{}])]
+        plan = loaded(name)
+        point = next(point for point in plan.points if values.items() <= point.items())
+        return [study.place(self.sweep(name), point | more) for more in ([{}, plan.refine] if plan.refine else [{}])]
 
     def histories(self, name: str, **values) -> list[History]:
         return [read_history(folder) for folder in self.pair(name, **values)]
@@ -144,8 +144,8 @@ def lost(*which: str | tuple[str, dict]) -> Callable[[Results], Lost]:
     """The times [s] at which runs, or the runs of points (sweep, values) on both meshes, lose
     ellipticity."""
     def times(results: Results) -> Lost:
-        ends = [results.summaries(one[0], **one[1]) if isinstance(one, tuple) else [results.summary(one)] for one in which]
-        return [end["ellipticity_lost_time"] for each in ends for end in each]
+        ends = [results.summaries(item[0], **item[1]) if isinstance(item, tuple) else [results.summary(item)] for item in which]
+        return [end["ellipticity_lost_time"] for group in ends for end in group]
     return times
 
 
@@ -155,7 +155,7 @@ def _on_any_mesh(ours: str, lost: Lost, exact: bool) -> tuple[str, str]:
     "agrees" becomes "partly" if a decisive run lost ellipticity, as another mesh may give another
     verdict, unless the statement is `exact`.
     """
-    if not (times := [time for time in lost if known(time)]):
+    if not (times := [time for time in lost if is_known(time)]):
         return AGREES, ours
     since = f"SVK loses ellipticity from {1e3 * min(times):.2f} ms on"
     if exact:
@@ -175,10 +175,10 @@ def of_laws(rule: Callable[[Results, str], tuple], results: Results, around: str
     "partly" for the paper's law only, and else "does not agree". If it returns (verdict, words,
     text at the end), the paper's law gives the verdict.
     """
-    found = {law: rule(results, law) for law in LAWS}
-    (paper, _, *said), (other, *_) = found.values()
-    words = around.format("; ".join(f"{LAWS[law]}: {own}" for law, (_, own, *_) in found.items()))
-    return paper if said else graded(paper and other, paper), words + "".join(said)
+    verdicts = {law: rule(results, law) for law in LAWS}
+    (paper, _, *remarks), (other, *_) = verdicts.values()
+    words = around.format("; ".join(f"{LAWS[law]}: {own}" for law, (_, own, *_) in verdicts.items()))
+    return paper if remarks else graded(paper and other, paper), words + "".join(remarks)
 
 
 def finished(results: Results, name: str) -> pd.DataFrame:
@@ -220,10 +220,10 @@ def both(values: Iterable, form: str = "") -> str:
 
 def when(time: float | None, words: str) -> str:
     """The time [s] from which a condition holds in a run, in words."""
-    return f"{words} from {1e3 * time:.2f} ms on" if known(time) else f"{words}: never"
+    return f"{words} from {1e3 * time:.2f} ms on" if is_known(time) else f"{words}: never"
 
 
-def known(time: float | None) -> bool:
+def is_known(time: float | None) -> bool:
     """Whether a time of the summary exists."""
     return time is not None and not np.isnan(time)
 

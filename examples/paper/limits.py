@@ -34,7 +34,7 @@ def stiff_limit(results: Results) -> tuple[str, str, Lost]:
     with k and the rebound converges."""
     rows = finished(results, STIFFNESS)
 
-    def of(_: Results, law: str) -> tuple[bool, str]:
+    def judge(_: Results, law: str) -> tuple[bool, str]:
         groups = [group for _, group in rows[rows.law == law].sort_values("penalty").groupby("nu")]
         if not groups:
             return False, "no run"
@@ -47,7 +47,7 @@ def stiff_limit(results: Results) -> tuple[str, str, Lost]:
             f"for {sum(good)} of {len(good)} ν, penetration from up to {1e3 * first:.2g} down to {1e3 * last:.2g} mm, rebound {ends} m/s")
     around = ("largest penetration, and what each larger k still changes of the rebound with the first and the last ν, from k = "
               f"{rows.penalty.min():.0e} to {rows.penalty.max():.0e} Pa/m; {{}}.")
-    return *of_laws(of, results, around), list(rows[rows.law == "svk"].ellipticity_lost_time)
+    return *of_laws(judge, results, around), list(rows[rows.law == "svk"].ellipticity_lost_time)
 
 
 @states("Section 2.3, equation (12)", "for ε → 0 φ^1, φ^2, φ^3 tend to the step, and a sufficiently small ε serves", SLIP,

@@ -34,34 +34,34 @@ TITLES = {"friction-laws": "The friction laws (11) to (13), from the functions t
 
 def page(findings: list[tuple[str, str, Finding]], more: str = "") -> str:
     """The page as HTML with all figures. `more` follows the statements."""
-    counts = ", ".join(f"{sum(found.verdict == verdict for *_, found in findings)} {verdict}" for verdict in COLOURS)
+    counts = ", ".join(f"{sum(finding.verdict == verdict for *_, finding in findings)} {verdict}" for verdict in COLOURS)
     contents = "\n".join(f"<li>{line}</li>" for line in [
         '<a href="#all">All verdicts</a>',
         *(f'<a href="#s{k}">{escape(item)}</a>: {escape(text)}' for k, (item, text, _) in enumerate(findings)),
         *(['<a href="#verification">Verification</a>: exact solutions'] if more else [])])
-    rows = "\n".join(f'<tr id="row{k}"><td>{escape(item)}</td><td>{escape(text)}</td><td>{escape(found.ours)}</td>'
-                     f'<td style="color:{COLOURS[found.verdict]}"><a href="#s{k}">{found.verdict}</a></td></tr>'
-                     for k, (item, text, found) in enumerate(findings))
+    rows = "\n".join(f'<tr id="row{k}"><td>{escape(item)}</td><td>{escape(text)}</td><td>{escape(finding.ours)}</td>'
+                     f'<td style="color:{COLOURS[finding.verdict]}"><a href="#s{k}">{finding.verdict}</a></td></tr>'
+                     for k, (item, text, finding) in enumerate(findings))
     shown = {}
-    sections = "\n".join(_section(k, *each, shown) for k, each in enumerate(findings))
+    sections = "\n".join(_section(k, *entry, shown) for k, entry in enumerate(findings))
     return Path(__file__).with_name("page.html").read_text("utf-8").format(
         counts=counts, contents=contents, rows=rows, sections=sections, more=more, now=datetime.now(), version=__version__,
         code=code_hash(), back=BACK)
 
 
-def _section(k: int, item: str, text: str, found: Finding, shown: dict[Path, int]) -> str:
+def _section(k: int, item: str, text: str, finding: Finding, shown: dict[Path, int]) -> str:
     """A statement with its figures, numbered through the page. A figure of an earlier statement, in
     `shown`, is a link."""
     pictures = []
-    for path in found.figures:
+    for path in finding.figures:
         if path in shown:
             pictures.append(f'<p><a href="#figure{shown[path]}">Figure {shown[path]}</a> above: {escape(caption(path))}.</p>')
         else:
             shown[path] = len(shown) + 1
             pictures.append(picture_of(path, shown[path], f"#s{k}", item))
-    return (f'<h2 id="s{k}">{escape(item)}: {escape(text)}</h2>\n<p><b style="color:{COLOURS[found.verdict]}">{found.verdict}</b>: '
-            f'{escape(found.ours)}</p>\n'
-            + "\n".join(pictures) + f'\n{provenance_of(found.runs)}\n<p><a href="#row{k}">Back to its row in the table</a> · {BACK}</p>')
+    return (f'<h2 id="s{k}">{escape(item)}: {escape(text)}</h2>\n<p><b style="color:{COLOURS[finding.verdict]}">{finding.verdict}</b>: '
+            f'{escape(finding.ours)}</p>\n'
+            + "\n".join(pictures) + f'\n{provenance_of(finding.runs)}\n<p><a href="#row{k}">Back to its row in the table</a> · {BACK}</p>')
 
 
 def picture_of(path: Path, number: int = 0, back: str = "", item: str = "") -> str:
@@ -94,11 +94,11 @@ def verification(folder: Path) -> str:
     table = _table(verify.overview(frame), verify.FORMATS)
     parts = []
     for case in verify.CASES:
-        rows, asked = frame[frame.case == case.name], judged[judged.case == case.name]
+        rows, judged_rows = frame[frame.case == case.name], judged[judged.case == case.name]
         figure = folder / f"{verify.slug(case)}.png"
         parts.append(f"<h3>{escape(case.name)}: {escape(case.title)}</h3>\n<p>{escape(case.note)}</p>\n"
                      f"{picture_of(figure) if figure.exists() else ''}\n<details><summary>all numbers ({len(rows)}, of which "
-                     f"{len(asked)} are judged)</summary>{_table(rows, verify.NUMBERS)}</details>")
+                     f"{len(judged_rows)} are judged)</summary>{_table(rows, verify.NUMBERS)}</details>")
     return ('<h2 id="verification">Verification</h2>' "\n<p>Against exact solutions, by tolerances fixed beforehand (make verify): "
             f"<b>{'all pass' if judged['pass'].all() else 'NOT all pass'}</b>. A row a case, with the number that is nearest to "
             f"its tolerance; order: observed, of the largest error between the coarsest and the finest size.</p>\n{table}\n"
@@ -127,13 +127,13 @@ def provenance_of(folders: list[Path]) -> str:
     records = [read_json(path) for folder in folders
                for path in (folder / "summary.json", folder / "failure.json") if path.exists()]
     made = [record.get("provenance", {}) for record in records]
-    warned = study.warned("; ".join(each.get("warnings", [])) for each in records)
+    warned = study.warned("; ".join(record.get("warnings", [])) for record in records)
     lines = [f"runs          {len(scenes)}", f"warnings      {warned or 'none'}",
              "parameters    " + ", ".join(f"{name} = {value}" for name, value in common.items())]
     lines += [f"varied        {name}: " + (", ".join(map(str, values)) if len(values) <= 8 else
                                           f"{len(values)} values from {values[0]} to {values[-1]}") for name, values in varied.items()]
     for name, words in (("git", "commit"), ("code", "code sha256"), ("freefem", "FreeFem++"), ("gmsh", "gmsh")):
-        lines.append(f"{words:<14}" + ", ".join(sorted({str(each.get(name)) for each in made})))
-    meshes = sorted({str(each.get("mesh")) for each in made})
+        lines.append(f"{words:<14}" + ", ".join(sorted({str(entry.get(name)) for entry in made})))
+    meshes = sorted({str(entry.get("mesh")) for entry in made})
     lines.append("mesh sha256   " + (", ".join(meshes) if len(meshes) <= 4 else f"{len(meshes)} meshes, in each run's summary.json"))
     return f"<details><summary>parameters and provenance</summary><pre>{escape(chr(10).join(lines))}</pre></details>"

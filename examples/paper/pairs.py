@@ -40,11 +40,11 @@ def search_costs(results: Results) -> tuple[str, str]:
     """
     words = {"closest-point": "closest points (9)"} | {pairing: f"(14), (15) {how}" for pairing, how in PRINTED.items()}
     ends = {pairing: results.summaries(PAIRS, pairing=pairing, pairing_range=ELEMENT) for pairing in words}
-    shares = {pairing: [end["phase_seconds"]["search"] / end["cpu_seconds"] for end in each] for pairing, each in ends.items()}
+    shares = {pairing: [end["phase_seconds"]["search"] / end["cpu_seconds"] for end in summaries] for pairing, summaries in ends.items()}
     dear = [share > DEAR for share in shares["closest-point"]]
-    told = "; ".join(f"{words[pairing]} {' and '.join(f'{100 * share:.0f} %' for share in found)} of "
-                     f"{both([end['cpu_seconds'] for end in ends[pairing]], '.1f')} s" for pairing, found in shares.items())
-    return graded(all(dear), any(dear)), (f"the search's share of the processor time, on two meshes: {told}. More than {100 * DEAR:g} % is "
+    text = "; ".join(f"{words[pairing]} {' and '.join(f'{100 * share:.0f} %' for share in values)} of "
+                     f"{both([end['cpu_seconds'] for end in ends[pairing]], '.1f')} s" for pairing, values in shares.items())
+    return graded(all(dear), any(dear)), (f"the search's share of the processor time, on two meshes: {text}. More than {100 * DEAR:g} % is "
                                           f"asked; boxes leave few edges to a point.")
 
 
@@ -69,18 +69,18 @@ def single_point(results: Results) -> tuple[str, str]:
 def _beside_closest(results: Results, width: str | float, words: str) -> tuple[str, str]:
     """Verdict and words of (14), (15) with ε = `width`, compared with closest points."""
     nearest = results.summaries(PAIRS, pairing="closest-point", pairing_range=ELEMENT)
-    usual, same, as_often, told = [near["contact_intervals"] for near in nearest], {}, {}, []
+    usual, same, as_often, sentences = [near["contact_intervals"] for near in nearest], {}, {}, []
     for pairing, how in PRINTED.items():
         ends = results.summaries(PAIRS, pairing=pairing, pairing_range=width)
-        apart, touches = [_apart(*each) for each in zip(ends, nearest)], [end["contact_intervals"] for end in ends]
+        apart, touches = [_apart(*pair) for pair in zip(ends, nearest)], [end["contact_intervals"] for end in ends]
         peaks = both([end["peak_force"] / near["peak_force"] for end, near in zip(ends, nearest)], ".2f")
-        slip = any("slip through" in said for end in ends for said in end["warnings"])
+        slip = any("slip through" in warning for end in ends for warning in end["warnings"])
         same[pairing] = max(apart) <= SAME and not slip
-        as_often[pairing] = all(count <= most for count, most in zip(touches, usual))
-        told.append(f"{how} {' and '.join(f'{100 * each:.1f} %' for each in apart)} off, touching {both(touches)} times, peak force "
-                    f"{peaks} times that of closest points" + ", points slip through between each other" * slip)
+        as_often[pairing] = all(count <= limit for count, limit in zip(touches, usual))
+        sentences.append(f"{how} {' and '.join(f'{100 * value:.1f} %' for value in apart)} off, touching {both(touches)} times, peak force "
+                         f"{peaks} times that of closest points" + ", points slip through between each other" * slip)
     return graded(same["pairwise-printed"] and as_often["pairwise-printed"], any(same.values())), (
-        f"{words}, on two meshes (closest points touch {both(usual)} times): {'; '.join(told)}. As printed the force jumps to its "
+        f"{words}, on two meshes (closest points touch {both(usual)} times): {'; '.join(sentences)}. As printed the force jumps to its "
         f"largest where points come within ε.")
 
 

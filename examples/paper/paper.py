@@ -65,9 +65,9 @@ def main(argv: list[str]) -> int:
     target = results.folder / "paper/report.html"
     with study.complete(target) as part:
         part.write_text(page(findings, verification(results.folder / "verify")))
-    for item, text, found in findings:
-        print(f"{item}: {text}\n    {found.verdict.upper()}: {found.ours}\n")
-    print(", ".join(f"{sum(found.verdict == verdict for *_, found in findings)} {verdict}" for verdict in COLOURS))
+    for item, text, finding in findings:
+        print(f"{item}: {text}\n    {finding.verdict.upper()}: {finding.ours}\n")
+    print(", ".join(f"{sum(finding.verdict == verdict for *_, finding in findings)} {verdict}" for verdict in COLOURS))
     print(shown(target))
     return 0
 
@@ -89,8 +89,8 @@ def _needed(results: judging.Results) -> Iterator[tuple[str, list[Path], Callabl
         yield TARGETS.get(name, name), results.drawn(*(f"{name}/{picture}" for picture in pictures)), partial(_hold, runs)
     yield "ball-comparison", results.drawn(bodies.ACCELERATIONS, bodies.LIKE_FOR_LIKE), lambda: True
     for name in sweep.built_in():
-        wanted = judging.loaded(name)
-        yield name, results.drawn(name), partial(_hold, _runs(results.sweep(name), scene.load(wanted.scene), wanted.base, wanted.runs))
+        plan = judging.loaded(name)
+        yield name, results.drawn(name), partial(_hold, _runs(results.sweep(name), scene.load(plan.scene), plan.base, plan.runs))
     place = results.folder / "stick-slip"
     yield ("stick-slip", [place / "stick-slip.csv", place / "stick-slip.png"],
            partial(_hold, _runs(place, scene.load(stick_slip.SCENE), stick_slip.BASE, stick_slip.grid(stick_slip.AXES))))
@@ -100,14 +100,14 @@ def _needed(results: judging.Results) -> Iterator[tuple[str, list[Path], Callabl
     yield "verify", [], lambda: verify.there(results.folder / "verify")
 
 
-def _runs(folder: Path, given: scene.Scene, base: study.Point, points: list[study.Point]) -> Iterator[tuple[Path, scene.Scene]]:
+def _runs(folder: Path, problem: scene.Scene, base: study.Point, points: list[study.Point]) -> Iterator[tuple[Path, scene.Scene]]:
     """The runs of a study in a folder, each with its scene."""
-    return ((study.place(folder, point), given.override(base | point)) for point in points)
+    return ((study.place(folder, point), problem.override(base | point)) for point in points)
 
 
 def _hold(runs: Iterable[tuple[Path, scene.Scene]]) -> bool:
     """Whether every folder holds the result of its scene, computed with the present code."""
-    return all(study.there(folder, wanted) for folder, wanted in runs)
+    return all(study.there(folder, problem) for folder, problem in runs)
 
 
 # ---- running the cases
@@ -118,11 +118,11 @@ def make(targets: list[str]) -> int:
 
     Returns the exit code of the first that fails, else 0.
     """
-    wanted = {target: commands(target) for target in targets}
+    recipes = {target: commands(target) for target in targets}
     with Line("paper", {target: SECONDS.get(target, USUAL) for target in targets}) as line:
-        for k, (target, each) in enumerate(wanted.items(), 1):
-            with line.part(target, f"{k} of {len(wanted)}"):
-                for words in each:
+        for k, (target, recipe) in enumerate(recipes.items(), 1):
+            with line.part(target, f"{k} of {len(recipes)}"):
+                for words in recipe:
                     if code := called(*words):
                         return code
     return 0
@@ -134,8 +134,8 @@ def commands(target: str) -> list[tuple[str, list[str]]]:
     Raises BadInput for a target that does not run the program.
     """
     plain = {name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL")}
-    said = subprocess.run(["make", "-n", "-s", target, "ARGS="], cwd=ROOT, env=plain, capture_output=True, text=True).stdout
-    recipe = re.findall(r" -m ([\w.]+) ?(.*)$", said, re.MULTILINE)
+    output = subprocess.run(["make", "-n", "-s", target, "ARGS="], cwd=ROOT, env=plain, capture_output=True, text=True).stdout
+    recipe = re.findall(r" -m ([\w.]+) ?(.*)$", output, re.MULTILINE)
     if not recipe:
         raise BadInput(f"--make: '{target}' is no target that runs the program (accepted: see make)")
     return [(module, shlex.split(line)) for module, line in recipe]
@@ -143,7 +143,7 @@ def commands(target: str) -> list[tuple[str, list[str]]]:
 
 def called(module: str, words: list[str]) -> int:
     """Runs `python -m MODULE` in this process and returns its exit code."""
-    found = importlib.import_module(module)
-    if hasattr(found, "__path__"):
-        found = importlib.import_module(f"{module}.__main__")
-    return guarded(found.execute if module == "ffimpact" else found.main, words)
+    program = importlib.import_module(module)
+    if hasattr(program, "__path__"):
+        program = importlib.import_module(f"{module}.__main__")
+    return guarded(program.execute if module == "ffimpact" else program.main, words)

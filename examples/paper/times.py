@@ -37,8 +37,8 @@ def oblique_time(results: Results) -> tuple[str, str]:
     """As ball_time(), at 60 degrees from the plane. The words also report 30 degrees."""
     rows, neo = results.table(OBLIQUE_MAP), finished(results, "oblique")
     other = _met(rows[(rows.exit == 0) & (rows.angle == OTHER) & rows.breakdown_time.isna()], OBLIQUE_MAP)
-    found = {nu: bar(neo, "contact_time", nu=nu) for nu in neo.nu}
-    converged = ", ".join(f"{1e3 * time:.2f} ± {1e3 * error:.2f} ms (ν = {nu:g})" for nu, (time, error) in found.items())
+    contact_times = {nu: bar(neo, "contact_time", nu=nu) for nu in neo.nu}
+    converged = ", ".join(f"{1e3 * time:.2f} ± {1e3 * error:.2f} ms (ν = {nu:g})" for nu, (time, error) in contact_times.items())
     return _over_meshes(OBLIQUE_MAP, rows[rows.angle == ANGLE], f"At {OTHER:g}° from the plane it is met on {_where(other)}. (The run of "
                         f"disc-oblique-svk: {both_times(results.summary('disc-oblique-svk'))}; the neo-Hookean disc, another law, "
                         f"converges to {converged}.)")
@@ -48,9 +48,9 @@ def oblique_time(results: Results) -> tuple[str, str]:
 def disc_time(results: Results) -> tuple[str, str]:
     """Agrees if some (ν, k) of the map, with ellipticity kept, gives this time with SVK: the paper
     states neither."""
-    rows, given = finished(results, DISC_MAP), loaded(DISC_MAP).figure
+    rows, figure = finished(results, DISC_MAP), loaded(DISC_MAP).figure
     rows = rows[(rows.law == "svk") & rows.ellipticity_lost_time.isna()]
-    met, above = ({nu: ranges for nu, ranges in sweep_figures.level_set(given | {"colour": name}, rows).items() if ranges}
+    met, above = ({nu: ranges for nu, ranges in sweep_figures.level_set(figure | {"colour": name}, rows).items() if ranges}
                   for name in ("contact_time", "thresholded_contact_time"))
     return graded(bool(met)), (
         f"with SVK met for {_each(met) or 'no ν and k'} [Pa/m] (the time above 1 % of the peak force for "
@@ -105,9 +105,9 @@ def _met(rows: pd.DataFrame, name: str) -> dict[tuple[float, float], Ranges]:
             for nu, ranges in sweep_figures.level_set(figure, group).items() if ranges}
 
 
-def _shared(*each: Ranges) -> Ranges:
+def _shared(*lists: Ranges) -> Ranges:
     """The values of k that are in a range of every list."""
-    parts = [(max(low for low, _ in chosen), min(high for _, high in chosen)) for chosen in product(*each)]
+    parts = [(max(low for low, _ in chosen), min(high for _, high in chosen)) for chosen in product(*lists)]
     return [(low, high) for low, high in parts if low <= high]
 
 
@@ -116,7 +116,7 @@ def _where(met: dict[tuple[float, float], Ranges]) -> str:
     words = []
     for h in dict.fromkeys(h for h, _ in met):
         every = {nu: ranges for (mesh, nu), ranges in met.items() if mesh == h}
-        ends = [k for ranges in every.values() for each in ranges for k in each]
+        ends = [k for ranges in every.values() for interval in ranges for k in interval]
         words.append(f"{1e3 * h:g} mm (ν = {', '.join(f'{nu:g}' for nu in every)}, k = {min(ends):.2g} to {max(ends):.2g} Pa/m)")
     return ", ".join(words) or "no mesh"
 
@@ -139,18 +139,18 @@ def at_once(results: Results) -> tuple[str, str]:
     kept; partly if some does with ellipticity lost; else it does not agree.
     """
     whole, sound = ({angle: _joint(results, angle, kept) for angle in (ANGLE, OTHER)} for kept in (False, True))
-    met, kept = ({angle: _meeting(maps) for angle, maps in found.items()} for found in (whole, sound))
+    met, kept = ({angle: _meeting(maps) for angle, maps in maps_by_angle.items()} for maps_by_angle in (whole, sound))
     words = []
     for angle, maps in whole.items():
-        nearest = min(maps, key=lambda each: each.miss, default=None)
+        nearest = min(maps, key=lambda entry: entry.miss, default=None)
         words.append(f"oblique at {angle:g}°: " + (f"all three for {_each(met[angle])}" if met[angle] else "no ν and k for all three") + (
             f"; nearest ν = {nearest.nu:g}, k = {nearest.k:.2g} Pa/m: {', '.join(nearest.times)}, off by up to {100 * nearest.miss:.1f} %"
             if nearest else ""))
-    each = {name: _meeting(_joint(results, ANGLE, False, [name])) for name in MAPS}
-    alone = ". ".join(f"{name}: {_each(found) or 'nowhere'}" for name, found in each.items())
-    both = {pair: {nu: shared for nu in each[pair[0]] if (shared := _shared(*(each[name].get(nu, []) for name in pair)))}
+    by_number = {name: _meeting(_joint(results, ANGLE, False, [name])) for name in MAPS}
+    alone = ". ".join(f"{name}: {_each(intervals) or 'nowhere'}" for name, intervals in by_number.items())
+    both = {pair: {nu: shared for nu in by_number[pair[0]] if (shared := _shared(*(by_number[name].get(nu, []) for name in pair)))}
             for pair in combinations(MAPS, 2)}
-    pairs = ". ".join(f"{first} and {second}: {_each(found) or 'nowhere'}" for (first, second), found in both.items())
+    pairs = ". ".join(f"{first} and {second}: {_each(intervals) or 'nowhere'}" for (first, second), intervals in both.items())
     return graded(any(kept.values()), any(met.values())), (
         f"{'. '.join(words)}. Two at once, oblique at {ANGLE:g}° [Pa/m]: {pairs}. Each alone: {alone}.")
 
@@ -170,22 +170,22 @@ def _joint(results: Results, angle: float, kept: bool, names: Iterable[str] = MA
     """Evaluates the maps of these times together over the k that they share. `kept`: only from runs
     that keep ellipticity."""
     maps = {name: _between(results, name, angle, kept) for name in names}
-    found = []
-    for nu in sorted(set.intersection(*(set(each) for each in maps.values()))):
-        low, high = max(each[nu].index[0] for each in maps.values()), min(each[nu].index[-1] for each in maps.values())
+    entries = []
+    for nu in sorted(set.intersection(*(set(table) for table in maps.values()))):
+        low, high = max(table[nu].index[0] for table in maps.values()), min(table[nu].index[-1] for table in maps.values())
         if low < high:
             k = np.geomspace(low, high, FINE)
-            bounds = {name: _bounds(k, each[nu]) for name, each in maps.items()}
-            worst = np.max([_miss(name, *each) for name, each in bounds.items()], axis=0)
+            bounds = {name: _bounds(k, table[nu]) for name, table in maps.items()}
+            worst = np.max([_miss(name, *pair) for name, pair in bounds.items()], axis=0)
             best = int(np.argmin(worst))
-            times = [f"{name} {1e3 * least[best]:.2f} to {1e3 * most[best]:.2f} ms" for name, (least, most) in bounds.items()]
-            found.append(Together(nu, sweep_figures.ranges(k, worst <= 0), float(k[best]), float(worst[best]), times))
-    return found
+            times = [f"{name} {1e3 * smallest[best]:.2f} to {1e3 * largest[best]:.2f} ms" for name, (smallest, largest) in bounds.items()]
+            entries.append(Together(nu, sweep_figures.ranges(k, worst <= 0), float(k[best]), float(worst[best]), times))
+    return entries
 
 
 def _meeting(maps: list[Together]) -> dict[float, Ranges]:
     """The ranges of k for each ν that gives all times."""
-    return {each.nu: each.met for each in maps if each.met}
+    return {entry.nu: entry.met for entry in maps if entry.met}
 
 
 def _miss(name: str, low: np.ndarray, high: np.ndarray) -> np.ndarray:
@@ -195,9 +195,9 @@ def _miss(name: str, low: np.ndarray, high: np.ndarray) -> np.ndarray:
     return np.maximum(0, np.maximum(low - figure["level"], figure["level"] - high) - figure["band"]) / figure["level"]
 
 
-def _bounds(k: np.ndarray, each: pd.DataFrame) -> tuple[np.ndarray, np.ndarray]:
+def _bounds(k: np.ndarray, table: pd.DataFrame) -> tuple[np.ndarray, np.ndarray]:
     """The smallest and largest times of _between() at k, interpolated in the logarithm of k."""
-    return tuple(np.interp(np.log(k), np.log(each.index), each[name]) for name in ("low", "high"))
+    return tuple(np.interp(np.log(k), np.log(table.index), table[name]) for name in ("low", "high"))
 
 
 def _between(results: Results, number: str, angle: float, kept: bool) -> dict[float, pd.DataFrame]:
@@ -216,7 +216,7 @@ def _between(results: Results, number: str, angle: float, kept: bool) -> dict[fl
         error = np.nan_to_num(sweep_figures.bars(rows, "contact_time"))
         parts.append(rows.assign(low=rows.contact_time - error, high=rows.contact_time + error))
     groups = {nu: group.groupby("penalty").agg({"low": "min", "high": "max"}) for nu, group in pd.concat(parts).groupby("nu")}
-    return {nu: each for nu, each in groups.items() if len(each) > 1}
+    return {nu: table for nu, table in groups.items() if len(table) > 1}
 
 
 @states("Section 3.3", "the contact time is always larger of the ball when the laws are similar", laws="{}.",
@@ -242,8 +242,8 @@ def _least_excess(results: Results) -> dict[float, float]:
     """The least difference [s] between the contact times of ball and disc over k, error bars and
     meshes, for each ν of both maps."""
     disc, ball = (_between(results, name, ANGLE, False) for name in ("disc", "ball"))
-    found = {}
+    excess = {}
     for nu in sorted(set(disc) & set(ball)):
         k = np.geomspace(max(disc[nu].index[0], ball[nu].index[0]), min(disc[nu].index[-1], ball[nu].index[-1]), FINE)
-        found[nu] = float((_bounds(k, ball[nu])[0] - _bounds(k, disc[nu])[1]).min())
-    return found
+        excess[nu] = float((_bounds(k, ball[nu])[0] - _bounds(k, disc[nu])[1]).min())
+    return excess

@@ -35,7 +35,8 @@ def found_in(path) -> list[tuple]:
     """The round surfaces of a file: whether it is a cylinder, its radius, and the share of the
     faces on it."""
     m = solid_file.read(path)
-    return [(len(one.axis) > 0, round(one.radius, 9), len(own) / len(m.faces)) for one, own in curved.surfaces(m.points, m.faces)]
+    return [(len(surface.axis) > 0, round(surface.radius, 9), len(own) / len(m.faces))
+            for surface, own in curved.surfaces(m.points, m.faces)]
 
 
 @pytest.mark.robustness
@@ -51,10 +52,10 @@ def test_surfaces_are_round_by_the_angles_of_their_faces(tmp_path):
                        "dome": "Sphere(1) = {0, 0, 0, 0.05}; Box(2) = {-1, -1, -1, 2, 1.02, 2}; BooleanIntersection(3)"}.items():
         (tmp_path / f"{name}.geo").write_text(f'SetFactory("OpenCASCADE");\n{made} = {{ Volume{{1}}; Delete; }}{{ Volume{{2}}; Delete; }};\n')
     assert found_in(tmp_path / "6.mesh") == [] and found_in(tmp_path / "24.mesh") == [(True, 0.05, pytest.approx(48 / 92))]
-    assert [one[:2] for one in found_in(tmp_path / "shaft.geo")] == [(True, 0.02)] * 2
-    assert [one[:2] for one in found_in(tmp_path / "dome.geo")] == [(False, 0.05)]
-    one, = read({"shape": "mesh", "file": "dome.geo", "position": [0, 0.3, 0]}, folder=tmp_path).bodies
-    assert one.outline.disc is None and one.outline.extent[1] == pytest.approx(0.07, rel=5e-3)
+    assert [surface[:2] for surface in found_in(tmp_path / "shaft.geo")] == [(True, 0.02)] * 2
+    assert [surface[:2] for surface in found_in(tmp_path / "dome.geo")] == [(False, 0.05)]
+    body, = read({"shape": "mesh", "file": "dome.geo", "position": [0, 0.3, 0]}, folder=tmp_path).bodies
+    assert body.outline.disc is None and body.outline.extent[1] == pytest.approx(0.07, rel=5e-3)
 
 
 @pytest.mark.robustness

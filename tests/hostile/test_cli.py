@@ -12,9 +12,9 @@ from tests.support.cli import ROOT, call, start, wait_for
 @pytest.mark.robustness
 def test_what_a_run_does_not_load():
     """The report of an existing run needs neither matplotlib nor pandas."""
-    for loads, heavy, said in (("import ffimpact.running.run", {"matplotlib", "pandas"}, "set()\n"),):
-        known = subprocess.run([sys.executable, "-c", f"{loads}; import sys; print({heavy} & set(sys.modules))"], cwd=ROOT, capture_output=True, text=True)
-        assert known.stdout == said, known.stderr
+    for loads, heavy, expected in (("import ffimpact.running.run", {"matplotlib", "pandas"}, "set()\n"),):
+        process = subprocess.run([sys.executable, "-c", f"{loads}; import sys; print({heavy} & set(sys.modules))"], cwd=ROOT, capture_output=True, text=True)
+        assert process.stdout == expected, process.stderr
 
 
 @pytest.mark.robustness

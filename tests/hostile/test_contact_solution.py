@@ -19,12 +19,12 @@ def history(folder, flags: dict) -> dict:
     return results.read_history(folder / "out")
 
 
-def assert_same(found: dict, expected: dict) -> None:
+def assert_same(result: dict, expected: dict) -> None:
     """Asserts that all columns but the count of iterations agree to 1e-6 of their largest value,
     and that the energy is balanced to 1e-9."""
     for name in set(expected) - {"newton_iterations", "balance"}:
-        np.testing.assert_allclose(found[name], expected[name], rtol=0, atol=1e-6 * np.abs(expected[name]).max(), err_msg=name)
-    assert np.abs(found["balance"]).max() < 1e-9 * expected["kinetic"][0]
+        np.testing.assert_allclose(result[name], expected[name], rtol=0, atol=1e-6 * np.abs(expected[name]).max(), err_msg=name)
+    assert np.abs(result["balance"]).max() < 1e-9 * expected["kinetic"][0]
 
 
 @pytest.mark.robustness
@@ -32,8 +32,8 @@ def assert_same(found: dict, expected: dict) -> None:
 def test_contact_is_solved_as_far_as_it_matters(tmp_path, flags):
     """Kernels, which solve contact on a kept factorisation to a tolerance relative to the residual of
     the step, and scripts, which assemble and factorise all anew, give the same results."""
-    one, other = (history(tmp_path / without, flags | {"without": without}) for without in ("none", "kernels"))
-    assert_same(one, other)
+    kernels, other = (history(tmp_path / without, flags | {"without": without}) for without in ("none", "kernels"))
+    assert_same(kernels, other)
 
 
 @pytest.mark.robustness
@@ -44,7 +44,7 @@ def test_jump_of_the_coefficient(tmp_path):
     Energy is balanced. Impulse and friction work agree up to the effect of the choice at one point.
     """
     flags = BALL | dict(friction_static=0.7, friction_dynamic=0.5)
-    one, other = (history(tmp_path / without, flags | {"without": without}) for without in ("none", "kernels"))
-    assert np.abs(one["balance"]).max() < 1e-8 * one["kinetic"][0]
+    kernels, other = (history(tmp_path / without, flags | {"without": without}) for without in ("none", "kernels"))
+    assert np.abs(kernels["balance"]).max() < 1e-8 * kernels["kinetic"][0]
     for name, share in (("vx", 2e-3), ("vy", 2e-3), ("friction_work", 2e-2)):
-        assert abs(one[name][-1] - other[name][-1]) <= share * np.abs(other[name]).max(), name
+        assert abs(kernels[name][-1] - other[name][-1]) <= share * np.abs(other[name]).max(), name

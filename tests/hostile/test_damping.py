@@ -15,8 +15,8 @@ def test_a_branch_is_a_viscosity_where_it_is_fast_and_a_spring_where_it_is_slow(
 
     For long tau little energy is lost, and the branch stiffens the body: the contact is shorter.
     """
-    given = {"law": "neohookean", "nu": 0.4, "speed": 1, "accuracy": 0.1, "dt": 1e-5}
-    elastic, viscous, fast, slow = (disc(tmp_path / str(k), **given, **more) for k, more in enumerate(
+    flags = {"law": "neohookean", "nu": 0.4, "speed": 1, "accuracy": 0.1, "dt": 1e-5}
+    elastic, viscous, fast, slow = (disc(tmp_path / str(k), **flags, **more) for k, more in enumerate(
         ({}, {"viscosity": 600}, {"relaxation_modulus": 2e7, "relaxation_time": 3e-5}, {"relaxation_modulus": 2e6, "relaxation_time": 1})))
     assert fast.summary["restitution"] == pytest.approx(viscous.summary["restitution"], abs=0.02)
     assert fast.summary["restitution"] < elastic.summary["restitution"] - 0.1

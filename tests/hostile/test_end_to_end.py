@@ -18,14 +18,14 @@ def test_own_mesh_of_a_slow_impact_gives_what_gmsh_gives(tmp_path):
     Direct runs on meshes of half the disc and of the whole agree with Python runs on gmsh meshes to
     the requested accuracy.
     """
-    given = {"law": "neohookean", "nu": 0.4, "speed": 6.38e-4, "penalty": "auto", "accuracy": 0.005, "fields": 0}
-    theirs = run.run(scene.load("disc-normal"), given, tmp_path / "python", estimate=False).summary
+    values = {"law": "neohookean", "nu": 0.4, "speed": 6.38e-4, "penalty": "auto", "accuracy": 0.005, "fields": 0}
+    theirs = run.run(scene.load("disc-normal"), values, tmp_path / "python", estimate=False).summary
     for symmetry in ("half", "full"):
-        process = direct(*freefem.words_of(given | {"symmetry": symmetry, "out": tmp_path / symmetry}))
+        process = direct(*freefem.words_of(values | {"symmetry": symmetry, "out": tmp_path / symmetry}))
         assert process.returncode == 0, process.stdout + process.stderr
         ours = results.read_summary(tmp_path / symmetry)
         for key in ("thresholded_contact_time", "impulse"):
-            assert ours[key] == pytest.approx(theirs[key], rel=given["accuracy"]), key
+            assert ours[key] == pytest.approx(theirs[key], rel=values["accuracy"]), key
 
 
 @pytest.mark.robustness
@@ -40,7 +40,7 @@ def test_a_step_longer_than_the_contact_ends_in_its_first_try(tmp_path):
 def test_a_sensible_penalty_does_not_chatter(tmp_path):
     """The same coarse disc with the default penalty gives no warning about chatter."""
     process = call(*(f"{name}={value}" for name, value in COARSE.items()), out=tmp_path / "out")
-    assert process.returncode == 0 and not any("chatter" in each for each in results.read_summary(tmp_path / "out")["warnings"])
+    assert process.returncode == 0 and not any("chatter" in warning for warning in results.read_summary(tmp_path / "out")["warnings"])
 
 
 @pytest.mark.robustness
@@ -50,4 +50,5 @@ def test_hopping_is_no_chatter(tmp_path):
     process = direct("-law", "neohookean", "-speed", "0", "-height", "1e-5", "-gravity", "9.81", "-end_time", "0.7", "-accuracy", "0.4", "-degree", "1",
                      "-mesh_size", "0.01", "-contact_mesh_size", "0.01", "-out", str(tmp_path / "out"))
     summary = results.read_summary(tmp_path / "out")
-    assert process.returncode == 0 and summary["contact_intervals"] > 40 and not any("chatter" in each for each in summary["warnings"])
+    assert process.returncode == 0 and summary["contact_intervals"] > 40 and not any(
+        "chatter" in warning for warning in summary["warnings"])

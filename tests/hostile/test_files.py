@@ -14,8 +14,8 @@ from tests.support.files import solid, write_step
 # ---- fillets
 
 def unknowns(file: str, folder, **entries) -> tuple[int, float, solid_mesh.SolidMesh]:
-    given = solid(file, **entries) | {"accuracy": 0.02}
-    built = assembly.assemble(read(given, folder, "x"))
+    tables = solid(file, **entries) | {"accuracy": 0.02}
+    built = assembly.assemble(read(tables, folder, "x"))
     size = built.used["body"][0]["contact_mesh_size"]
     return solid_mesh.unknowns(built.mesh.cells, 2), size, built.mesh
 
@@ -66,8 +66,8 @@ def test_a_geometry_is_as_fine_as_the_shape(tmp_path):
     Samples of a mesh are weighted with their area."""
     write_step(tmp_path / "box.step")
     _, size, _ = unknowns("box.step", tmp_path, turn=[0, 0, 20])
-    given = solid("box.step", turn=[0, 0, 20]) | {"accuracy": 0.02, "symmetry": "full"}
-    del given["body"][0]["file"]
-    given["body"][0] |= {"shape": "box", "width": 0.1, "height": 0.06, "depth": 0.04}
-    built = assembly.assemble(read(given, tmp_path, "x"))
+    tables = solid("box.step", turn=[0, 0, 20]) | {"accuracy": 0.02, "symmetry": "full"}
+    del tables["body"][0]["file"]
+    tables["body"][0] |= {"shape": "box", "width": 0.1, "height": 0.06, "depth": 0.04}
+    built = assembly.assemble(read(tables, tmp_path, "x"))
     assert size == pytest.approx(built.used["body"][0]["contact_mesh_size"], rel=0.1)

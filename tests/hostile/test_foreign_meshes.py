@@ -26,11 +26,11 @@ def test_whole_mesh_counts_once(tmp_path):
     """A mesh of the whole disc with symmetry=auto gives history, impulse and contact time of the
     half disc, without drift and rotation."""
     half = mesh.disc(RADIUS, 0.015, 0.006, True)
-    one, two = go(tmp_path / "half", half), go(tmp_path / "whole", whole_of(half))
-    agree(one, two, 1e-5)
-    assert [one.summary[name] for name in ("impulse", "contact_time")] == pytest.approx([two.summary[name] for name in ("impulse", "contact_time")], rel=1e-6)
-    assert abs(two.summary["rebound_vx"]) < 1e-9 and abs(two.summary["rebound_spin"]) < 1e-6
-    assert (one.scene["symmetry"], two.scene["symmetry"]) == ("half", "full")
+    half_result, whole_result = go(tmp_path / "half", half), go(tmp_path / "whole", whole_of(half))
+    agree(half_result, whole_result, 1e-5)
+    assert [half_result.summary[name] for name in ("impulse", "contact_time")] == pytest.approx([whole_result.summary[name] for name in ("impulse", "contact_time")], rel=1e-6)
+    assert abs(whole_result.summary["rebound_vx"]) < 1e-9 and abs(whole_result.summary["rebound_spin"]) < 1e-6
+    assert (half_result.scene["symmetry"], whole_result.scene["symmetry"]) == ("half", "full")
 
 
 @pytest.mark.robustness

@@ -16,7 +16,7 @@ CASES = {"plane": (DISC, {}), "plane-steady": (DISC, STEADY), "plane-jumping": (
 def test_tractions_are_those_of_the_scripts(case):
     """For all laws and positions in the step, tractions and contact forces agree with the scripts to round-off."""
     (script, mesh), friction = CASES[case]
-    found = measure(script, **mesh, **friction)
-    if not found["built"]:
+    numbers = measure(script, **mesh, **friction)
+    if not numbers["built"]:
         pytest.skip("no compiler here")
-    assert found["tractions"] < 1e-12 and found["force"] < 1e-12
+    assert numbers["tractions"] < 1e-12 and numbers["force"] < 1e-12

@@ -20,7 +20,7 @@ def test_a_follower_turns_with_its_body(tmp_path):
     """
     bar = {"shape": "rectangle", "width": 0.2, "height": 0.05, "position": [0, 0], "spin": math.pi / 2e-2, "mesh_size": 0.025}
     kinds = ({"where": "right", "pressure": 1e3}, {"where": "right", "traction": [-1e3, 0]})
-    runs = [bodies(tmp_path / str(k), SOFT | {"young": 1e9, "accuracy": 0.05, "end_time": 0.02, "body": [bar | {"load": [one]}]}) for k, one in enumerate(kinds)]
+    runs = [bodies(tmp_path / str(k), SOFT | {"young": 1e9, "accuracy": 0.05, "end_time": 0.02, "body": [bar | {"load": [load]}]}) for k, load in enumerate(kinds)]
     for run, force_x in zip(runs, (lambda angle: -50 * np.cos(angle), lambda angle: -50 + 0 * angle)):
         assert_exact(run)
         history = run.history

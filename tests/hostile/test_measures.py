@@ -28,14 +28,14 @@ def test_bench_on_coarse_runs(tmp_path, monkeypatch, capsys):
 def test_bench_of_the_ball(tmp_path, monkeypatch):
     """The ball in three dimensions has small errors relative to the body of revolution, and the
     other program gets the settings of ours."""
-    asked = []
+    calls = []
     monkeypatch.setattr(bench, "settings", lambda *_: {"adaptive, P2": [{"accuracy": 0.1}]})
     monkeypatch.setattr(bench, "references", lambda *_: [{"accuracy": 0.01}, {"accuracy": 0.008}])
-    monkeypatch.setattr(bench.peers, "run", lambda *given, **flags: asked.append((given, flags)) or (None, "is not installed"))
+    monkeypatch.setattr(bench.peers, "run", lambda *arguments, **flags: calls.append((arguments, flags)) or (None, "is not installed"))
     assert bench.main(["--quick", "ball", "--out", str(tmp_path)]) == 0
     table = pd.read_csv(tmp_path / "bench.csv")
     assert table.impulse_error[0] < 1 and table.rebound_vy_error[0] < 1 and table.force_error[0] < 10 and table.message[1] == "is not installed"
-    assert asked[0][1]["scene"] == "ball" and asked[0][1]["penalty"] == 1.5e10 and (tmp_path / "ball-axisymmetric/runs").is_dir()
+    assert calls[0][1]["scene"] == "ball" and calls[0][1]["penalty"] == 1.5e10 and (tmp_path / "ball-axisymmetric/runs").is_dir()
 
 
 @pytest.mark.robustness
@@ -44,10 +44,10 @@ def test_bench_of_two_bodies(tmp_path, monkeypatch):
     reference, or the reason why it has no results."""
     monkeypatch.setattr(bench, "settings", lambda *_: {"adaptive, P2": [{"accuracy": 0.1}]})
     monkeypatch.setattr(bench, "references", lambda *_: [{"accuracy": 0.04}, {"accuracy": 0.03}])
-    asked, ours = [], {}
+    requests, ours = [], {}
 
     def other(limit, refine, history, **flags):
-        asked.append(flags)
+        requests.append(flags)
         if refine == bench.REFINEMENTS_QUICK[-1]:
             return None, "is not installed"
         runs = tmp_path / "disc-block-svk/runs"
@@ -59,6 +59,6 @@ def test_bench_of_two_bodies(tmp_path, monkeypatch):
     monkeypatch.setattr(bench.peers, "two_bodies", other)
     assert bench.main(["--quick", "disc-block-svk", "--out", str(tmp_path)]) == 0
     table = pd.read_csv(tmp_path / "bench.csv")
-    assert asked == [{"law": "svk", "penalty": 1e9}] * 2 and table.exit.tolist() == [0, 0, 1] and table.message[2] == "is not installed"
+    assert requests == [{"law": "svk", "penalty": 1e9}] * 2 and table.exit.tolist() == [0, 0, 1] and table.message[2] == "is not installed"
     assert all(0 < table[f"{answer}_error"][0] < 30 for answer in bench.NGSOLVE)
     assert table.rebound_vy_2_error[1] == pytest.approx(10, abs=0.5) and table.force_error[1] == pytest.approx(0, abs=1e-6) and table.force_error[0] > 0.1

@@ -29,7 +29,7 @@ def test_an_obstacle_that_is_met_twice_has_one_table():
     """A disc that lands on two crests of a wave has one table of contact in the scene as used,
     which reads back as written."""
     tables = scene(DISC | {"position": [0, 0.0551]}, {"name": "waves", "kind": "implicit", "distance": "y - 0.002*sin(200*x)"})
-    assert [(one.first, one.second) for one in approach.meetings(tables)] == [(0, -1), (0, -1)]
+    assert [(pair.first, pair.second) for pair in approach.meetings(tables)] == [(0, -1), (0, -1)]
     built = assembly.assemble(tables)
     assert [pair["bodies"] for pair in built.used["contact"]["pair"]] == [["disc", "waves"]]
     again = read_scene(tomllib.loads(to_toml(built.used)), Path(), "again")
@@ -46,8 +46,8 @@ def test_points_at_a_vertex_know_both_its_edges(tmp_path):
     """
     disc = {"name": "disc", "shape": "disc", "radius": 0.05, "young": 1e6, "nu": 0.45, "position": [0, 0.0501], "velocity": [0, -40]}
     plate = {"name": "plate", "shape": "rectangle", "width": 0.15, "height": 0.02, "young": 1e8, "nu": 0.45, "position": [0.0355, -0.01]}
-    found = go(tmp_path, [disc, plate], [], accuracy=0.2, end_time=8e-4, contact={"friction_static": 0.3})
-    assert found.summary["energy_drift"] < 1e-9
+    result = go(tmp_path, [disc, plate], [], accuracy=0.2, end_time=8e-4, contact={"friction_static": 0.3})
+    assert result.summary["energy_drift"] < 1e-9
 
 
 @pytest.mark.robustness

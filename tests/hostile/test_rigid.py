@@ -20,4 +20,4 @@ def test_a_circle_that_turns_about_its_centre_only_rubs(tmp_path):
     both = [run(tmp_path, ROLLER.format(f'motion = [0, "-0.3*t"]\nrotation = "{turn}*t"'), name)[0]
             for name, turn in (("left", 20000), ("right", -20000))]
     assert both[0]["rebound_vx"] == pytest.approx(-both[1]["rebound_vx"], rel=0.05) and abs(both[0]["rebound_vx"]) > 1e-3
-    assert max(one["energy_drift"] for one in both) < 1e-9
+    assert max(summary["energy_drift"] for summary in both) < 1e-9

@@ -27,6 +27,6 @@ def test_each_goes_on_from_its_own_checkpoint(monkeypatch, tmp_path, lost):
     monkeypatch.setattr(freefem.Process, "end", real)
     assert not at_work(tmp_path)
     (tmp_path / "out.part" / lost).unlink()
-    found = go("disc-normal", out, checkpoint_every="5", accuracy="0.003")
+    result = go("disc-normal", out, checkpoint_every="5", accuracy="0.003")
     assert all((straight.folder / file).read_bytes() == (out / file).read_bytes() for file in ANSWERS)
-    assert found.summary["estimated_error"] == straight.summary["estimated_error"] and not list(tmp_path.glob("out.*"))
+    assert result.summary["estimated_error"] == straight.summary["estimated_error"] and not list(tmp_path.glob("out.*"))

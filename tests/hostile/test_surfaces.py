@@ -10,8 +10,8 @@ from tests.support.surfaces import run, slab, sphere
 def test_a_ball_on_an_edge_keeps_energy(tmp_path):
     """Contact points pass from the face over the edge to the side."""
     slab(tmp_path / "slab.stl", size=(0.02, 0.05, 0.02))
-    found = run(tmp_path, 'kind = "surface"\nfile = "slab.stl"\nrounding = 0.005', position="[0.03, 0.0545, 0.0]")
-    assert found["contact_intervals"] > 0 and found["energy_drift"] < 1e-9 and found["momentum_drift"] < 1e-7
+    summary = run(tmp_path, 'kind = "surface"\nfile = "slab.stl"\nrounding = 0.005', position="[0.03, 0.0545, 0.0]")
+    assert summary["contact_intervals"] > 0 and summary["energy_drift"] < 1e-9 and summary["momentum_drift"] < 1e-7
 
 
 @pytest.mark.robustness

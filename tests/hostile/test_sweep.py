@@ -51,8 +51,8 @@ def test_killed_freefem_costs_its_point_only(fake, tmp_path, monkeypatch):
     process = start("sweep", str(path), "--out", str(out))
     wait_for(lambda: fake.starts() >= 1)
     os.kill(fake.pids()[0], signal.SIGKILL)
-    said, _ = process.communicate(timeout=60)
-    assert process.returncode == 1 and "5 of 6 points finished" in said and "was killed by SIGKILL" in said
+    output, _ = process.communicate(timeout=60)
+    assert process.returncode == 1 and "5 of 6 points finished" in output and "was killed by SIGKILL" in output
     before = fake.starts()
     assert main(["sweep", str(path), "--out", str(out)]) == 0 and fake.starts() == before + 1
     assert (table(out).exit == 0).all()
@@ -65,8 +65,8 @@ def test_two_drivers_share_a_folder(fake, tmp_path, monkeypatch):
     monkeypatch.setenv("FAKE", "brief")
     both = [start("sweep", str(path), "--out", str(out)) for _ in range(2)]
     for process in both:
-        said, err = process.communicate(timeout=60)
-        assert process.returncode == 0 and "6 of 6 points finished" in said, err
+        output, err = process.communicate(timeout=60)
+        assert process.returncode == 0 and "6 of 6 points finished" in output, err
     assert fake.starts() == 6 and (table(out).exit == 0).all() and not orphans(out)
 
 
@@ -91,8 +91,8 @@ def test_driver_waits_for_one_that_just_begins(fake, tmp_path, dies):
     else:
         (out / "sweep.toml").write_text(SIX)
         fcntl.flock(first, fcntl.LOCK_SH)
-    said, err = process.communicate(timeout=60)
-    assert process.returncode == 0 and "6 of 6 points finished" in said, err
+    output, err = process.communicate(timeout=60)
+    assert process.returncode == 0 and "6 of 6 points finished" in output, err
 
 
 @pytest.mark.robustness
@@ -126,15 +126,15 @@ def test_snakemake_takes_names_with_blanks(tmp_path):
 def test_table_and_figure_have_the_same_error_bars(fake, tmp_path, monkeypatch):
     """The error bars in the table equal those of the figure, curve by curve."""
     text = DRAWN.replace("[figure]", "[refine]\naccuracy = 1e-3\n[figure]").replace("[product]", "accuracy = 5e-3\n[product]")
-    wanted = sweep.load(str(write(tmp_path, text)))
-    rows = sweep.table(wanted, tmp_path / "out").assign(contact_time_error=[1e-6, 4e-5, 6e-5, 2e-6, 3e-6, 5e-5])
-    said = sweep.report(wanted, rows, tmp_path / "out").splitlines()
-    column = [name.strip() for name in next(line for line in said if line.startswith("|")).split("|")].index("contact_time")
-    printed = [float(line.split("|")[column].split("±")[1]) for line in said if line.startswith("|") and "±" in line]
+    plan = sweep.load(str(write(tmp_path, text)))
+    rows = sweep.table(plan, tmp_path / "out").assign(contact_time_error=[1e-6, 4e-5, 6e-5, 2e-6, 3e-6, 5e-5])
+    lines = sweep.report(plan, rows, tmp_path / "out").splitlines()
+    column = [name.strip() for name in next(line for line in lines if line.startswith("|")).split("|")].index("contact_time")
+    printed = [float(line.split("|")[column].split("±")[1]) for line in lines if line.startswith("|") and "±" in line]
     drawn, bar = {}, plt.Axes.errorbar
     monkeypatch.setattr(plt.Axes, "errorbar", lambda axes, x, y, error, **more: drawn.update({more["label"]: 1e-3 * error})
                         or bar(axes, x, y, error, **more))
-    sweep_figures.draw(wanted, rows, tmp_path / "out")
+    sweep_figures.draw(plan, rows, tmp_path / "out")
     for nu, words in ((0.3, "ν = 0.3"), (0.4, "ν = 0.4")):
         assert np.array(printed)[rows.nu == nu] == pytest.approx(drawn[words], rel=0.03)
     # No point has the error bar of two runs that agree by chance.

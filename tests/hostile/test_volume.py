@@ -18,8 +18,8 @@ def test_a_spinning_body_keeps_energy_and_momenta(script, size, tens):
 
     The ball has 40 steps per turn; with 30 some steps fail, which a run would halve.
     """
-    found = measure(script, law="neohookean", nu=0.4999, spin=200, exponent=tens, tolerance=5e-14, mesh_size=size, contact_mesh_size=size)
-    assert found["state"] == 0 and max(found["energy"], found["momentum"], found["angular"]) < 1e-9
+    numbers = measure(script, law="neohookean", nu=0.4999, spin=200, exponent=tens, tolerance=5e-14, mesh_size=size, contact_mesh_size=size)
+    assert numbers["state"] == 0 and max(numbers["energy"], numbers["momentum"], numbers["angular"]) < 1e-9
 
 
 @pytest.mark.robustness
@@ -31,15 +31,15 @@ def test_the_history_has_their_pressure(tmp_path):
     a half. The figure is drawn. A plain body does not have these columns, and the scene knows which
     bodies have them.
     """
-    found = run.run(scene.load("disc-normal-incompressible"), {"accuracy": 0.02, "end_time": 2e-3, "fields": 2}, tmp_path / "held", estimate=False)
-    shot = vtu.read(found.folder / "fields/0001.vtu")
+    result = run.run(scene.load("disc-normal-incompressible"), {"accuracy": 0.02, "end_time": 2e-3, "fields": 2}, tmp_path / "held", estimate=False)
+    shot = vtu.read(result.folder / "fields/0001.vtu")
     field, moved = shot.fields["pressure"], shot.points + shot.fields["displacement"][:, :2]
     a, b, c = (moved[shot.triangles[:, k]] for k in range(3))
     area = abs(np.linalg.det(np.stack([b - a, c - a], axis=1)))
-    assert found.history["hydrostatic_pressure"][-1] == pytest.approx(np.average(field[shot.triangles].mean(axis=1), weights=area), rel=0.02)
-    assert field.max() < found.history["max_hydrostatic_pressure"][-1] < 1.5 * field.max()
-    drawing.draw(found.folder)
-    assert (found.folder / "figures/pressure.png").stat().st_size > 5000
+    assert result.history["hydrostatic_pressure"][-1] == pytest.approx(np.average(field[shot.triangles].mean(axis=1), weights=area), rel=0.02)
+    assert field.max() < result.history["max_hydrostatic_pressure"][-1] < 1.5 * field.max()
+    drawing.draw(result.folder)
+    assert (result.folder / "figures/pressure.png").stat().st_size > 5000
     plain = run.run(scene.load("disc-normal"), {"accuracy": 0.2, "fields": 0}, tmp_path / "plain", estimate=False)
-    assert list(found.history) == scene.load("disc-normal-incompressible").columns
-    assert list(plain.history) == scene.load("disc-normal").columns == [name for name in found.history if "hydrostatic" not in name]
+    assert list(result.history) == scene.load("disc-normal-incompressible").columns
+    assert list(plain.history) == scene.load("disc-normal").columns == [name for name in result.history if "hydrostatic" not in name]

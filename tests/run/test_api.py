@@ -35,8 +35,8 @@ def test_a_built_in_scene_of_bodies_is_the_same_written_and_read_again(tmp_path,
         and again.contact == read.contact
         and len(again.pairs) == len(read.pairs)
     )
-    assert [(one.name, one.young, one.nu, one.density, one.mesh_size) for one in again.bodies] == [
-        (one.name, one.young, one.nu, one.density, one.mesh_size) for one in read.bodies
+    assert [(body.name, body.young, body.nu, body.density, body.mesh_size) for body in again.bodies] == [
+        (body.name, body.young, body.nu, body.density, body.mesh_size) for body in read.bodies
     ]
 
 
@@ -178,12 +178,12 @@ def test_friction_is_drawn_and_bodies_have_their_names(tmp_path):
         ff.Disc(name="b", position=(0.031, -0.01), velocity=(-2, 0), **disc),
     ]
     scene = ff.Scene(bodies=pair, contact=ff.Contact(friction_static=0.5), accuracy=0.2)
-    found = ff.run(scene, estimate=False, out=tmp_path / "run")
-    assert [line.get_label() for line in found.plot.force().lines] == ["normal", "friction"]
-    labels = {line.get_label() for line in found.plot.velocities().lines}
+    record = ff.run(scene, estimate=False, out=tmp_path / "run")
+    assert [line.get_label() for line in record.plot.force().lines] == ["normal", "friction"]
+    labels = {line.get_label() for line in record.plot.velocities().lines}
     assert labels == {"vx a", "vx b", "vy a", "vy b"}
-    assert "rebound_vx" not in found.table.index and "rebound_vx_2" in found.table.index
-    compared = ff.compare(found, str(found.folder), names="impulse")
+    assert "rebound_vx" not in record.table.index and "rebound_vx_2" in record.table.index
+    compared = ff.compare(record, str(record.folder), names="impulse")
     assert compared.agree.isna().all() and list(compared.index) == ["impulse"]
 
 
@@ -243,9 +243,9 @@ def test_importing_it_changes_nothing_global():
 
 @pytest.fixture(scope="module")
 def validator():
-    told = json.loads(schema.text())
-    jsonschema.Draft202012Validator.check_schema(told)
-    return jsonschema.Draft202012Validator(told)
+    document = json.loads(schema.text())
+    jsonschema.Draft202012Validator.check_schema(document)
+    return jsonschema.Draft202012Validator(document)
 
 
 @pytest.mark.parametrize("name", files.built_in())

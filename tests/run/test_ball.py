@@ -22,16 +22,16 @@ MASS = 4 / 3 * math.pi * 0.05**3 * 1722
 
 @pytest.fixture(scope="module")
 def result(tmp_path_factory):
-    found = run.run(scene.load("ball"), {"accuracy": 0.05, "fields": 3}, tmp_path_factory.mktemp("ball") / "ball")
-    report.draw(found)
-    return found
+    record = run.run(scene.load("ball"), {"accuracy": 0.05, "fields": 3}, tmp_path_factory.mktemp("ball") / "ball")
+    report.draw(record)
+    return record
 
 
 @pytest.fixture(scope="module")
 def oblique(tmp_path_factory):
-    found = run.run(scene.load("ball-oblique"), {"accuracy": 0.1, "fields": 5, "end_time": 2e-3}, tmp_path_factory.mktemp("ball") / "ball", estimate=False)
-    report.draw(found)
-    return found
+    record = run.run(scene.load("ball-oblique"), {"accuracy": 0.1, "fields": 5, "end_time": 2e-3}, tmp_path_factory.mktemp("ball") / "ball", estimate=False)
+    report.draw(record)
+    return record
 
 
 def test_run_of_a_whole_ball(result):
@@ -63,9 +63,9 @@ def test_units_and_pictures_are_those_of_a_ball(result, oblique):
 
 def test_scene_as_used_is_a_scene_again(result):
     """scene.toml has all parameters of the ball and no others."""
-    known = set(parameters.names(SCRIPT))
-    assert {"angle", "spin", "symmetry", "body_force_x"} <= known and {"block_width", "pairing"} & known == set()
-    assert set(result.scene) == known | {"script"} and result.scene["symmetry"] == "quarter"
+    names = set(parameters.names(SCRIPT))
+    assert {"angle", "spin", "symmetry", "body_force_x"} <= names and {"block_width", "pairing"} & names == set()
+    assert set(result.scene) == names | {"script"} and result.scene["symmetry"] == "quarter"
     assert scene.load(str(result.folder / "scene.toml")).values["penalty"] == result.scene["penalty"]
 
 
@@ -75,8 +75,8 @@ def test_snapshots_are_cuts_through_the_middle(result, oblique):
 
     Triangles are counter-clockwise and fill it, and the plane stays a plane.
     """
-    for found, share in ((result, 0.5), (oblique, 1.0)):
-        snapshot = vtu.read(vtu.series(found.folder / "fields.pvd")[-1][1])
+    for record, share in ((result, 0.5), (oblique, 1.0)):
+        snapshot = vtu.read(vtu.series(record.folder / "fields.pvd")[-1][1])
         area = areas(snapshot)
         assert (area > 0).all() and area.sum() == pytest.approx(share * math.pi * 0.05**2, rel=0.05)
         assert np.abs(snapshot.fields["displacement"][:, 2]).max() < 1e-15
@@ -98,17 +98,17 @@ def test_contact_points_carry_the_load(oblique):
     assert (table.z > -1e-9).all() and np.abs(table.y).max() < 1e-3 and np.abs(table.shear_z).max() > 0
 
 
-@pytest.mark.parametrize("flags, said", [
+@pytest.mark.parametrize("flags, message", [
     (("-symmetry", "quarter", "-angle", "60"), "symmetry: quarter needs a normal impact without spin"),
     (("-mesh", "x.msh"), "mesh: ball-plane takes no such parameter"),
     (("-block_width", "3"), "block_width: ball-plane takes no such parameter"),
     (("-pairing", "pairwise"), "pairing: ball-plane takes no such parameter"),
     (("-mesh_size", "0.06"), "mesh_size: 0.06 is larger than the radius 0.05"),
 ])
-def test_what_is_refused(tmp_path, flags, said):
+def test_what_is_refused(tmp_path, flags, message):
     """Exit code 10 and the name of the entry."""
     code, _, error = call(*flags, cwd=tmp_path, script=SCRIPT)
-    assert code == 10 and said in error
+    assert code == 10 and message in error
 
 
 def test_a_disc_has_no_quarter(tmp_path):

@@ -23,9 +23,9 @@ MASS = 4 / 3 * math.pi * 0.05**3 * 1722
 
 @pytest.fixture(scope="module")
 def result(tmp_path_factory):
-    found = run.run(scene.load("ball-axisymmetric"), {"accuracy": 0.02, "fields": 3}, tmp_path_factory.mktemp("ball") / "ball")
-    report.draw(found)
-    return found
+    record = run.run(scene.load("ball-axisymmetric"), {"accuracy": 0.02, "fields": 3}, tmp_path_factory.mktemp("ball") / "ball")
+    report.draw(record)
+    return record
 
 
 def ball(*flags: str, cwd):
@@ -73,9 +73,9 @@ def test_a_disc_beside_a_ball(result, tmp_path, monkeypatch):
 
 def test_scene_as_used_is_a_scene_again(result):
     """scene.toml has all parameters of the ball, no others, and gives the same run."""
-    known = set(parameters.names(SCRIPT))
-    assert {"angle", "spin", "symmetry", "body_force_x", "block_width"} & known == set()
-    assert set(result.scene) == known | {"script"}
+    names = set(parameters.names(SCRIPT))
+    assert {"angle", "spin", "symmetry", "body_force_x", "block_width"} & names == set()
+    assert set(result.scene) == names | {"script"}
     again = scene.load(str(result.folder / "scene.toml"))
     assert again.script == SCRIPT and again.values["penalty"] == result.scene["penalty"]
 
@@ -102,28 +102,28 @@ def test_what_no_body_of_revolution_has(tmp_path, name, value):
         scene.load("ball-axisymmetric").override({name: value})
 
 
-@pytest.mark.parametrize("shift, labels, said", [(0.0, True, None), (0.1, True, "its axis is x = 0.1 .accepted: half a meridian plane, to the right of its axis x = 0"),
-                                                 (0.0, False, "no edge has the label 2 of the axis .accepted: half a meridian plane")])
-def test_a_mesh_is_half_a_meridian_plane(tmp_path, shift, labels, said):
+@pytest.mark.parametrize("shift, labels, message", [(0.0, True, None), (0.1, True, "its axis is x = 0.1 .accepted: half a meridian plane, to the right of its axis x = 0"),
+                                                    (0.0, False, "no edge has the label 2 of the axis .accepted: half a meridian plane")])
+def test_a_mesh_is_half_a_meridian_plane(tmp_path, shift, labels, message):
     """Its axis is on x = 0 with this label. Other meshes are refused with exit code 10."""
-    given = mesh.disc(0.05, 0.02, 0.01, half=labels)
-    mesh.write(mesh.Mesh(given.points + (shift, 0), given.triangles, given.edges, given.labels), tmp_path / "my.msh")
-    if said:
-        with pytest.raises(BadInput, match=said):
+    disc = mesh.disc(0.05, 0.02, 0.01, half=labels)
+    mesh.write(mesh.Mesh(disc.points + (shift, 0), disc.triangles, disc.edges, disc.labels), tmp_path / "my.msh")
+    if message:
+        with pytest.raises(BadInput, match=message):
             scene.load("ball-axisymmetric").description((tmp_path / "my.msh").read_bytes())
     code, out, error = ball(*COARSE[2:], "-mesh", "my.msh", "-out", "out", cwd=tmp_path)
-    assert (code, error) == (0, "") if not said else code == 10
-    if not said:
+    assert (code, error) == (0, "") if not message else code == 10
+    if not message:
         assert results.read_summary(tmp_path / "out")["energy_initial"] == pytest.approx(MASS * 32, rel=5e-3)
 
 
 def test_both_ways_in_run_the_same_flags(tmp_path):
     """The script on Python's mesh with Python's flags gives exactly the same history."""
-    found = run.run(scene.load("ball-axisymmetric"), {"accuracy": 0.1, "end_time": 1e-3}, tmp_path / "ball", estimate=False)
-    flags = freefem.words_of({name: value for name, value in found.scene.items() if name != "script"})
-    code, _, _ = call(*flags, "-mesh", str(found.folder / "mesh.msh"), "-out", str(tmp_path / "direct"), cwd=tmp_path, script=SCRIPT)
+    record = run.run(scene.load("ball-axisymmetric"), {"accuracy": 0.1, "end_time": 1e-3}, tmp_path / "ball", estimate=False)
+    flags = freefem.words_of({name: value for name, value in record.scene.items() if name != "script"})
+    code, _, _ = call(*flags, "-mesh", str(record.folder / "mesh.msh"), "-out", str(tmp_path / "direct"), cwd=tmp_path, script=SCRIPT)
     assert code == 0
-    assert (tmp_path / "direct/history.csv").read_text() == (found.folder / "history.csv").read_text()
+    assert (tmp_path / "direct/history.csv").read_text() == (record.folder / "history.csv").read_text()
 
 
 def test_sizes_follow_hertz():
@@ -144,15 +144,15 @@ def test_pressure_of_hertz(tmp_path):
     The contact radius agrees to 2 % (Johnson, Contact mechanics, 4.2). The pressure of twice the
     force does not agree.
     """
-    found = run.run(scene.load("ball-axisymmetric"), {"speed": 0.1, "nu": 0.3, "penalty": "auto", "fields": 20}, tmp_path / "slow", estimate=False)
-    points = pd.DataFrame(contact.read(found.folder))
+    record = run.run(scene.load("ball-axisymmetric"), {"speed": 0.1, "nu": 0.3, "penalty": "auto", "fields": 20}, tmp_path / "slow", estimate=False)
+    points = pd.DataFrame(contact.read(record.folder))
     force = points.assign(force=points.pressure * points.weight).groupby("t").force.sum()
     now = points[points.t == force.idxmax()]
 
     def off(load: float) -> tuple[float, float]:
         a = (3 * load * 0.05 * (1 - 0.3**2) / (4 * 7e6)) ** (1 / 3)
-        most = 3 * load / (2 * math.pi * a**2)
-        wrong = now.pressure / most - np.sqrt(np.clip(1 - (now.x / a) ** 2, 0, None))
+        peak = 3 * load / (2 * math.pi * a**2)
+        wrong = now.pressure / peak - np.sqrt(np.clip(1 - (now.x / a) ** 2, 0, None))
         return math.sqrt((wrong**2 * now.weight).sum() / now.weight.sum()), now.x.max() / a
 
     rms, wide = off(force.max())

@@ -141,7 +141,7 @@ def test_bodies_are_regions_apart_from_each_other():
         mine, area = built.mesh.triangles[built.regions == k], areas(built.mesh)[built.regions == k]
         centre = (built.mesh.points[mine].mean(axis=1) * area[:, None]).sum(axis=0) / area.sum()
         assert centre == pytest.approx(built.centres[k], abs=0.01 * body.outline.extent.max())
-    assert all(left[1] < right[0] for left, right in itertools.pairwise(boxes))
+    assert all(box[1] < next_box[0] for box, next_box in itertools.pairwise(boxes))
     assert len(np.unique(built.mesh.points, axis=0)) == len(built.mesh.points)
     assert set(built.mesh.labels) == {mesh.FREE}
 
@@ -193,9 +193,9 @@ def test_a_hole_touches_only_what_is_in_it():
 
 def test_pairs_inherit_from_contact():
     """A [[contact.pair]] overrides the entries of the scene and of its obstacle."""
-    given = changed(("contact.penalty", 1e9), ("contact.friction_static", 0.5), ("contact.slip_velocity", 0.1), ("obstacle.1.friction_static", 0.2))
-    given["contact"]["pair"] = [{"bodies": ["floor", "disc"], "friction_static": 0.3, "friction_dynamic": 0.1}, {"bodies": ["block", "disc"], "penalty": 2e9}]
-    lines = assembly.assemble(read(given)).data.splitlines()
+    tables = changed(("contact.penalty", 1e9), ("contact.friction_static", 0.5), ("contact.slip_velocity", 0.1), ("obstacle.1.friction_static", 0.2))
+    tables["contact"]["pair"] = [{"bodies": ["floor", "disc"], "friction_static": 0.3, "friction_dynamic": 0.1}, {"bodies": ["block", "disc"], "penalty": 2e9}]
+    lines = assembly.assemble(read(tables)).data.splitlines()
     first = lines.index("pairs 3")
     assert [list(map(float, line.split())) for line in lines[first + 1:]] == [
         [0, -1, 1e9, 0.3, 0.1], [0, 1, 2e9, 0.5, 0.5], [1, -1, 1e9, 0.2, 0.2]]
@@ -304,7 +304,7 @@ NO_OBSTACLES = [
 ]
 REFUSED = [*((changed(*entries), words) for entries, words in BAD),
            *(({k: v for k, v in SCENE.items() if k != name}, f"body.1.{name}: is missing, here and at the top of the file (accepted: ") for name in ("law", "young", "nu", "density")),
-           *(({k: v for k, v in SCENE.items() if k != "body"} | given, words) for given, words in TABLES),
+           *(({k: v for k, v in SCENE.items() if k != "body"} | tables, words) for tables, words in TABLES),
            *((with_body(shape="polygon", **entries), words) for entries, words in POLYGONS),
            *((with_body(shape="disc", radius=0.1, position=[0, 9]) | {"obstacle": [entries]}, words) for entries, words in NO_OBSTACLES)]
 

@@ -221,10 +221,10 @@ def test_the_mass_of_a_file_is_kept_or_warned_about(tmp_path, corners, section, 
     """
     prism(corners, tmp_path / "prism.mesh")
     body = {"shape": "mesh", "file": "prism.mesh", "position": [0, 0.0402, 0], "velocity": [0, -1, 0]}
-    found = run.run(read(body, obstacles=[FLOOR | {"point": [0, 0, 0]}], folder=tmp_path, end_time=4e-4), {}, tmp_path / "run", estimate=False)
-    assert found.summary["energy_initial"] == pytest.approx(section * 0.08 * 1722 / 2, rel=1e-4)
-    assert f"outline: body1: {outline}\n" in (found.folder / "log.txt").read_text()
-    assert [one[:len(warned)] for one in found.summary["warnings"] if one.startswith("mass")] == [warned] * bool(warned)
+    result = run.run(read(body, obstacles=[FLOOR | {"point": [0, 0, 0]}], folder=tmp_path, end_time=4e-4), {}, tmp_path / "run", estimate=False)
+    assert result.summary["energy_initial"] == pytest.approx(section * 0.08 * 1722 / 2, rel=1e-4)
+    assert f"outline: body1: {outline}\n" in (result.folder / "log.txt").read_text()
+    assert [warning[:len(warned)] for warning in result.summary["warnings"] if warning.startswith("mass")] == [warned] * bool(warned)
 
 
 @pytest.mark.parametrize("cells, words", [
@@ -256,11 +256,11 @@ def test_three_numbers_of_obstacles():
 @pytest.fixture(scope="module")
 def falls(tmp_path_factory):
     """A ball on a rigid plane as a quarter, half and whole, on meshes of the same sizes."""
-    folder, found = tmp_path_factory.mktemp("falls"), {}
+    folder, results = tmp_path_factory.mktemp("falls"), {}
     for symmetry in ("quarter", "half", "full"):
         scene = read(BALL | {"position": [0, 0.05, 0], "velocity": [0, -2, 0]}, obstacles=[FLOOR | {"point": [0, 0, 0]}], symmetry=symmetry, fields=2)
-        found[symmetry] = run.run(scene, {}, folder / symmetry, estimate=False)
-    return found
+        results[symmetry] = run.run(scene, {}, folder / symmetry, estimate=False)
+    return results
 
 
 @pytest.mark.robustness
@@ -271,8 +271,8 @@ def test_parts_stand_for_the_whole(falls):
     Half a ball has the angular momentum about the axes about which the whole may rotate; a quarter
     has none.
     """
-    for symmetry, found in falls.items():
-        s = found.summary
+    for symmetry, result in falls.items():
+        s = result.summary
         assert s["energy_initial"] == pytest.approx(4 / 3 * math.pi * 0.05**3 * 1722 * 2**2 / 2, rel=0.01), symmetry
         assert s["impulse"] == pytest.approx(falls["full"].summary["impulse"], rel=0.01) and s["energy_drift"] < 1e-8
         assert s["rebound_vy"] == pytest.approx(falls["full"].summary["rebound_vy"], rel=0.02)
@@ -292,22 +292,22 @@ def test_a_cylinder_rolls(tmp_path):
     body = {"shape": "cylinder", "radius": 0.05, "height": 0.05, "position": [0, 0.05, 0], "turn": [90, 0, 0], "mesh_size": 0.025, "contact_mesh_size": 0.025}
     scene = read(body, obstacles=[FLOOR | {"point": [0, 0, 0]}], nu=0.3, end_time=end, dt=5e-4, gravity=9.81 * math.cos(slope), body_force_x=pull,
                  contact={"friction_static": 0.5, "friction_dynamic": 0.5, "penalty": 1e8})
-    found = run.run(scene, {}, tmp_path / "roll", estimate=False)
-    t, v, spin = (found.history[name] for name in ("t", "vx", "spin"))
-    assert found.summary["energy_drift"] < 1e-8 and t @ v / (t @ t) == pytest.approx(2 / 3 * pull, rel=0.02)
+    result = run.run(scene, {}, tmp_path / "roll", estimate=False)
+    t, v, spin = (result.history[name] for name in ("t", "vx", "spin"))
+    assert result.summary["energy_drift"] < 1e-8 and t @ v / (t @ t) == pytest.approx(2 / 3 * pull, rel=0.02)
     assert t @ (v - 0.05 / 2 * spin) / (t @ t) == pytest.approx(pull, rel=0.005)
 
 
 def test_report_and_figures(falls, tmp_path):
     """Forces are in N, energies in J. Parts are drawn with their mirror images among the obstacles,
     a whole body as its section z = 0."""
-    found = falls["quarter"]
-    text = report.report(found, verbose=True)
+    result = falls["quarter"]
+    text = report.report(result, verbose=True)
     assert "N s" in text and "/m" not in text.replace("m/s", "").replace("Pa/m", "").replace("kg/m3", "")
-    assert figures.is_half(found.scene) and not figures.is_half(falls["half"].scene) and not figures.is_half(falls["full"].scene)
-    plane, = bodies.obstacles_of(found.scene)
+    assert figures.is_half(result.scene) and not figures.is_half(falls["half"].scene) and not figures.is_half(falls["full"].scene)
+    plane, = bodies.obstacles_of(result.scene)
     assert plane.gap_in_plane(np.array([[3, 2.0]]), 1.0) == pytest.approx([2.0])
-    for run_of in (found, falls["full"]):
+    for run_of in (result, falls["full"]):
         assert {"energies", "force", "velocity", "shapes"} <= {path.stem for path in drawing.draw(run_of.folder)} <= set(folder.FIGURES)
 
 
@@ -323,26 +323,26 @@ def test_it_is_the_ball_of_the_other_dimension(falls, tmp_path):
 def test_the_scene_as_used_makes_the_same_run(falls, tmp_path):
     """scene.toml has dimension and symmetry as used and gives the same data file. The script alone
     gives the same history."""
-    found = falls["quarter"]
-    again = load(str(found.folder / "scene.toml"))
+    result = falls["quarter"]
+    again = load(str(result.folder / "scene.toml"))
     assert again.script == SCRIPT and set(again.values) <= set(parameters.names(SCRIPT)) and again.content["symmetry"] == "quarter"
     made = assembly.assemble(again)
-    assert made.data == (found.folder / "scene.dat").read_text() and to_toml(made.used) == (found.folder / "scene.toml").read_text()
+    assert made.data == (result.folder / "scene.dat").read_text() and to_toml(made.used) == (result.folder / "scene.toml").read_text()
     flags = freefem.words_of(made.values)
-    code, _, _ = call(*flags, "-mesh", str(found.folder / "mesh.mesh"), "-bodies", str(found.folder / "scene.dat"), "-out", str(tmp_path / "direct"),
+    code, _, _ = call(*flags, "-mesh", str(result.folder / "mesh.mesh"), "-bodies", str(result.folder / "scene.dat"), "-out", str(tmp_path / "direct"),
                       cwd=tmp_path, script=SCRIPT)
-    assert code == 0 and (tmp_path / "direct/history.csv").read_text() == (found.folder / "history.csv").read_text()
+    assert code == 0 and (tmp_path / "direct/history.csv").read_text() == (result.folder / "history.csv").read_text()
 
 
 def test_a_ball_on_a_free_block(tmp_path):
     """A quarter of both bodies, coarse, until shortly after contact: momentum and energy are
     constant, and the block is pushed down."""
-    found = run.run(read(BALL, BLOCK, obstacles=(), end_time=8e-4, mesh_size=0.04, contact_mesh_size=0.025), {}, tmp_path / "block", estimate=False)
-    h, s = found.history, found.summary
+    result = run.run(read(BALL, BLOCK, obstacles=(), end_time=8e-4, mesh_size=0.04, contact_mesh_size=0.025), {}, tmp_path / "block", estimate=False)
+    h, s = result.history, result.summary
     assert s["dofs"] < 4000 and h["normal_force"].max() > 100 and s["energy_drift"] < 1e-8
     assert np.ptp(h["momentum_y"]) < 1e-8 * abs(h["momentum_y"]).max() and h["vy_2"][-1] < 0 and h["vy_1"][-1] > -8
-    assert list(h) == found_columns(found) and found.scene["symmetry"] == "quarter"
+    assert list(h) == found_columns(result) and result.scene["symmetry"] == "quarter"
 
 
-def found_columns(found) -> list[str]:
-    return load(str(found.folder / "scene.toml")).columns
+def found_columns(result) -> list[str]:
+    return load(str(result.folder / "scene.toml")).columns

@@ -41,9 +41,9 @@ def test_bodies_are_half_sections_about_their_centres(name):
     scene = read(entries | {"position": [0, 5]}, mesh_size=0.05, contact_mesh_size=0.02)
     built = assembly.assemble(scene)
     m = built.mesh
-    found, height = volumes(m)
+    mesh_volume, height = volumes(m)
     exact = entries["shape"] in ("cylinder", "polygon")
-    assert found == pytest.approx(volume, rel=1e-12 if exact else 0.03) and abs(height) < (1e-12 if exact else 1e-3)
+    assert mesh_volume == pytest.approx(volume, rel=1e-12 if exact else 0.03) and abs(height) < (1e-12 if exact else 1e-3)
     assert m.points[:, 0].min() == 0
     on_axis = (m.points[m.edges] == 0).all(axis=1)[:, 0]
     assert np.array_equal(on_axis, m.labels == 2) and set(m.labels) == {1, 2}
@@ -94,11 +94,11 @@ def test_open_values_are_those_of_a_ball():
     assert body["body"][0]["contact_mesh_size"] == pytest.approx(alone["contact_mesh_size"], rel=1e-9)
 
 
-@pytest.mark.parametrize("old, new, said", [
+@pytest.mark.parametrize("old, new, message", [
     ("0 1.5 0.0 0.0 -10", "0 1.5 0.0 1.0 -10", "ball leaves the axis of revolution: its x, angle, vx or spin is not 0"),
     ("plane 4 0.0 -1.0 0.0 1.0", "plane 4 0.0 -1.0 1.0 1.0", "obstacle 1 is none of revolution"),
     (" 2\n", " 1\n", "has the label 1 (accepted: 2 on x = 0")])
-def test_the_script_looks_at_its_files(tmp_path, old, new, said):
+def test_the_script_looks_at_its_files(tmp_path, old, new, message):
     """The script refuses files made by hand that are not of revolution, with exit code 10 and one
     line."""
     assembly.assemble(read(BALL, mesh_size=0.3, contact_mesh_size=0.1)).write(tmp_path)
@@ -107,7 +107,7 @@ def test_the_script_looks_at_its_files(tmp_path, old, new, said):
     assert old in text
     file.write_text(text.replace(old, new))
     code, _, error = call("-mesh", "mesh.msh", "-bodies", "scene.dat", "-accuracy", "0.4", "-out", "out", cwd=tmp_path, script=SCRIPT)
-    assert code == 10 and said in error and error.count("\n") == 1
+    assert code == 10 and message in error and error.count("\n") == 1
 
 
 # ---- runs
@@ -115,10 +115,10 @@ def test_the_script_looks_at_its_files(tmp_path, old, new, said):
 @pytest.fixture(scope="module")
 def slow(tmp_path_factory):
     """The built-in scene at a fiftieth of its speed."""
-    given = {"body.1.velocity": -0.01, "body.2.velocity": 0.01, "body.1.position": 0.010001, "body.2.position": -0.010001, "fields": 2}
-    found = run.run(load("two-balls"), given, tmp_path_factory.mktemp("slow") / "slow", estimate=False)
-    report.draw(found)
-    return found
+    values = {"body.1.velocity": -0.01, "body.2.velocity": 0.01, "body.1.position": 0.010001, "body.2.position": -0.010001, "fields": 2}
+    result = run.run(load("two-balls"), values, tmp_path_factory.mktemp("slow") / "slow", estimate=False)
+    report.draw(result)
+    return result
 
 
 def test_two_balls_of_hertz(slow):
@@ -159,8 +159,8 @@ def test_the_scene_as_used_makes_the_same_run(slow, tmp_path):
 def test_a_ball_alone_is_that_of_its_own_script(tmp_path):
     """On a rigid plane, with equal mesh sizes, penalty and step, it agrees with ball-axisymmetric
     to the difference of the meshes."""
-    given = {"law": "neohookean", "nu": 0.3, "accuracy": 0.02, "speed": 2}
-    alone = run.run(load("ball-axisymmetric"), given | {"penalty": "auto", "fields": 0}, tmp_path / "alone", estimate=False).summary
+    values = {"law": "neohookean", "nu": 0.3, "accuracy": 0.02, "speed": 2}
+    alone = run.run(load("ball-axisymmetric"), values | {"penalty": "auto", "fields": 0}, tmp_path / "alone", estimate=False).summary
     scene = read({"shape": "ball", "radius": 0.05, "position": 0.05, "velocity": -2}, obstacles=[FLOOR | {"point": [0, 0]}], law="neohookean", nu=0.3, accuracy=0.02)
     body = run.run(scene, {}, tmp_path / "body", estimate=False).summary
     for name, off in (("impulse", 2e-3), ("peak_force", 0.01), ("rebound_vy", 2e-3), ("contact_time", 0.02)):
@@ -185,7 +185,7 @@ def test_a_ball_in_a_funnel_touches_its_wall(tmp_path, wall):
     Contact begins when the centre is sqrt(2) radii above the apex, and energy is conserved.
     """
     ball = {"shape": "ball", "radius": 0.03, "position": 0.05, "velocity": -2}
-    given = read(ball, obstacles=(wall,), young=7e6, nu=0.3, density=1000, law="neohookean", accuracy=0.1)
-    s = run.run(given, {}, tmp_path / "out", estimate=False).summary
+    scene = read(ball, obstacles=(wall,), young=7e6, nu=0.3, density=1000, law="neohookean", accuracy=0.1)
+    s = run.run(scene, {}, tmp_path / "out", estimate=False).summary
     assert s["contact_start"] == pytest.approx((0.05 - 0.03 * math.sqrt(2)) / 2, rel=5e-3)
     assert s["energy_drift"] < 1e-9 and 0.9 < s["restitution"] < 1

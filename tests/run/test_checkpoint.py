@@ -187,8 +187,9 @@ def test_killed_behind_the_run_that_estimates_the_error(tmp_path):
     process.kill()
     process.communicate()
     assert not out.exists() and call(*command, str(out))[0] == 0
-    one, other = (results.read_summary(folder) for folder in (tmp_path / "straight", out))
-    assert [one[name] == other[name] for name in one if name not in EFFORT] == [True] * (len(one) - sum(name in one for name in EFFORT))
+    uninterrupted, resumed = (results.read_summary(folder) for folder in (tmp_path / "straight", out))
+    assert [uninterrupted[name] == resumed[name] for name in uninterrupted if name not in EFFORT] == [True] * (
+        len(uninterrupted) - sum(name in uninterrupted for name in EFFORT))
     assert_same(out, tmp_path / "straight")
 
 
@@ -199,9 +200,9 @@ def test_killed_freefem(tmp_path, straight):
     process = start(*COMMAND, str(out))
     wait_for(lambda: rows_known(stage / "checkpoint") > 50)
     subprocess.run(["kill", "-9", *map(str, children(process))], check=True)
-    said, err = process.communicate(timeout=10)
+    output, err = process.communicate(timeout=10)
     assert process.returncode == 1 and err.count("\n") == 1 and "killed by SIGKILL" in err and "the same command goes on" in err
-    assert str(stage) in said and not out.exists()
+    assert str(stage) in output and not out.exists()
     assert go(out).summary["resumed_at"] > 0
     assert_same(out, straight.folder)
 

@@ -35,8 +35,9 @@ def test_a_run_needs_no_matplotlib(fake, tmp_path, monkeypatch, capsys):
         without.setitem(sys.modules, "ffimpact.report.drawing", None)
         without.delattr("ffimpact.report.drawing", raising=False)
         assert main(["run", "disc-normal", "--out", str(tmp_path / "out")]) == 0
-    said, starts = capsys.readouterr(), fake.starts()
-    assert said.err.startswith("ffimpact: the figures could not be drawn: ") and said.err.count("\n") == 1 and "contact time" in said.out
+    captured, starts = capsys.readouterr(), fake.starts()
+    assert (captured.err.startswith("ffimpact: the figures could not be drawn: ") and captured.err.count("\n") == 1
+            and "contact time" in captured.out)
     assert main(["run", "disc-normal", "--out", str(tmp_path / "out")]) == 0 and (tmp_path / "out/figures/force.png").exists()
     assert "finished earlier" in capsys.readouterr().out and fake.starts() == starts
 
@@ -68,9 +69,9 @@ def test_scripts_that_do_not_answer_are_one_line(monkeypatch, capsys):
 
 def test_quiet_leaves_warnings(fake, tmp_path, capsys, monkeypatch):
     """With --quiet each warning is a line on stderr."""
-    found = run.run(scene.load("disc-normal"), {"fields": 0}, tmp_path / "out")
-    found.summary["warnings"] = ["penalty: too soft"]
-    monkeypatch.setattr(run, "run", lambda *_, **__: found)
+    result = run.run(scene.load("disc-normal"), {"fields": 0}, tmp_path / "out")
+    result.summary["warnings"] = ["penalty: too soft"]
+    monkeypatch.setattr(run, "run", lambda *_, **__: result)
     assert main(["run", "disc-normal", "--quiet"]) == 0
     assert tuple(capsys.readouterr()) == ("", "ffimpact: warning: penalty: too soft\n")
 

@@ -12,10 +12,10 @@ from ffimpact.freefem import freefem
 def test_histories_are_equal_to_the_byte_with_and_without_it(tmp_path):
     """The clock does not affect results. The summary reports its use, and its processor time is
     that of the process."""
-    given, histories = freefem.find().environment, []
-    if "libclock.so" not in given.get("LD_PRELOAD", ""):
+    variables, histories = freefem.find().environment, []
+    if "libclock.so" not in variables.get("LD_PRELOAD", ""):
         pytest.skip("no compiler here")
-    for name, environment in (("quick", given), ("plain", {key: value for key, value in given.items() if key != "LD_PRELOAD"})):
+    for name, environment in (("quick", variables), ("plain", {key: value for key, value in variables.items() if key != "LD_PRELOAD"})):
         before = os.times()
         freefem.find().call("edp/disc-plane.edp", "-accuracy", "0.05", "-out", str(tmp_path / name), env=environment, check=True)
         after = os.times()

@@ -22,10 +22,10 @@ CORNER = {"law": "neohookean", "young": 7e6, "nu": 0.4, "density": 1722, "accura
 @pytest.fixture(scope="module")
 def ran(tmp_path_factory):
     """ran(name, **set): a coarse run of the scene with 8 snapshots or the entries `set`."""
-    def at(name: str, **given) -> Record:
+    def at(name: str, **entries) -> Record:
         folder = tmp_path_factory.mktemp("run")
-        wanted = read_scene(CORNER, folder, name) if name == "corner" else scene.load(name)
-        return run.run(wanted, {"accuracy": 0.4, "fields": 8} | given, folder / "out", estimate=False)
+        problem = read_scene(CORNER, folder, name) if name == "corner" else scene.load(name)
+        return run.run(problem, {"accuracy": 0.4, "fields": 8} | entries, folder / "out", estimate=False)
     return at
 
 
@@ -39,25 +39,25 @@ def summed(result: Record) -> tuple[pd.DataFrame, pd.DataFrame]:
     return forces, history.iloc[[(history.t - t).abs().argmin() for t in forces.index]]
 
 
-@pytest.mark.parametrize("name, given", [("disc-normal", {}), ("disc-normal", {"symmetry": "full", "integrator": "newmark"}), ("disc-oblique", {}),
-                                         ("disc-oblique", {"degree": 1, "regularization": "tanh"})])
-def test_forces_on_a_plane(ran, name, given):
+@pytest.mark.parametrize("name, values", [("disc-normal", {}), ("disc-normal", {"symmetry": "full", "integrator": "newmark"}), ("disc-oblique", {}),
+                                          ("disc-oblique", {"degree": 1, "regularization": "tanh"})])
+def test_forces_on_a_plane(ran, name, values):
     """Pressure and shear times weight add up to normal and friction force of the history at every
     instant, for the whole body."""
-    forces, there = summed(ran(name, **given))
+    forces, there = summed(ran(name, **values))
     assert len(forces) > 8 and (there.normal_force > 0).all()
     np.testing.assert_allclose(forces.pressure[-1], there.normal_force, rtol=1e-6)
     np.testing.assert_allclose(forces.shear[-1], there.friction_force, rtol=1e-6, atol=1e-6 * there.normal_force.max())
 
 
 @pytest.mark.few(1)
-@pytest.mark.parametrize("given", [{}, {"pairing": "pairwise"}, {"angle": 60, "friction_static": 0.4, "contact_mesh_size": 0.03}])
-def test_both_bodies_bear_the_force_between_them(ran, given):
+@pytest.mark.parametrize("values", [{}, {"pairing": "pairwise"}, {"angle": 60, "friction_static": 0.4, "contact_mesh_size": 0.03}])
+def test_both_bodies_bear_the_force_between_them(ran, values):
     """Each body carries the normal load once (to 10 % on coarse elements, as each has both roles;
     shear on finer ones), both together exactly twice."""
-    result = ran("disc-block", **given)
+    result = ran("disc-block", **values)
     forces, there = summed(result)
-    if "pairing" not in given:  # pairwise forces differ in direction
+    if "pairing" not in values:  # pairwise forces differ in direction
         np.testing.assert_allclose(forces.pressure[[1, 2]].sum(axis=1), 2 * there.normal_load, rtol=1e-6)
     shares = pd.DataFrame(contact.read(result.folder)).eval("load = pressure * weight").groupby("body").load.sum()
     assert shares[1] == pytest.approx(shares[2], rel=0.1)
@@ -70,8 +70,8 @@ def test_projected_pressure_has_the_same_resultant_and_moment(tmp_path):
 
     The moment agrees as far as the outline is that of the elements.
     """
-    found = runs.measure("homogeneous", accuracy=0.1, out=tmp_path)
-    assert abs(found["resultant"]) < 1e-12 and abs(found["moment"]) < 1e-6
+    numbers = runs.measure("homogeneous", accuracy=0.1, out=tmp_path)
+    assert abs(numbers["resultant"]) < 1e-12 and abs(numbers["moment"]) < 1e-6
 
 
 def test_two_obstacles_at_once(ran):

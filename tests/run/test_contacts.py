@@ -15,22 +15,22 @@ OBLIQUE = COARSE | {"speed": 12, "angle": 60, "friction_static": 0.7, "friction_
 
 
 def go(tmp_path, name: str, values: dict) -> tuple[pd.DataFrame, run.Record]:
-    found = run.run(scene.load(name), values, tmp_path / "out", estimate=False)
-    return pd.read_csv(found.folder / "contacts.csv"), found
+    result = run.run(scene.load(name), values, tmp_path / "out", estimate=False)
+    return pd.read_csv(result.folder / "contacts.csv"), result
 
 
-@pytest.mark.parametrize("given", [{}, {"integrator": "newmark"}, {"integrator": "bdf2"}], ids=str)
-def test_an_interval_adds_up_to_the_history(tmp_path, given):
+@pytest.mark.parametrize("values", [{}, {"integrator": "newmark"}, {"integrator": "bdf2"}], ids=str)
+def test_an_interval_adds_up_to_the_history(tmp_path, values):
     """A single impact is one row with the times, impulses, work and energies of summary and
     history."""
-    rows, found = go(tmp_path, "disc-normal", OBLIQUE | given)
-    row, s, h = rows.iloc[0], found.summary, found.history
+    rows, result = go(tmp_path, "disc-normal", OBLIQUE | values)
+    row, s, h = rows.iloc[0], result.summary, result.history
     assert len(rows) == 1 and (row.body, row.partner, row.over) == (1, -1, 1)
     for name, other in {"time": "contact_time", "thresholded_time": "thresholded_contact_time", "start": "contact_start", "impulse": "impulse",
                         "friction_work": "friction_work", "creep_work": "creep_work", "slip_work": "slip_work", "restitution": "restitution"}.items():
         assert row[name] == pytest.approx(s[other], rel=1e-9), name
     # The momentum of bdf2 is not a sum of impulses.
-    for along in "xy" if given != {"integrator": "bdf2"} else "":
+    for along in "xy" if values != {"integrator": "bdf2"} else "":
         assert row[f"impulse_{along}"] == pytest.approx(h[f"momentum_{along}"][-1] - h[f"momentum_{along}"][0], rel=1e-7)
     assert 0 < row.creep_work < row.friction_work and row.creep_work + row.slip_work == pytest.approx(row.friction_work)
 
@@ -42,8 +42,8 @@ def test_restitution_and_angles_of_an_oblique_impact(tmp_path):
     Without gravity Poisson's and the energetic restitution equal Newton's. The impulse ratio is the
     tangential over the normal impulse.
     """
-    rows, found = go(tmp_path, "disc-normal", OBLIQUE)
-    row, s, h = rows.iloc[0], found.summary, found.history
+    rows, result = go(tmp_path, "disc-normal", OBLIQUE)
+    row, s, h = rows.iloc[0], result.summary, result.history
     last = np.flatnonzero(h["normal_force"] > 0)[-1]
     rim = h["vx"][last] + 0.05 * h["spin"][last]
     assert (row.normal_x, row.normal_y) == pytest.approx((0, 1), abs=1e-12)
@@ -60,8 +60,8 @@ def test_restitution_and_angles_of_an_oblique_impact(tmp_path):
 def test_a_touch_on_the_way_up(tmp_path):
     """A vibrating body comes into contact again while its centre leaves: a row without approach and
     restitution, also without sliding."""
-    rows, found = go(tmp_path, "disc-normal", {"fields": 0, "mesh_size": 0.016, "contact_mesh_size": 0.006, "dt": 2e-5})
-    assert len(rows) == found.summary["contact_intervals"] == 2 and rows.approach[1] < 0 < rows.separation[1]
+    rows, result = go(tmp_path, "disc-normal", {"fields": 0, "mesh_size": 0.016, "contact_mesh_size": 0.006, "dt": 2e-5})
+    assert len(rows) == result.summary["contact_intervals"] == 2 and rows.approach[1] < 0 < rows.separation[1]
     assert rows.restitution.notna().tolist() == [True, False] and rows.restitution_tangential.isna().all()
 
 
@@ -83,57 +83,57 @@ def test_two_bodies_and_three(tmp_path, pairing):
     Impulse and normal force are resultants, equal to changes of momentum and less than the sum of
     magnitudes. The acceleration that is compared with other runs is that of the disc.
     """
-    rows, found = go(tmp_path, "disc-block", {"law": "neohookean", "accuracy": 0.3, "fields": 0, "pairing": pairing})
+    rows, result = go(tmp_path, "disc-block", {"law": "neohookean", "accuracy": 0.3, "fields": 0, "pairing": pairing})
     assert (rows.body == 1).all() and (rows.partner == 2).all()
-    assert rows.impulse_y.sum() == pytest.approx(found.summary["impulse_y_1"], rel=1e-9)
-    s, h = found.summary, found.history
-    given = [s["mass_1"] * (s["rebound_vy_1"] - h["vy_1"][0]), s["mass_2"] * (h["vy_2"][0] - s["rebound_vy_2"])]
-    assert [s["impulse"], rows.impulse.sum(), (h["normal_force"] * h["dt"]).sum()] == pytest.approx([given[0]] * 3, rel=1e-6) and given[1] == pytest.approx(given[0], rel=1e-6)
+    assert rows.impulse_y.sum() == pytest.approx(result.summary["impulse_y_1"], rel=1e-9)
+    s, h = result.summary, result.history
+    impulses = [s["mass_1"] * (s["rebound_vy_1"] - h["vy_1"][0]), s["mass_2"] * (h["vy_2"][0] - s["rebound_vy_2"])]
+    assert [s["impulse"], rows.impulse.sum(), (h["normal_force"] * h["dt"]).sum()] == pytest.approx([impulses[0]] * 3, rel=1e-6) and impulses[1] == pytest.approx(impulses[0], rel=1e-6)
     assert s["peak_force"] == h["normal_force"].max() and (h["normal_load"] >= h["normal_force"] * (1 - 1e-12)).all()
     assert (h["normal_load"] * h["dt"]).sum() > 1.005 * s["impulse"]
-    assert np.diff(h["vy_1"]) / h["dt"][1:] == pytest.approx((compare.contact_force(h) / compare.mass_of(found))[1:], abs=1e-6 * compare.contact_force(h).max() / s["mass_1"])
-    closing = found.history["vy_1"][0] - found.history["vy_2"][0]
-    after = found.summary["rebound_vy_1"] - found.summary["rebound_vy_2"]
+    assert np.diff(h["vy_1"]) / h["dt"][1:] == pytest.approx((compare.contact_force(h) / compare.mass_of(result))[1:], abs=1e-6 * compare.contact_force(h).max() / s["mass_1"])
+    closing = result.history["vy_1"][0] - result.history["vy_2"][0]
+    after = result.summary["rebound_vy_1"] - result.summary["rebound_vy_2"]
     assert rows.approach.iloc[0] == pytest.approx(-closing) and rows.separation.iloc[-1] == pytest.approx(after, rel=1e-6)
-    assert found.summary["restitution"] == pytest.approx(-after / closing, rel=1e-6)
+    assert result.summary["restitution"] == pytest.approx(-after / closing, rel=1e-6)
 
 
 def test_meetings_are_told_apart(tmp_path):
     """Three discs in a row: the first hits the second, the second the third. Each pair has a row,
     and the run has no restitution."""
-    rows, found = go(tmp_path, "three-in-a-row", {"accuracy": 0.3, "fields": 0})
+    rows, result = go(tmp_path, "three-in-a-row", {"accuracy": 0.3, "fields": 0})
     assert set(zip(rows.body, rows.partner)) == {(1, 2), (2, 3)}
     per = rows.groupby(["body", "partner"])[["impulse_x", "impulse_y"]].sum()
-    assert found.summary["impulse_x_1"] == pytest.approx(per.loc[(1, 2)].impulse_x, rel=1e-8)
-    assert found.summary["impulse_x_3"] == pytest.approx(-per.loc[(2, 3)].impulse_x, rel=1e-8)
-    assert found.summary["restitution"] is None
+    assert result.summary["impulse_x_1"] == pytest.approx(per.loc[(1, 2)].impulse_x, rel=1e-8)
+    assert result.summary["impulse_x_3"] == pytest.approx(-per.loc[(2, 3)].impulse_x, rel=1e-8)
+    assert result.summary["restitution"] is None
 
 
 def test_of_a_ball(tmp_path):
     """Bodies of revolution and in three dimensions have the same columns. Bodies of revolution have
     no tangential impulse."""
-    rows, found = go(tmp_path, "ball-axisymmetric", COARSE)
-    assert rows.iloc[0].impulse_y == pytest.approx(found.summary["impulse"]) and rows.iloc[0].impulse_x == 0
-    assert rows.iloc[0].restitution == pytest.approx(found.summary["rebound_vy"] / 8)
+    rows, result = go(tmp_path, "ball-axisymmetric", COARSE)
+    assert rows.iloc[0].impulse_y == pytest.approx(result.summary["impulse"]) and rows.iloc[0].impulse_x == 0
+    assert rows.iloc[0].restitution == pytest.approx(result.summary["rebound_vy"] / 8)
 
 
 def test_in_contact_at_the_end(tmp_path):
     """An interval that is not over is marked and ends with the run."""
     rows, _ = go(tmp_path, "disc-normal", COARSE | {"end_time": 1e-3})
     assert rows.over.tolist() == [0] and rows.end.tolist() == [1e-3]
-    rows, found = go(tmp_path, "disc-normal", COARSE | {"end_time": 1e-3, "height": 1.0})
-    assert rows.empty and found.summary["restitution"] is None
+    rows, result = go(tmp_path, "disc-normal", COARSE | {"end_time": 1e-3, "height": 1.0})
+    assert rows.empty and result.summary["restitution"] is None
 
 
 def test_bounces_are_drawn(tmp_path):
     """A contact pair with several impacts has a figure of restitution without grazing intervals. A
     damaged table is reported."""
-    rows, found = go(tmp_path, "disc-normal", COARSE | {"speed": 0, "height": 0.02, "gravity": 9.81, "end_time": 0.25, "accuracy": 0.3})
+    rows, result = go(tmp_path, "disc-normal", COARSE | {"speed": 0, "height": 0.02, "gravity": 9.81, "end_time": 0.25, "accuracy": 0.3})
     impacts.plt.close(figure := impacts.draw(rows.to_records(), ["body"], ["plane"]))
     assert figure.axes[0].get_ylabel() == "restitution" and len(figure.axes[0].lines[0].get_xdata()) == len(rows)
     light = rows.assign(impulse=[1.0] + [1e-3] * (len(rows) - 1)).to_records()
     assert impacts.draw(light, ["body"], ["plane"]) is None and impacts.draw(rows[:1].to_records(), ["body"], ["plane"]) is None
-    (found.folder / "contacts.csv").write_text("body\n1\n")
-    (found.folder / "summary.json").unlink()
+    (result.folder / "contacts.csv").write_text("body\n1\n")
+    (result.folder / "summary.json").unlink()
     with pytest.raises(Unreadable, match="contacts.csv cannot be read: it lacks the columns partner, start"):
-        impacts.read(found.folder)
+        impacts.read(result.folder)

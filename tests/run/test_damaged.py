@@ -24,8 +24,8 @@ FILES = ("scene.toml", "history.csv", "contacts.csv", "modes.csv", "fields/conta
 def whole(tmp_path_factory):
     """A small run that writes all of these files."""
     folder = tmp_path_factory.mktemp("whole") / "run"
-    found = run.run(scene.load("disc-oblique"), {"accuracy": 0.4, "fields": 3, "modes": 4}, folder)
-    report.draw(found)
+    result = run.run(scene.load("disc-oblique"), {"accuracy": 0.4, "fields": 3, "modes": 4}, folder)
+    report.draw(result)
     assert all((folder / name).exists() for name in FILES)
     return folder
 
@@ -41,16 +41,16 @@ def damages(content: bytes, seed: int) -> dict[str, bytes]:
     words = {"text": b"hello\n", "html": b"<html></html>\n", "nul": b"\0" * 500, "latin": b"\xff\xfe" + content, "nan": content.replace(b"0", b"nan"),
              "letters": content.replace(b"1", b"x"), "other names": content.replace(names[0], b"q", 1), "twice": content + content, "empty JSON": b"{}", "a list": b"[]",
              "a table": b"[a]\n", "deep": b"[" * 100_000, "deep TOML": b"a = " + b"[" * 100_000, "equals": b"".join(line.partition(b"=")[0] + b"= \"x\"\n" for line in lines)}
-    found = {f"cut {k}": one for k, one in enumerate(cut)} | rows | words
-    return {name: one for name, one in found.items() if one != content}
+    variants = {f"cut {k}": variant for k, variant in enumerate(cut)} | rows | words
+    return {name: variant for name, variant in variants.items() if variant != content}
 
 
 def refused(capsys, name: str, *arguments: str) -> str:
     """The line of a command that refuses a result."""
     capsys.readouterr()
-    code, said = program.main(list(arguments)), capsys.readouterr().err
-    assert code == 14 and said.count("\n") == 1 and said.startswith("ffimpact: ") and name in said and len(said) < 600, said
-    return said
+    code, message = program.main(list(arguments)), capsys.readouterr().err
+    assert code == 14 and message.count("\n") == 1 and message.startswith("ffimpact: ") and name in message and len(message) < 600, message
+    return message
 
 
 @pytest.mark.few(2)
@@ -97,8 +97,8 @@ def test_a_damaged_result_of_a_direct_run(whole, tmp_path, capsys, monkeypatch, 
     for what, damaged in damages(content, 9).items():
         (folder / name).write_bytes(damaged)
         capsys.readouterr()
-        code, said = program.main(["figures", str(folder)]), capsys.readouterr().err
-        named = name in said or (name == "scene.toml" and "history.csv" in said)
-        assert code in (0, 14) and (code == 0 or said.count("\n") == 1 and named), (what, said)
+        code, message = program.main(["figures", str(folder)]), capsys.readouterr().err
+        named = name in message or (name == "scene.toml" and "history.csv" in message)
+        assert code in (0, 14) and (code == 0 or message.count("\n") == 1 and named), (what, message)
         taken += [what] * (code == 0)
     assert name != "history.csv" or not taken

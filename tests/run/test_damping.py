@@ -32,10 +32,10 @@ def test_a_mode_decays_as_theory_has_it(name):
     stress nor work.
     """
     script, flags = MODES[name]
-    found = measure(script, **{"mesh_size": 0.015, "contact_mesh_size": 0.015, "tolerance": 1e-12} | flags)
-    assert found["state"] == 0 and found["decay"] == pytest.approx(1, abs=0.01)
-    assert found["balance"] < 1e-9 and found["least"] > 0
-    assert found["turned"] < 1e-12 and found["objective"] < 1e-12
+    numbers = measure(script, **{"mesh_size": 0.015, "contact_mesh_size": 0.015, "tolerance": 1e-12} | flags)
+    assert numbers["state"] == 0 and numbers["decay"] == pytest.approx(1, abs=0.01)
+    assert numbers["balance"] < 1e-9 and numbers["least"] > 0
+    assert numbers["turned"] < 1e-12 and numbers["objective"] < 1e-12
 
 
 @pytest.mark.few(3)
@@ -54,22 +54,22 @@ def test_a_mode_of_the_standard_linear_solid_is_the_exact_one(name, relaxation):
     flags |= {"symmetry": "full"} if name == "shear" else {"integrator": "midpoint"} if name == "midpoint" else {}
     mu = 7e6 / (2 * (1 + nu))
     tau = relaxation / measure(script, **flags | {"viscosity": 1e-9})["omega"]
-    found = measure(script, **flags | {"relaxation_modulus": 0.4 * mu, "relaxation_time": tau})
-    omega, t = found["omega"], found["seconds"]
+    numbers = measure(script, **flags | {"relaxation_modulus": 0.4 * mu, "relaxation_time": tau})
+    omega, t = numbers["omega"], numbers["seconds"]
     rates = np.roots([tau, 1, 1.4 * omega**2 * tau, omega**2])
     # x = 0, x' = 1, x'' = 0 at the start, with the branch at rest.
     weights = np.linalg.solve([rates**0, rates, rates**2], [0, 1, 0])
-    assert found["state"] == 0 and omega * found["place"] == pytest.approx((weights @ np.exp(rates * t)).real * omega, abs=0.01)
-    assert found["balance"] < (1e-6 if name == "midpoint" else 1e-9) and found["least"] > 0
-    assert found["turned"] < 1e-12 and found["objective"] < 1e-12
+    assert numbers["state"] == 0 and omega * numbers["place"] == pytest.approx((weights @ np.exp(rates * t)).real * omega, abs=0.01)
+    assert numbers["balance"] < (1e-6 if name == "midpoint" else 1e-9) and numbers["least"] > 0
+    assert numbers["turned"] < 1e-12 and numbers["objective"] < 1e-12
 
 
 @pytest.mark.parametrize("nu", [0.0, 0.45])
 def test_loss_is_that_of_the_first_mode(nu):
     """`loss` is eta omega/mu at the first mode of the disc, and the scene as used has the
     viscosity."""
-    found = measure("damped-mode", nu=nu, loss=0.1, mesh_size=0.015, contact_mesh_size=0.015, tolerance=1e-12)
-    assert found["tangent"] == pytest.approx(0.1, rel=0.01)
+    numbers = measure("damped-mode", nu=nu, loss=0.1, mesh_size=0.015, contact_mesh_size=0.015, tolerance=1e-12)
+    assert numbers["tangent"] == pytest.approx(0.1, rel=0.01)
     mu, rho, radius = 7e6 / (2 * (1 + nu)), 1722, 0.05
     assert describe({"nu": nu, "loss": 0.1})["used"]["viscosity"] == pytest.approx(0.1 * radius * np.sqrt(mu * rho) / 2.35)
 
@@ -81,8 +81,8 @@ def test_loss_is_that_of_the_first_mode(nu):
 def test_an_impact_with_friction_closes_its_balance(tmp_path, script, flags, damping):
     """`viscous_work` never falls, closes the balance to 1e-9, and during contact equals that of
     contacts.csv."""
-    given = {name: value for name, value in (IMPACT | damping | flags).items() if value is not None}
-    run = disc(tmp_path / "none", script, **given | {"tolerance": 1e-14})
+    values = {name: value for name, value in (IMPACT | damping | flags).items() if value is not None}
+    run = disc(tmp_path / "none", script, **values | {"tolerance": 1e-14})
     work = run.history["viscous_work"]
     assert run.summary["energy_drift"] < 1e-9 and np.diff(work).min() >= 0 and work[-1] == run.summary["viscous_work"] > 1e-3 * run.summary["energy_initial"]
     assert "damping" not in run.summary["skipped"]
@@ -102,10 +102,10 @@ def test_restitution_falls_with_viscosity(tmp_path):
 def test_steps_go_with_a_short_relaxation(tmp_path):
     """Adaptive steps are short enough for the relaxation_time: the work of the branch agrees with
     steps of a twentieth of it, to the accuracy."""
-    given = {"law": "neohookean", "nu": 0.3, "speed": 6, "accuracy": 0.1, "relaxation_modulus": 2.7e6, "relaxation_time": 1e-4}
-    found, fine = (disc(tmp_path / str(dt), "ball-axisymmetric", **given, dt=dt).summary for dt in (0, 5e-6))
-    assert found["viscous_work"] == pytest.approx(fine["viscous_work"], rel=0.1) and not any(said.startswith("relaxation") for said in found["warnings"])
-    assert found["energy_final"] == pytest.approx(fine["energy_final"], abs=0.02 * fine["energy_initial"])
+    flags = {"law": "neohookean", "nu": 0.3, "speed": 6, "accuracy": 0.1, "relaxation_modulus": 2.7e6, "relaxation_time": 1e-4}
+    summary, fine = (disc(tmp_path / str(dt), "ball-axisymmetric", **flags, dt=dt).summary for dt in (0, 5e-6))
+    assert summary["viscous_work"] == pytest.approx(fine["viscous_work"], rel=0.1) and not any(warning.startswith("relaxation") for warning in summary["warnings"])
+    assert summary["energy_final"] == pytest.approx(fine["energy_final"], abs=0.02 * fine["energy_initial"])
 
 
 def scene(**more):
@@ -137,16 +137,16 @@ def test_a_body_has_the_viscosity_of_its_loss():
     assert assembly.assemble(read(made.used, ROOT, "scene")).data == made.data
 
 
-@pytest.mark.parametrize("flags, said", [({"viscosity": -1}, "viscosity: -1 is out of range"), ({"bulk_viscosity": "nan"}, "bulk_viscosity: 'nan' is not a number"),
-                                         ({"loss": 11}, "loss: 11 is out of range"), ({"loss": 0.1, "viscosity": 3}, "accepted: one of the two"),
-                                         ({"relaxation_modulus": 1e6}, "relaxation_time: 0 s with relaxation_modulus 1.*accepted: both above 0, or none"),
-                                         ({"relaxation_time": 1e-3}, "accepted: both above 0, or none")])
-def test_bad_values_are_refused(flags, said):
+@pytest.mark.parametrize("flags, message", [({"viscosity": -1}, "viscosity: -1 is out of range"), ({"bulk_viscosity": "nan"}, "bulk_viscosity: 'nan' is not a number"),
+                                            ({"loss": 11}, "loss: 11 is out of range"), ({"loss": 0.1, "viscosity": 3}, "accepted: one of the two"),
+                                            ({"relaxation_modulus": 1e6}, "relaxation_time: 0 s with relaxation_modulus 1.*accepted: both above 0, or none"),
+                                            ({"relaxation_time": 1e-3}, "accepted: both above 0, or none")])
+def test_bad_values_are_refused(flags, message):
     """Negative, invalid, too large or contradictory values give one line with what is accepted, for
     a disc and for a body."""
-    with pytest.raises(BadInput, match=said):
+    with pytest.raises(BadInput, match=message):
         describe(flags)
-    with pytest.raises(BadInput, match=said):
+    with pytest.raises(BadInput, match=message):
         assembly.assemble(read(scene(**flags), ROOT, "scene"))
 
 

@@ -22,8 +22,8 @@ RADIUS = 0.05
 
 def go(out, name: str, values: dict | None = None, mesh_file=None) -> tuple[pd.Series, run.Record]:
     values = values or {}
-    found = run.run(scene.load(name), values if mesh_file is None else COARSE | values, out, mesh_file=mesh_file, estimate=False)
-    return pd.read_csv(found.folder / "contacts.csv").iloc[0], found
+    result = run.run(scene.load(name), values if mesh_file is None else COARSE | values, out, mesh_file=mesh_file, estimate=False)
+    return pd.read_csv(result.folder / "contacts.csv").iloc[0], result
 
 
 @pytest.mark.few(1)
@@ -31,11 +31,11 @@ def go(out, name: str, values: dict | None = None, mesh_file=None) -> tuple[pd.S
 def test_spin_has_no_part_in_restitution(tmp_path, name, speed, spin):
     """For a round body without friction, approach and all three restitutions are those of the
     centre for any spin. The slip is that of the rim."""
-    row, found = go(tmp_path / "out", name, COARSE | {"speed": speed, "spin": spin, "height": 0.01})
-    e = found.summary["rebound_vy"] / speed
+    row, result = go(tmp_path / "out", name, COARSE | {"speed": speed, "spin": spin, "height": 0.01})
+    e = result.summary["rebound_vy"] / speed
     assert row.approach == pytest.approx(speed, rel=1e-9) and row.separation == pytest.approx(e * speed, rel=1e-6)
     assert [row.restitution, row.restitution_poisson, row.restitution_energetic] == pytest.approx([e, e, e], rel=1e-5)
-    assert found.summary["restitution"] == pytest.approx(row.restitution, rel=1e-9)
+    assert result.summary["restitution"] == pytest.approx(row.restitution, rel=1e-9)
     assert row.slip_before == pytest.approx(spin * RADIUS, rel=1e-3)
 
 
@@ -45,7 +45,7 @@ def test_spin_of_two_discs(tmp_path):
     text = (ROOT / "orchestrate/ffimpact/scenes/two-discs.toml").read_text().replace("friction_static = 0.3", "friction_static = 0")
     path = tmp_path / "spinning.toml"
     path.write_text("accuracy = 0.1\n" + text.replace("velocity = [3, 0]", "velocity = [3, 0]\nspin = 200").replace("velocity = [-3, 0]", "velocity = [-3, 0]\nspin = 150"))
-    row, found = go(tmp_path / "out", str(path), {"fields": 0})
+    row, result = go(tmp_path / "out", str(path), {"fields": 0})
     assert row.approach == pytest.approx(6 * math.sqrt(0.1**2 - 0.02**2) / 0.1, rel=2e-4)
     assert row.slip_before == pytest.approx(abs(6 * 0.2 - 350 * RADIUS), rel=2e-4)
 
@@ -53,9 +53,9 @@ def test_spin_of_two_discs(tmp_path):
 def test_no_reverse_slip_of_many_bodies(tmp_path):
     """A scene of bodies has no main direction: reverse slip is not measured and its entry is empty.
     """
-    _, found = go(tmp_path / "out", "two-discs", {"accuracy": 0.3, "fields": 0})
-    assert found.summary["sliding_time"] > 0 and found.summary["reverse_slip_time"] is None
-    assert "sliding_fraction" in found.history and "reverse_fraction" not in found.history
+    _, result = go(tmp_path / "out", "two-discs", {"accuracy": 0.3, "fields": 0})
+    assert result.summary["sliding_time"] > 0 and result.summary["reverse_slip_time"] is None
+    assert "sliding_fraction" in result.history and "reverse_fraction" not in result.history
 
 
 def test_circle_about_another_point(tmp_path):
@@ -83,10 +83,10 @@ BLOCK = '[[body]]\nname = "block"\nshape = "rectangle"\nwidth = 0.3\nheight = 0.
 ABOUT_AN_IMPACT = ("restitution", "restitution_tangential", "angle_out")
 
 
-def of(tmp_path, text: str, values: dict | None = None) -> tuple[pd.DataFrame, run.Record]:
+def simulate(tmp_path, text: str, values: dict | None = None) -> tuple[pd.DataFrame, run.Record]:
     (tmp_path / "given.toml").write_text(HEAD + text)
-    found = run.run(scene.load(str(tmp_path / "given.toml")), {"fields": 0} | (values or {}), tmp_path / "out", estimate=False)
-    return pd.read_csv(found.folder / "contacts.csv"), found
+    result = run.run(scene.load(str(tmp_path / "given.toml")), {"fields": 0} | (values or {}), tmp_path / "out", estimate=False)
+    return pd.read_csv(result.folder / "contacts.csv"), result
 
 
 def test_a_corner_has_the_normal_of_its_contact(tmp_path):
@@ -95,33 +95,33 @@ def test_a_corner_has_the_normal_of_its_contact(tmp_path):
 
     The approach velocity is the speed, and Newton's restitution equals Poisson's.
     """
-    rows, found = of(tmp_path, SQUARE.format(angle=45, y=0.0731, v=-2) + BLOCK)
+    rows, result = simulate(tmp_path, SQUARE.format(angle=45, y=0.0731, v=-2) + BLOCK)
     assert rows.approach[0] == pytest.approx(2, rel=1e-3) and rows.restitution[0] == pytest.approx(rows.restitution_poisson[0], rel=5e-3)
-    assert rows.restitution_energetic[0] == pytest.approx(rows.restitution_poisson[0], rel=5e-3) and found.summary["restitution"] == pytest.approx(rows.restitution[0])
+    assert rows.restitution_energetic[0] == pytest.approx(rows.restitution_poisson[0], rel=5e-3) and result.summary["restitution"] == pytest.approx(rows.restitution[0])
 
 
 def test_a_body_at_rest_has_no_restitution(tmp_path):
     """A square on the floor under its weight approaches with round-off and never leaves."""
-    rows, found = of(tmp_path, SQUARE.format(angle=0, y=0.05, v=-1e-13) + FLOOR, {"gravity": 9.81, "end_time": 0.01, "body.1.contact_mesh_size": 0.01})
+    rows, result = simulate(tmp_path, SQUARE.format(angle=0, y=0.05, v=-1e-13) + FLOOR, {"gravity": 9.81, "end_time": 0.01, "body.1.contact_mesh_size": 0.01})
     assert len(rows) == 1 and rows.loc[0, [*ABOUT_AN_IMPACT, "restitution_poisson", "restitution_energetic", "separation", "angle_in"]].isna().all()
-    assert all(found.summary[name] is None for name in (*ABOUT_AN_IMPACT, "angle_in")) and found.summary["impulse_ratio"] == 0
+    assert all(result.summary[name] is None for name in (*ABOUT_AN_IMPACT, "angle_in")) and result.summary["impulse_ratio"] == 0
 
 
 def test_two_corners_are_two_impacts(tmp_path):
     """A square lands on one corner, then on the other: each impact has its restitution, the run has
     none."""
-    rows, found = of(tmp_path, SQUARE.format(angle=20, y=0.08, v=-2) + FLOOR, {"end_time": 0.045})
-    assert 0.5 < rows.restitution[0] < 1 and rows.approach[1] > 0.3 and found.summary["restitution"] is found.summary["angle_out"] is None
+    rows, result = simulate(tmp_path, SQUARE.format(angle=20, y=0.08, v=-2) + FLOOR, {"end_time": 0.045})
+    assert 0.5 < rows.restitution[0] < 1 and rows.approach[1] > 0.3 and result.summary["restitution"] is result.summary["angle_out"] is None
 
 
 def test_a_head_on_hit_has_no_tangential_restitution(tmp_path):
     """In a central impact of two discs the meshes cause the slip. Without friction there is no
     tangential impulse, also if both drift."""
     discs = [DISC.format(name=name, x=x, v=v, across=40) for name, x, v in (("left", -0.0502, 3), ("right", 0.0502, -3))]
-    rows, found = of(tmp_path, "".join(discs), {"contact.friction_static": 0.3})
-    assert rows.restitution_tangential.isna().all() and found.summary["restitution_tangential"] is None and 0.5 < found.summary["restitution"] <= 1
-    assert found.summary["impulse_ratio"] < 1e-2 and found.summary["angular_momentum_drift"] < 1e-6
-    assert of(tmp_path, "".join(discs))[1].summary["impulse_ratio"] == 0
+    rows, result = simulate(tmp_path, "".join(discs), {"contact.friction_static": 0.3})
+    assert rows.restitution_tangential.isna().all() and result.summary["restitution_tangential"] is None and 0.5 < result.summary["restitution"] <= 1
+    assert result.summary["impulse_ratio"] < 1e-2 and result.summary["angular_momentum_drift"] < 1e-6
+    assert simulate(tmp_path, "".join(discs))[1].summary["impulse_ratio"] == 0
 
 
 @pytest.mark.parametrize("spin", [50, 60])
@@ -143,8 +143,8 @@ def test_reverse_slip_is_the_same_elsewhere(tmp_path):
     times = []
     for name, below in (("here", 0), ("lower", 5)):
         mesh.write(replace(here, points=here.points - [0, below]), tmp_path / f"{name}.msh")
-        found = go(tmp_path / name, "disc-normal", {"speed": 5, "angle": 50, "spin": 60, "friction_static": 0.5}, tmp_path / f"{name}.msh")[1]
-        times.append((found.summary["reverse_slip_time"], found.summary["sliding_time"]))
+        result = go(tmp_path / name, "disc-normal", {"speed": 5, "angle": 50, "spin": 60, "friction_static": 0.5}, tmp_path / f"{name}.msh")[1]
+        times.append((result.summary["reverse_slip_time"], result.summary["sliding_time"]))
     assert 0 < times[0][0] < 0.9 * times[0][1] and times[1] == pytest.approx(times[0], rel=1e-3)
 
 
@@ -152,7 +152,7 @@ def test_a_spin_about_x_strains_too(tmp_path):
     """The flight to contact is that of an unstressed body. The strain that its spin would cause is
     reported for any axis."""
     ball = {"shape": "ball", "radius": 0.05, "position": [0, 0.06, 0], "velocity": [0, -1, 0], "spin": [700, 0, 0], "mesh_size": 0.03, "contact_mesh_size": 0.02}
-    given = {"dimension": "3d", "law": "neohookean", "young": 7e6, "nu": 0.45, "density": 1722, "accuracy": 0.2, "degree": 1, "dt": 5e-5, "end_time": 0.0107,
-             "body": [ball], "obstacle": [{"kind": "plane", "point": [0, 0, 0], "normal": [0, 1, 0]}]}
-    found = run.run(read_scene(given, tmp_path, "ball"), {"fields": 0}, tmp_path / "out", estimate=False)
-    assert any(warning.startswith("flight: ") and "by 30 %" in warning for warning in found.summary["warnings"])
+    tables = {"dimension": "3d", "law": "neohookean", "young": 7e6, "nu": 0.45, "density": 1722, "accuracy": 0.2, "degree": 1, "dt": 5e-5, "end_time": 0.0107,
+              "body": [ball], "obstacle": [{"kind": "plane", "point": [0, 0, 0], "normal": [0, 1, 0]}]}
+    result = run.run(read_scene(tables, tmp_path, "ball"), {"fields": 0}, tmp_path / "out", estimate=False)
+    assert any(warning.startswith("flight: ") and "by 30 %" in warning for warning in result.summary["warnings"])

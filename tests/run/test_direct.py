@@ -37,14 +37,14 @@ def test_any_name_will_do(tmp_path, name):
     """Folders, meshes and checkpoints may have any name: the run works, and no command in a name is
     executed."""
     flags = ("-checkpoint_every", "5", "-fields", "2")
-    given = name if name != "-out" else "./-out"
-    assert call(*COARSE, *flags, "-out", given, cwd=tmp_path)[0::2] == (0, "")
+    path = name if name != "-out" else "./-out"
+    assert call(*COARSE, *flags, "-out", path, cwd=tmp_path)[0::2] == (0, "")
     assert RESULTS | {"fields.pvd", "fields/0000.vtu", "fields/0001.vtu", "fields/contact.csv",
                       "fields/contact.pvd", "fields/contact-0000.vtu", "fields/contact-0001.vtu"} == names(tmp_path / name)
     assert main(["evaluate", str(tmp_path / name)]) == 14      # there is nothing left to evaluate
     mesh.write(mesh.disc(0.05, 0.02, 0.01, True), tmp_path / name / "my.msh")
-    assert call(*COARSE, "-mesh", f"{given}/my.msh", "-out", "out", cwd=tmp_path)[0::2] == (0, "")
-    code, _, error = call(*COARSE, "-restart", f"{given}/x", "-out", "other", cwd=tmp_path)
+    assert call(*COARSE, "-mesh", f"{path}/my.msh", "-out", "out", cwd=tmp_path)[0::2] == (0, "")
+    code, _, error = call(*COARSE, "-restart", f"{path}/x", "-out", "other", cwd=tmp_path)
     assert code == 14 and error.count("\n") == 1 and "no such file" in error
     assert not list(tmp_path.rglob("pwned"))
 
@@ -132,16 +132,16 @@ def test_full_disk_of_its_own(tmp_path, files):
     assert set((tmp_path / "finished").read_text().split()) == {"scene.toml", "history.csv", "contacts.bin", "states.bin", "record.json"}
 
 
-@pytest.mark.parametrize("given", [
+@pytest.mark.parametrize("flags", [
     {"speed": ("+8", 8), "spin": ("-.5", -0.5), "fields": ("2e0", 2), "radius": ("5E-2", 0.05), "height": ("0.000", 0), "young": ("7e06", 7e6),
      "nu": ("00.1234567890123", 0.1234567890123), "checkpoint_every": ("1E3", 1000)},
     {"speed": (".5", 0.5), "spin": ("-00012.3456789", -12.3456789)}, {"speed": ("007", 7)}, {"speed": ("+007.1234567890123", 7.1234567890123)}])
-def test_numbers_are_written_as_toml(tmp_path, given):
+def test_numbers_are_written_as_toml(tmp_path, flags):
     """scene.toml has numbers of flags in TOML's format, to the last digit."""
-    assert call("-accuracy", "0.4", "-law", "neohookean", "-end_time", "1e-5", *freefem.words_of({name: text for name, (text, _) in given.items()}), "-out", "out",
+    assert call("-accuracy", "0.4", "-law", "neohookean", "-end_time", "1e-5", *freefem.words_of({name: text for name, (text, _) in flags.items()}), "-out", "out",
                 cwd=tmp_path)[0] == 0
-    found = tomllib.loads((tmp_path / "out/scene.toml").read_text())
-    assert {name: found[name] for name in given} == {name: value for name, (_, value) in given.items()}
+    values = tomllib.loads((tmp_path / "out/scene.toml").read_text())
+    assert {name: values[name] for name in flags} == {name: value for name, (_, value) in flags.items()}
 
 
 @pytest.mark.parametrize("script, accuracy", [("disc-plane", "0.01"), ("disc-block", "0.03")])

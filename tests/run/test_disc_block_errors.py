@@ -19,9 +19,9 @@ def test_checks_fail_on_a_run_that_is_wrong(monkeypatch, tmp_path, change, word,
     """Each check reports the run and the error, also for the reference. The page has the verdict on
     the requirement."""
     table = tables(monkeypatch, tmp_path, *[{}] * which, change)
-    said = block.violations(table)
-    assert any(word in sentence for sentence in said) if word else not said
-    assert all(("reference" if which == 2 else "accuracy 0.005") in sentence for sentence in said)
+    sentences = block.violations(table)
+    assert any(word in sentence for sentence in sentences) if word else not sentences
+    assert all(("reference" if which == 2 else "accuracy 0.005") in sentence for sentence in sentences)
     text = block.report(table, block.ask_peer([])[0], "ngsolve is not installed")
     assert "The reference has an error of its own" in text and ("the requirement FAILS" in text) == bool(word) and "Not run: ngsolve is not installed." in text
 

@@ -25,9 +25,9 @@ from tests.support.end_to_end import COARSE, call, direct
 
 @pytest.fixture(scope="module")
 def result(tmp_path_factory):
-    found = run.run(scene.load("disc-normal"), {}, tmp_path_factory.mktemp("real") / "disc-normal")
-    report.draw(found)
-    return found
+    record = run.run(scene.load("disc-normal"), {}, tmp_path_factory.mktemp("real") / "disc-normal")
+    report.draw(record)
+    return record
 
 
 def test_folder_holds_what_the_contract_says(result):
@@ -39,12 +39,12 @@ def test_folder_holds_what_the_contract_says(result):
 
 def test_scripts_describe_what_they_write(result):
     """The columns and numbers that the scripts describe are those of the files, in their order."""
-    told, written = describe_results(), json.loads((result.folder / "summary.json").read_text())
-    assert (result.folder / "history.csv").read_text().splitlines()[0].split(",") == told["columns"]
-    assert [key for key in written if key in told["summary"]] == told["summary"]
+    description, written = describe_results(), json.loads((result.folder / "summary.json").read_text())
+    assert (result.folder / "history.csv").read_text().splitlines()[0].split(",") == description["columns"]
+    assert [key for key in written if key in description["summary"]] == description["summary"]
     numbers = {key for key, value in written.items() if type(value) in (int, float)}
     # These come from other runs or from Python.
-    assert numbers - {"estimate_cpu_seconds", "refinements", "total_seconds"} <= set(told["summary"])
+    assert numbers - {"estimate_cpu_seconds", "refinements", "total_seconds"} <= set(description["summary"])
 
 
 def test_history_and_summary_agree(result):
@@ -83,8 +83,8 @@ def test_snapshots_can_be_read(result):
 def test_von_mises_stress_of_the_snapshots_is_that_of_their_stress(tmp_path, kernels):
     """At every node von_mises and pressure follow from cauchy_stress to the digits of the file,
     also on a coarse mesh."""
-    given = {"accuracy": 0.2, "fields": 4} | ({} if kernels else {"without": "kernels"})
-    result = run.run(scene.load("disc-normal"), given, tmp_path / "out", estimate=False)
+    values = {"accuracy": 0.2, "fields": 4} | ({} if kernels else {"without": "kernels"})
+    result = run.run(scene.load("disc-normal"), values, tmp_path / "out", estimate=False)
     for _, path in vtu.series(result.folder / "fields.pvd"):
         fields = vtu.read_parts(path)[3]
         xx, yy, zz, xy, yz, xz = fields["cauchy_stress"].T
@@ -102,7 +102,7 @@ def test_freefem_alone_gives_the_same(result, tmp_path):
     assert (tmp_path / "alone/history.csv").read_text() == (result.folder / "history.csv").read_text()
 
 
-def said(process: subprocess.CompletedProcess) -> list[str]:
+def messages_of(process: subprocess.CompletedProcess) -> list[str]:
     """The lines for the user in the output of a process."""
     return re.findall(r"^ffimpact: (.*)$", process.stdout + process.stderr, re.MULTILINE)
 
@@ -110,7 +110,7 @@ def said(process: subprocess.CompletedProcess) -> list[str]:
 def check_failure(process: subprocess.CompletedProcess, code: int, words: str) -> None:
     """Asserts the exit code and one line without a traceback."""
     assert process.returncode == code, process.stderr
-    assert len(said(process)) == 1 and re.search(words, said(process)[0]), process.stderr
+    assert len(messages_of(process)) == 1 and re.search(words, messages_of(process)[0]), process.stderr
     assert "Traceback" not in process.stderr
 
 
@@ -172,17 +172,17 @@ def test_missing_freefem_is_13(tmp_path, environment):
 
 # ---- sizes
 
-@pytest.mark.parametrize("given", [{}, {"friction_static": 0.3}, {"angle": 60, "exponent": 1.5, "spin": 20}, {"accuracy_of": "peak_force", "young": 2.1e11, "density": 7850},
-                                   {"mesh_size": 0.02}, {"speed": 0, "gravity": 9.81, "height": 0.01, "penalty": 1e9}], ids=lambda given: ",".join(given) or "default")
-def test_both_ways_choose_the_same_scene(tmp_path, given):
+@pytest.mark.parametrize("values", [{}, {"friction_static": 0.3}, {"angle": 60, "exponent": 1.5, "spin": 20}, {"accuracy_of": "peak_force", "young": 2.1e11, "density": 7850},
+                                    {"mesh_size": 0.02}, {"speed": 0, "gravity": 9.81, "height": 0.01, "penalty": 1e9}], ids=lambda values: ",".join(values) or "default")
+def test_both_ways_choose_the_same_scene(tmp_path, values):
     """Every parameter of a direct run, also the automatic ones, equals the description that Python
     gets. A run of the recorded scene is that scene."""
-    given = given | {"accuracy": 0.1, "end_time": 1e-6}
-    assert direct(*freefem.words_of(given | {"out": tmp_path})).returncode == 0
-    found, told = results.read_scene(tmp_path), describe(given)
-    assert found == {"script": "disc-plane"} | told["used"] and 0 not in (found["mesh_size"], found["contact_mesh_size"])
-    assert "auto" not in found.values() and told["half"] == (found["symmetry"] == "half")
-    assert describe(scene.load(str(tmp_path / "scene.toml")).values)["used"] == told["used"]
+    values = values | {"accuracy": 0.1, "end_time": 1e-6}
+    assert direct(*freefem.words_of(values | {"out": tmp_path})).returncode == 0
+    entries, description = results.read_scene(tmp_path), describe(values)
+    assert entries == {"script": "disc-plane"} | description["used"] and 0 not in (entries["mesh_size"], entries["contact_mesh_size"])
+    assert "auto" not in entries.values() and description["half"] == (entries["symmetry"] == "half")
+    assert describe(scene.load(str(tmp_path / "scene.toml")).values)["used"] == description["used"]
 
 
 def test_what_the_scripts_refuse_is_bad_input():
@@ -212,8 +212,8 @@ def test_a_step_far_too_large_for_friction_ends_early(tmp_path):
 
     The adaptive step of the same impact is smaller.
     """
-    given = ("-law", "neohookean", "-speed", "12", "-angle", "60", "-friction_static", "0.7", "-friction_dynamic", "0.5", "-slip_velocity", "0.1", "-penalty", "1e10")
-    process = direct(*given, "-dt", "4e-4", "-out", str(tmp_path / "out"))
+    flags = ("-law", "neohookean", "-speed", "12", "-angle", "60", "-friction_static", "0.7", "-friction_dynamic", "0.5", "-slip_velocity", "0.1", "-penalty", "1e10")
+    process = direct(*flags, "-dt", "4e-4", "-out", str(tmp_path / "out"))
     assert process.returncode == 11 and re.search(r"dt = 0.0004 s is too long for its friction, .* take dt = 0, or up to 0.00024\d+ s", process.stderr)
     assert process.stderr.count("\n") == 1 and json.loads((tmp_path / "out/failure.json").read_text())["steps"] < 6
 
@@ -227,26 +227,26 @@ def test_chatter_is_11_or_a_warning(tmp_path, how):
     The exit code is 11, or with chatter=continue the run finishes with a warning in the summary and
     in print, with and without Python.
     """
-    given = COARSE | {"penalty": "8.39e12", "dt": "4e-6", "chatter": how}
-    process = call(*(f"{name}={value}" for name, value in given.items()), out=tmp_path / "out")
-    plain = direct(*freefem.words_of(given | {"fields": 0, "out": tmp_path / "direct"}))
-    told = r"chatter: by t = \S+ s the body .* \d+ times in a row: .*penalty .*finer mesh"
+    flags = COARSE | {"penalty": "8.39e12", "dt": "4e-6", "chatter": how}
+    process = call(*(f"{name}={value}" for name, value in flags.items()), out=tmp_path / "out")
+    plain = direct(*freefem.words_of(flags | {"fields": 0, "out": tmp_path / "direct"}))
+    message = r"chatter: by t = \S+ s the body .* \d+ times in a row: .*penalty .*finer mesh"
     if how == "stop":
-        check_failure(process, 11, told + r" \(chatter=continue runs on\)")
+        check_failure(process, 11, message + r" \(chatter=continue runs on\)")
         assert json.loads((tmp_path / "out/failure.json").read_text())["status"] == "chatter"
         assert plain.returncode == 11
     else:
         assert process.returncode == plain.returncode == 0, process.stderr
         summary = results.read_summary(tmp_path / "out")
-        assert summary["status"] == "ok" and summary["message"] == "" and any(re.fullmatch(told, each) for each in summary["warnings"]) and summary["rebound_vy"] > 0
+        assert summary["status"] == "ok" and summary["message"] == "" and any(re.fullmatch(message, warning) for warning in summary["warnings"]) and summary["rebound_vy"] > 0
         assert "warning   chatter: " in process.stdout
-        assert any(re.fullmatch(told, each) for each in results.read_summary(tmp_path / "direct")["warnings"])
+        assert any(re.fullmatch(message, warning) for warning in results.read_summary(tmp_path / "direct")["warnings"])
 
 
 def test_every_number_of_a_run_has_a_unit_and_a_meaning(result):
     """Each key of the summary and each column of the tables that a run writes is one that the scripts explain (docs/reference/results.md)."""
-    told = {name for table in describe_results()["meanings"].values() for name in table}
-    assert set(result.summary) <= told, set(result.summary) - told
+    meanings = {name for table in describe_results()["meanings"].values() for name in table}
+    assert set(result.summary) <= meanings, set(result.summary) - meanings
     for name in ("history.csv", "contacts.csv", "fields/contact.csv"):
         columns = set((result.folder / name).read_text().partition("\n")[0].split(","))
-        assert columns <= told, columns - told
+        assert columns <= meanings, columns - meanings

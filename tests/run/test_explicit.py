@@ -26,24 +26,24 @@ def runs(tmp_path_factory, explicit):
     return {"implicit": disc(tmp_path_factory.mktemp("implicit"), **OBLIQUE), "explicit": explicit()}
 
 
-def parts(found) -> int:
-    return found.summary["residual_evaluations"]
+def parts(result) -> int:
+    return result.summary["residual_evaluations"]
 
 
-def conserves(found, drift: float) -> None:
-    assert found.summary["momentum_drift"] < 1e-12 and (found.summary["angular_momentum_drift"] or 0) < 1e-12
-    assert found.summary["energy_drift"] < drift
+def conserves(result, drift: float) -> None:
+    assert result.summary["momentum_drift"] < 1e-12 and (result.summary["angular_momentum_drift"] or 0) < 1e-12
+    assert result.summary["energy_drift"] < drift
 
 
 def test_explicit_steps_agree_with_the_conserving_ones(runs):
     """Impulse, rebound and friction work agree with the implicit run on the same mesh. Momenta are
     exact, and the small energy drift is reported."""
-    there, found = runs["implicit"].summary, runs["explicit"].summary
-    assert found["impulse"] == pytest.approx(there["impulse"], rel=0.002)
+    there, summary = runs["implicit"].summary, runs["explicit"].summary
+    assert summary["impulse"] == pytest.approx(there["impulse"], rel=0.002)
     for name, scale in (("rebound_vx", 12), ("rebound_vy", 12), ("rebound_spin", 12 / 0.05)):
-        assert found[name] == pytest.approx(there[name], abs=0.005 * scale), name
-    assert found["friction_work"] == pytest.approx(there["friction_work"], abs=0.005 * there["energy_initial"])
-    assert found["contact_time"] == pytest.approx(there["contact_time"], rel=0.03)
+        assert summary[name] == pytest.approx(there[name], abs=0.005 * scale), name
+    assert summary["friction_work"] == pytest.approx(there["friction_work"], abs=0.005 * there["energy_initial"])
+    assert summary["contact_time"] == pytest.approx(there["contact_time"], rel=0.03)
     conserves(runs["explicit"], 2e-4)
 
 
@@ -52,10 +52,10 @@ def test_explicit_steps_agree_with_the_conserving_ones(runs):
 def test_penalty_and_slip_velocity_do_not_set_the_step(runs, explicit, change):
     """Ten and a hundred times the penalty, and a tenth of slip_velocity, do not change the number
     of substeps."""
-    found = explicit(**change)
-    assert parts(found) == pytest.approx(parts(runs["explicit"]), rel=0.05)
-    assert found.summary["impulse"] == pytest.approx(runs["explicit"].summary["impulse"], rel=0.01)
-    conserves(found, 2e-3)
+    result = explicit(**change)
+    assert parts(result) == pytest.approx(parts(runs["explicit"]), rel=0.05)
+    assert result.summary["impulse"] == pytest.approx(runs["explicit"].summary["impulse"], rel=0.01)
+    conserves(result, 2e-3)
 
 
 @pytest.mark.robustness
@@ -67,29 +67,29 @@ def test_no_node_bounces_alone(runs, explicit, tmp_path):
     """
     there = disc(tmp_path / "implicit", **OBLIQUE | {"penalty": 1e11}).summary
     for penalty in (1e11, 1e13):
-        found = explicit(penalty=penalty)
+        result = explicit(penalty=penalty)
         for name, scale in (("rebound_vx", 12), ("rebound_vy", 12), ("rebound_spin", 12 / 0.05), ("friction_work", 2 * there["energy_initial"])):
-            assert found.summary[name] == pytest.approx(there[name], abs=0.005 * scale), name
-        conserves(found, 1e-3)
-        assert any(words.startswith("explicit penalty: ") for words in found.summary["warnings"])
+            assert result.summary[name] == pytest.approx(there[name], abs=0.005 * scale), name
+        conserves(result, 1e-3)
+        assert any(words.startswith("explicit penalty: ") for words in result.summary["warnings"])
     assert not any(words.startswith("explicit penalty: ") for words in runs["explicit"].summary["warnings"])
 
 
 def test_records_follow_the_accuracy(runs):
     """The number of recorded steps is that of an implicit run, whatever the substeps. Their forces
     add up to the impulse."""
-    found = runs["explicit"]
-    assert found.summary["steps"] < 1.5 * runs["implicit"].summary["steps"] and parts(found) > 5 * found.summary["steps"]
-    assert (found.history["dt"] * found.history["normal_force"]).sum() == pytest.approx(found.summary["impulse"], rel=1e-12)
+    result = runs["explicit"]
+    assert result.summary["steps"] < 1.5 * runs["implicit"].summary["steps"] and parts(result) > 5 * result.summary["steps"]
+    assert (result.history["dt"] * result.history["normal_force"]).sum() == pytest.approx(result.summary["impulse"], rel=1e-12)
 
 
 @pytest.mark.robustness
 def test_a_step_that_is_given_is_parted(runs, tmp_path):
     """`dt` is the recorded step. Contact times have the resolution of the substeps and hardly
     depend on `dt`."""
-    found = disc(tmp_path, **OBLIQUE | EXPLICIT | {"dt": 2e-5})
+    result = disc(tmp_path, **OBLIQUE | EXPLICIT | {"dt": 2e-5})
     for name in ("contact_start", "contact_time"):
-        assert found.summary[name] == pytest.approx(runs["explicit"].summary[name], rel=0.005, abs=1e-7), name
+        assert result.summary[name] == pytest.approx(runs["explicit"].summary[name], rel=0.005, abs=1e-7), name
 
 
 @pytest.mark.few(2)
@@ -102,11 +102,11 @@ def test_every_kind_of_scene_conserves(tmp_path, name, settings):
 
 def test_pairs_of_points_are_softened_too(tmp_path):
     """A penalty beyond what explicit steps take is the same one: with pairs of points as well, and the warning names the one in use and the requested one."""
-    found = {}
+    summaries = {}
     for penalty in (1e13, 1e14):
-        given = dict(script="disc-block", pairing="pairwise", pairing_range=0.02, radius=0.5, speed=5, accuracy=0.1, end_time=0.01, **EXPLICIT)
-        found[penalty] = disc(tmp_path / f"{penalty:g}", **given, penalty=penalty).summary
-        words, = (words for words in found[penalty]["warnings"] if words.startswith("explicit penalty: "))
+        flags = dict(script="disc-block", pairing="pairwise", pairing_range=0.02, radius=0.5, speed=5, accuracy=0.1, end_time=0.01, **EXPLICIT)
+        summaries[penalty] = disc(tmp_path / f"{penalty:g}", **flags, penalty=penalty).summary
+        words, = (words for words in summaries[penalty]["warnings"] if words.startswith("explicit penalty: "))
         assert f"in place of the requested {penalty:g} Pa/m".replace("e+", "e+") in words
-    one, other = found.values()
-    assert one["impulse"] == pytest.approx(other["impulse"], rel=1e-9) and one["impulse"] > 0
+    first, second = summaries.values()
+    assert first["impulse"] == pytest.approx(second["impulse"], rel=1e-9) and first["impulse"] > 0

@@ -31,7 +31,7 @@ def extended(tmp_path):
         for path, text in NEW.findall(section):
             (tmp_path / path).write_text(text)
         for change in re.findall(r"```diff\n(.*?)```", section, re.DOTALL):
-            go(tmp_path, "git", "apply", "-", given=change)
+            go(tmp_path, "git", "apply", "-", text=change)
         go(tmp_path, sys.executable, "-m", "ffimpact.input.flags")
         for command in re.findall(r"```sh\n(.*?)```", section, re.DOTALL):
             go(tmp_path, "sh", "-c", command)
@@ -39,9 +39,9 @@ def extended(tmp_path):
     return apply
 
 
-def go(folder: Path, *words: str, given: str | None = None) -> str:
+def go(folder: Path, *words: str, text: str | None = None) -> str:
     """The output of a command in the folder. Asserts that it succeeds."""
-    ended = subprocess.run(words, cwd=folder, input=given, capture_output=True, text=True, env=os.environ | {"GIT_CEILING_DIRECTORIES": str(folder.parent), "PYTHONPATH": str(folder / "orchestrate")})
+    ended = subprocess.run(words, cwd=folder, input=text, capture_output=True, text=True, env=os.environ | {"GIT_CEILING_DIRECTORIES": str(folder.parent), "PYTHONPATH": str(folder / "orchestrate")})
     assert ended.returncode == 0, ended.stderr
     return ended.stdout
 
@@ -78,8 +78,8 @@ def test_friction_law_has_its_closed_form(extended):
     folder = extended("A friction law")
     creeps = [list(map(float, line.split())) for line in go(folder, sys.executable, "creep.py").splitlines()]
     assert len(creeps) == 3
-    for found, exact in creeps:
-        assert found == pytest.approx(exact, rel=2e-3)
+    for creep, exact in creeps:
+        assert creep == pytest.approx(exact, rel=2e-3)
 
 
 def test_figure_is_drawn_and_encloses_what_translation_lost(extended):
@@ -102,8 +102,8 @@ def test_law_has_its_stress_its_tangent_and_its_energy(extended):
     l, mu, J = YOUNG * NU / ((1 + NU) * (1 - 2 * NU)), YOUNG / (2 * (1 + NU)), np.linalg.det(F)
     sigma = mu / J * (F @ F.T - np.eye(3)) + l / 2 * (J - 1 / J) * np.eye(3)
     write_fields(folder / "fields")
-    found = vtu.read(folder / "fields/fields/0000.vtu").fields["cauchy_stress"]
-    assert found == pytest.approx(np.tile(sigma[[0, 1, 2, 0, 1, 0], [0, 1, 2, 1, 2, 2]], (len(found), 1)), rel=1e-7)
+    stress = vtu.read(folder / "fields/fields/0000.vtu").fields["cauchy_stress"]
+    assert stress == pytest.approx(np.tile(sigma[[0, 1, 2, 0, 1, 0], [0, 1, 2, 1, 2, 2]], (len(stress), 1)), rel=1e-7)
     tangent = measured(folder, "tangent-disc", law="ciarlet", integrator="newmark", accuracy=0.1)
     assert tangent["tangent"] < 1e-6 and tangent["smallest"] < 0.6
     summary = run(folder, "disc-normal", "--set", "law=ciarlet", "accuracy=0.05")

@@ -98,7 +98,7 @@ def test_elements_in_two_groups_are_read_once_in_the_plane(tmp_path, side):
     once, twice = both
     assert len(once.triangles) == len(twice.triangles) and len(once.edges) == len(twice.edges)
     for label in np.unique(once.labels):
-        first, second = (each.points[each.edges[each.labels == label]] for each in both)
+        first, second = (part.points[part.edges[part.labels == label]] for part in both)
         assert len(first) == len(second)
         assert first.mean(axis=(0, 1)) == pytest.approx(second.mean(axis=(0, 1)), abs=1e-12)
 
@@ -146,10 +146,10 @@ def test_element_sizes_of_a_mesh_from_a_file_are_its_own(plane, key, value):
     body = {"name": "block", "shape": "mesh", "file": "all.msh", "position": [0, 0]}
     accepted = ("mesh_size, contact_mesh_size where gmsh makes the mesh: of a shape, or of a geometry, "
                 r"\.geo, \.step, \.stp")
-    said = f"^body.1.{key}: '{value}' .*accepted: {accepted}"
+    message = f"^body.1.{key}: '{value}' .*accepted: {accepted}"
     for make in (lambda: read(tables(body | {key: value}, BALL), plane, "x"),
                  lambda: read(tables(body, BALL), plane, "x").override({f"body.1.{key}": value})):
-        with pytest.raises(BadInput, match=said) as caught:
+        with pytest.raises(BadInput, match=message) as caught:
             make()
         assert caught.value.code == 10
     low = FLOOR | {"point": [0, -1]}
@@ -170,20 +170,20 @@ def test_element_sizes_of_a_mesh_file_on_the_plane(tmp_path, key):
     square = mesh.Mesh(corners, np.array([[0, 1, 2], [0, 2, 3]]), edges, np.ones(4, dtype=int))
     mesh.write(square, tmp_path / "m.msh")
     ask = {"mesh": str(tmp_path / "m.msh"), "radius": side / 2}
-    found = describe(ask)["used"][key]
-    assert found == pytest.approx(side / 2)  # at most the radius
-    assert describe(ask | {key: found})["used"][key] == found
-    said = f"^{key}: 0.01 for a mesh from a file, .*accepted: 0, or 0.025 as in the file"
-    with pytest.raises(BadInput, match=said):
+    size = describe(ask)["used"][key]
+    assert size == pytest.approx(side / 2)  # at most the radius
+    assert describe(ask | {key: size})["used"][key] == size
+    message = f"^{key}: 0.01 for a mesh from a file, .*accepted: 0, or 0.025 as in the file"
+    with pytest.raises(BadInput, match=message):
         describe(ask | {key: 0.01})
 
 
 # ---- boundaries that may come into contact
 
-def prepared(given: dict, folder, where) -> str:
+def prepared(entries: dict, folder, where) -> str:
     """The text of scene.toml of a run that is ready to start in `where`."""
     where.mkdir(parents=True, exist_ok=True)
-    return assembly.prepare(read(given, folder, "x"), where)[2]
+    return assembly.prepare(read(entries, folder, "x"), where)[2]
 
 
 def test_what_may_not_touch_is_refused_where_it_meets_a_plane(plane, tmp_path):
@@ -200,9 +200,9 @@ def test_what_may_not_touch_is_refused_where_it_meets_a_plane(plane, tmp_path):
     prepared(tables(lower, **falls), plane, tmp_path / "3")
     prepared(tables(upper, **falls | {"end_time": 0.01}), plane, tmp_path / "4")
     prepared(tables(upper | {"angle": 180}, **falls), plane, tmp_path / "5")
-    said = (r"^body.1.file: 'block' comes to 'floor' with \(.*, -0.1\) m, which is no contact boundary "
-            ".*accepted: a file whose label 1, or physical group 'contact'")
-    with pytest.raises(BadInput, match=said) as caught:
+    message = (r"^body.1.file: 'block' comes to 'floor' with \(.*, -0.1\) m, which is no contact boundary "
+               ".*accepted: a file whose label 1, or physical group 'contact'")
+    with pytest.raises(BadInput, match=message) as caught:
         prepared(tables(upper, **falls), plane, tmp_path / "6")
     assert caught.value.code == 10
 
@@ -225,9 +225,9 @@ def test_a_disc_from_a_file_is_not_turned(tmp_path):
     mesh.write(replace(m, labels=labels), tmp_path / "disc.msh")
     wall = {"kind": "plane", "point": [0.2, 0], "normal": [-1, 0]}
     body = {"shape": "mesh", "file": "disc.msh", "position": [0, 0], "angle": 90, "velocity": [1, 0]}
-    found = read(tables(body, obstacles=[wall]), tmp_path, "x")
-    assert found.bodies[0].outline.disc
-    assert approach.turned(found).bodies[0].angle == pytest.approx(math.pi / 2)
+    problem = read(tables(body, obstacles=[wall]), tmp_path, "x")
+    assert problem.bodies[0].outline.disc
+    assert approach.turned(problem).bodies[0].angle == pytest.approx(math.pi / 2)
     prepared(tables(body, obstacles=[wall]), tmp_path, tmp_path / "1")
     with pytest.raises(BadInput, match="^body.1.file: .* which is no contact boundary"):
         prepared(tables(body | {"angle": -90}, obstacles=[wall]), tmp_path, tmp_path / "2")
@@ -246,12 +246,12 @@ def test_what_sinks_is_named_and_meshes_of_files_are_not_to_be_resized(plane, tm
     top = {"obstacles": [peg], "end_time": 0.06}
     warned = {}
     for name in ("upper", "lower"):
-        given = read(tables(body | {"file": f"{name}.msh"}, **top), plane, name)
-        warned[name] = run.run(given, {}, tmp_path / name, estimate=False).summary["warnings"]
-    sunk, = (one for one in warned["upper"] if one.startswith("sinks: "))
+        problem = read(tables(body | {"file": f"{name}.msh"}, **top), plane, name)
+        warned[name] = run.run(problem, {}, tmp_path / name, estimate=False).summary["warnings"]
+    sunk, = (warning for warning in warned["upper"] if warning.startswith("sinks: "))
     assert re.match(r"sinks: block is up to 0\.\d+ m inside peg near X = \(.*\) m, at t = ", sunk)
-    assert not any(one.startswith("sinks") for one in warned["lower"])
-    assert any("a finer mesh in the file" in one for one in warned["upper"])
+    assert not any(warning.startswith("sinks") for warning in warned["lower"])
+    assert any("a finer mesh in the file" in warning for warning in warned["upper"])
     assert "contact_mesh_size" not in " ".join(warned["upper"] + warned["lower"])
 
 
@@ -270,13 +270,13 @@ def test_a_result_has_the_files_of_its_bodies(plane, tmp_path, name):
     write_step(folder / "part.step")
     shutil.copy(plane / "all.msh", folder)
     (folder / "merges.geo").write_text('Merge "part.step";\n')
-    given = solid(name)
+    entries = solid(name)
     if name == "all.msh":
-        body = given["body"][0] | {"position": [0, 0.1], "velocity": [0, -1]}
-        given = tables(body, obstacles=[FLOOR])
+        body = entries["body"][0] | {"position": [0, 0.1], "velocity": [0, -1]}
+        entries = tables(body, obstacles=[FLOOR])
     where = tmp_path / "results/run"
-    text = prepared(given, folder, where)
-    first = assembly.assemble(read(given, folder, "x"))
+    text = prepared(entries, folder, where)
+    first = assembly.assemble(read(entries, folder, "x"))
     (where / "scene.toml").write_text(text)
     assert str(tmp_path) not in text
     moved = tmp_path / "elsewhere/run"
@@ -308,7 +308,7 @@ def test_scene_and_sweep_with_a_byte_order_mark(tmp_path):
 def test_a_file_in_millimetres_has_a_scale(tmp_path):
     """In the plane, of revolution and in space, for meshes and geometries: body, circles, centre
     and element sizes are in m."""
-    disc, half = (mesh.disc(50, 20, 10, one) for one in (False, True))
+    disc, half = (mesh.disc(50, 20, 10, symmetric) for symmetric in (False, True))
     mesh.write(disc, tmp_path / "disc.msh")
     mesh.write(half, tmp_path / "half.msh")
     (tmp_path / "box.geo").write_text(BOX)
@@ -319,13 +319,13 @@ def test_a_file_in_millimetres_has_a_scale(tmp_path):
         gmsh.write(str(tmp_path / "box.msh"))
     body = {"shape": "mesh", "file": "disc.msh", "scale": 0.001, "position": [0, 0.06],
             "velocity": [0, -1]}
-    found = read(tables(body, obstacles=[FLOOR]), tmp_path, "x").bodies[0]
-    assert found.outline.disc[1] == pytest.approx(0.05, rel=1e-9)
-    assert np.ptp(found.mesh.points, axis=0) == pytest.approx([0.1, 0.1], rel=0.05)
-    assert abs(found.outline.disc[0]).max() < 1e-12
+    built_body = read(tables(body, obstacles=[FLOOR]), tmp_path, "x").bodies[0]
+    assert built_body.outline.disc[1] == pytest.approx(0.05, rel=1e-9)
+    assert np.ptp(built_body.mesh.points, axis=0) == pytest.approx([0.1, 0.1], rel=0.05)
+    assert abs(built_body.outline.disc[0]).max() < 1e-12
     revolved = body | {"file": "half.msh", "position": 0.06, "velocity": -1}
-    given = tables(revolved, obstacles=[FLOOR], dimension="axisymmetric")
-    built = assembly.assemble(read(given, tmp_path, "x"))
+    entries = tables(revolved, obstacles=[FLOOR], dimension="axisymmetric")
+    built = assembly.assemble(read(entries, tmp_path, "x"))
     assert np.ptp(built.mesh.points, axis=0) == pytest.approx([0.05, 0.1], rel=0.02)
     volumes = {}
     for name in ("box.msh", "box.geo"):
@@ -338,12 +338,12 @@ def test_a_file_in_millimetres_has_a_scale(tmp_path):
     assert used["scale"] == 0.001 and longest < 2 * used["mesh_size"] < 0.1
 
 
-@pytest.mark.parametrize("value, said", [
+@pytest.mark.parametrize("value, message", [
     (0, "body.1.scale: 0 is out of range (accepted: 1e-09 to 1e+09)"),
     (-1, "body.1.scale: -1 is out of range"), ("mm", "body.1.scale: 'mm' is not a number")])
-def test_a_scale_that_is_none_is_named(plane, value, said):
+def test_a_scale_that_is_none_is_named(plane, value, message):
     body = {"shape": "mesh", "file": "all.msh", "position": [0, 0.1], "scale": value}
-    with pytest.raises(BadInput, match="^" + re.escape(said)):
+    with pytest.raises(BadInput, match="^" + re.escape(message)):
         read(tables(body, obstacles=[FLOOR]), plane, "x")
 
 
@@ -353,10 +353,10 @@ def test_a_file_in_millimetres_without_a_scale_is_told_of_it(tmp_path):
     mesh.write(mesh.disc(60, 20, 10, False), tmp_path / "disc.msh")
     body = {"shape": "mesh", "file": "disc.msh", "position": [0, 0.06], "velocity": [0, -1]}
     for partner in ({"obstacles": [FLOOR]}, {"bodies": [BALL | {"position": [0, -0.05]}]}):
-        given = tables(body, *partner.pop("bodies", []), **partner)
-        said = r"body.1.position: .*overlaps.*120 m wide: other units\? body.1.scale = 0.001"
-        with pytest.raises(BadInput, match=said):
-            read(given, tmp_path, "x")
+        entries = tables(body, *partner.pop("bodies", []), **partner)
+        message = r"body.1.position: .*overlaps.*120 m wide: other units\? body.1.scale = 0.001"
+        with pytest.raises(BadInput, match=message):
+            read(entries, tmp_path, "x")
     disc = {"shape": "disc", "radius": 60, "position": [0, 0], "velocity": [0, -1]}
     for small in (body | {"scale": 0.01}, disc):
         with pytest.raises(BadInput, match="overlaps") as caught:

@@ -152,12 +152,12 @@ def test_bad_mesh_is_named_alike_on_both_ways(refused, fake, tmp_path, name):
     text, words = BAD[name]
     (tmp_path / "m.msh").write_text(text)
     started = spent()
-    said = refused(tmp_path / "m.msh", tmp_path / "out")
+    message = refused(tmp_path / "m.msh", tmp_path / "out")
     assert spent() - started < 1
-    assert said.startswith(f"mesh: {tmp_path}/m.msh: ") and words in said
+    assert message.startswith(f"mesh: {tmp_path}/m.msh: ") and words in message
     with pytest.raises(BadInput) as error:
         run.run(scene.load("disc-normal"), {"penalty": "auto"}, tmp_path / "out", mesh_file=tmp_path / "m.msh")
-    assert str(error.value) == said and fake.starts() == 0 and not (tmp_path / "out").exists()
+    assert str(error.value) == message and fake.starts() == 0 and not (tmp_path / "out").exists()
 
 
 def test_the_square_without_a_fault_is_accepted(tmp_path):
@@ -214,8 +214,8 @@ def test_any_outline_falls_and_bounces(tmp_path, draw, outline, size):
     assert areas(m).sum() == pytest.approx(size, rel=0.05)
     result = go(tmp_path / "out", m)
     h, s = result.history, result.summary
-    found = re.search(r"^outline: (.*)$", (result.folder / "log.txt").read_text(), re.MULTILINE)[1]
-    assert re.fullmatch(outline, found)
+    line = re.search(r"^outline: (.*)$", (result.folder / "log.txt").read_text(), re.MULTILINE)[1]
+    assert re.fullmatch(outline, line)
     # Circles are curved, other outlines are as in the mesh.
     exact = size if draw is ring else areas(m).sum()
     assert s["energy_initial"] == pytest.approx(DENSITY * exact * 4**2 / 2, rel=1e-4 if draw is ring else 1e-9)
@@ -248,21 +248,22 @@ def test_mesh_and_symmetry_have_to_agree(refused, fake, tmp_path, half, values, 
     """Half a mesh for a body without mirror symmetry, and a mesh that contradicts `symmetry`, are
     refused with and without Python."""
     mesh.write(mesh.disc(RADIUS, 0.015, 0.006, half), tmp_path / "m.msh")
-    said = refused(tmp_path / "m.msh", tmp_path / "out", *freefem.words_of(values))
-    assert words in said
+    message = refused(tmp_path / "m.msh", tmp_path / "out", *freefem.words_of(values))
+    assert words in message
     with pytest.raises(BadInput) as error:
         run.run(scene.load("disc-normal"), values, tmp_path / "out", mesh_file=tmp_path / "m.msh")
-    assert str(error.value) == said and fake.starts() == 0
+    assert str(error.value) == message and fake.starts() == 0
 
 
 def test_a_disc_of_another_size_has_its_own_penalty(tmp_path):
     """Without a radius the scene uses that of the mesh for the penalty. The run equals that with
     the prescribed radius."""
     mesh.write(moved(mesh.disc(0.2, 0.06, 0.02, False), 1, 1), tmp_path / "m.msh")
-    silent, told = (describe({"mesh": str(tmp_path / "m.msh"), "penalty": "auto"} | more)["used"] for more in ({}, {"radius": 0.2}))
-    assert silent["radius"] == pytest.approx(0.2, rel=1e-12)
-    for name in silent:
-        assert silent[name] == pytest.approx(told[name], rel=1e-9) if isinstance(silent[name], float) else silent[name] == told[name], name
+    automatic, explicit = (describe({"mesh": str(tmp_path / "m.msh"), "penalty": "auto"} | more)["used"] for more in ({}, {"radius": 0.2}))
+    assert automatic["radius"] == pytest.approx(0.2, rel=1e-12)
+    for name in automatic:
+        assert (automatic[name] == pytest.approx(explicit[name], rel=1e-9) if isinstance(automatic[name], float)
+                else automatic[name] == explicit[name]), name
 
 
 def test_coarse_circles_of_our_own_stay_round(tmp_path):
@@ -297,21 +298,22 @@ def test_edges_up_to_30_degrees_are_a_circle(tmp_path, angles, place, outline):
     """Consecutive edges that lie on a circle and span at most 30 degrees each are arcs. Longer
     ones, also flats among them, stay straight."""
     mesh.write(fan(angles, *place), tmp_path / "m.msh")
-    said = describe({"mesh": str(tmp_path / "m.msh")})
-    assert said["outline"] == outline
+    description = describe({"mesh": str(tmp_path / "m.msh")})
+    assert description["outline"] == outline
     chords = abs(np.diff([*angles, angles[0] + 2 * math.pi]))
-    assert [c < 0 for c in said["circle_of"]] == [chord > math.pi / 6 + 1e-9 or "circle" not in outline for chord in chords]
+    assert [c < 0 for c in description["circle_of"]] == [chord > math.pi / 6 + 1e-9 or "circle" not in outline for chord in chords]
 
 
 def test_another_mass_than_the_file_is_a_warning(tmp_path):
     """A disc of 24 sides is 1.2 % heavier than its file, which is a warning; one of 48 sides agrees
     to 0.3 % without a warning."""
-    for sides, said in ((24, True), (48, False)):
+    for sides, warns in ((24, True), (48, False)):
         m = fan(round_of(sides), 2, 0)
         result = go(tmp_path / str(sides), m, end_time=1e-4)
         assert result.summary["energy_initial"] == pytest.approx(DENSITY * math.pi * RADIUS**2 * 4**2 / 2, rel=1e-3)
-        warned = [one for one in result.summary["warnings"] if one.startswith("mass: the body has 1.2 % more than the mesh in its file")]
-        assert len(warned) == said and ("mass:" in str(result.summary["warnings"])) == said
+        warned = [warning for warning in result.summary["warnings"]
+                  if warning.startswith("mass: the body has 1.2 % more than the mesh in its file")]
+        assert len(warned) == warns and ("mass:" in str(result.summary["warnings"])) == warns
 
 
 @pytest.mark.few(1)

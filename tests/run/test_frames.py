@@ -17,44 +17,44 @@ ON_PLANE = MATERIAL | {"body": [{"shape": "rectangle", "width": 0.1, "height": 0
 FRAMES = {"at 60 m/s": {"drift": (48.0, -36.0)}, "turned and 1 km away": {"turn": 37.0, "shift": (800.0, -600.0)}}
 
 
-def seen(given: dict, turn: float = 0.0, drift=(0.0, 0.0), shift=(0.0, 0.0)) -> dict:
+def seen(tables: dict, turn: float = 0.0, drift=(0.0, 0.0), shift=(0.0, 0.0)) -> dict:
     """The tables of a scene rotated [deg], moved [m] and moving [m/s]. Discs, which look alike in
     all directions, keep their angle."""
     c, s = math.cos(math.radians(turn)), math.sin(math.radians(turn))
     R = np.array([[c, -s], [s, c]])
-    def moved(one: dict) -> dict:
-        places = {key: (R @ one[key] + shift).tolist() for key in ("position", "point") if key in one}
-        normal = {"normal": (R @ one["normal"]).tolist()} if "normal" in one else {}
-        angle = {"angle": one.get("angle", 0.0) + turn} if one.get("shape") == "rectangle" else {}
-        return one | places | normal | angle | {"velocity": (R @ one.get("velocity", (0.0, 0.0)) + drift).tolist()}
-    return given | {key: [moved(one) for one in given[key]] for key in ("body", "obstacle") if key in given}
+    def moved(table: dict) -> dict:
+        places = {key: (R @ table[key] + shift).tolist() for key in ("position", "point") if key in table}
+        normal = {"normal": (R @ table["normal"]).tolist()} if "normal" in table else {}
+        angle = {"angle": table.get("angle", 0.0) + turn} if table.get("shape") == "rectangle" else {}
+        return table | places | normal | angle | {"velocity": (R @ table.get("velocity", (0.0, 0.0)) + drift).tolist()}
+    return tables | {key: [moved(table) for table in tables[key]] for key in ("body", "obstacle") if key in tables}
 
 
-def told(given: dict, folder: Path) -> dict[str, float]:
-    summary = run(read(given, folder, "frames"), {"fields": 0}, folder).summary
+def numbers_of(tables: dict, folder: Path) -> dict[str, float]:
+    summary = run(read(tables, folder, "frames"), {"fields": 0}, folder).summary
     spins = {name: value for name, value in summary.items() if name.startswith("rebound_spin")}
     return {name: summary[name] for name in ANSWERS} | spins | {f"error of {name}": value for name, value in summary["estimated_error"].items()}
 
 
 @pytest.mark.few(1)
-@pytest.mark.parametrize("given", [scene.load("two-discs").content | {"accuracy": 0.1}, ON_PLANE], ids=["two discs", "a body on a plane"])
-def test_no_answer_and_no_stated_error_depends_on_the_frame(given, tmp_path):
+@pytest.mark.parametrize("tables", [scene.load("two-discs").content | {"accuracy": 0.1}, ON_PLANE], ids=["two discs", "a body on a plane"])
+def test_no_answer_and_no_stated_error_depends_on_the_frame(tables, tmp_path):
     """At 60 m/s, and rotated by 37 degrees at a distance of 1 km, a scene has the same results and
     error estimates as at rest, to 1e-3."""
-    at_rest = told(given, tmp_path / "at rest")
+    at_rest = numbers_of(tables, tmp_path / "at rest")
     assert at_rest["error of rebound"] > 0 and at_rest["friction_work"] > 0
     for name, frame in FRAMES.items():
-        assert told(seen(given, **frame), tmp_path / name) == pytest.approx(at_rest, rel=1e-3, abs=1e-9), name
+        assert numbers_of(seen(tables, **frame), tmp_path / name) == pytest.approx(at_rest, rel=1e-3, abs=1e-9), name
 
 
 def test_a_disc_is_meshed_finely_where_it_touches_whatever_its_angle(tmp_path):
     """A disc comes into contact with its lowest point. The angle in the scene has no effect."""
     from ffimpact.scenes import approach
     for angle in (0.0, 50.0):
-        found = approach.turned(read(seen(scene.load("two-discs").content | {"body": [one | {"angle": angle} for one in scene.load("two-discs").content["body"]]}), tmp_path, "x"))
-        met, = approach.meetings(found)
-        touching = found.bodies[0].position * 0 - met.normal
-        assert found.bodies[0].angle - math.pi / 2 == pytest.approx(math.atan2(touching[1], touching[0]), abs=1e-6)
+        problem = approach.turned(read(seen(scene.load("two-discs").content | {"body": [body | {"angle": angle} for body in scene.load("two-discs").content["body"]]}), tmp_path, "x"))
+        met, = approach.meetings(problem)
+        touching = problem.bodies[0].position * 0 - met.normal
+        assert problem.bodies[0].angle - math.pi / 2 == pytest.approx(math.atan2(touching[1], touching[0]), abs=1e-6)
         assert met.closing == pytest.approx(6 * math.sqrt(1 - 0.2**2), rel=1e-7) and met.sliding == pytest.approx(6 * 0.2, rel=1e-6)
 
 
@@ -64,24 +64,24 @@ SHAPES = [{"shape": "disc", "radius": 0.05}, {"shape": "ring", "radius": 0.05, "
 POWERS = {"position": 1, "velocity": 1, "radius": 1, "inner_radius": 1, "width": 1, "height": 1, "depth": 1, "vertices": 1, "gravity": 1, "young": -1, "density": -3}
 
 
-def in_unit(given: dict, metre: int) -> dict:
+def in_unit(tables: dict, metre: int) -> dict:
     """The same tables with a unit of length of which `metre` make a metre."""
     def times(value, factor: float):
-        return [times(one, factor) for one in value] if isinstance(value, list) else float(f"{value * factor:.12g}")
-    return {key: times(value, metre**POWERS[key]) if key in POWERS else value for key, value in given.items()}
+        return [times(component, factor) for component in value] if isinstance(value, list) else float(f"{value * factor:.12g}")
+    return {key: times(value, metre**POWERS[key]) if key in POWERS else value for key, value in tables.items()}
 
 
 @pytest.mark.few(2)
-@pytest.mark.parametrize("shape", SHAPES, ids=[one["shape"] for one in SHAPES])
+@pytest.mark.parametrize("shape", SHAPES, ids=[shape["shape"] for shape in SHAPES])
 def test_no_mesh_depends_on_the_unit_of_length(shape, tmp_path):
     """In metres, centimetres and millimetres a body has the same mesh except for round-off."""
     from ffimpact.scenes import approach, assembly
-    solid, found = shape["shape"] in ("box", "cylinder"), []
+    solid, node_sets = shape["shape"] in ("box", "cylinder"), []
     body = shape | {"position": [0.0, 0.07, 0.0][:3 if solid else 2], "velocity": [0.3, -2.0, 0.0][:3 if solid else 2]}
     floor = {"kind": "plane", "point": [0.0, 0.0, 0.0][:len(body["position"])], "normal": [0.0, 1.0, 0.0][:len(body["position"])]}
     for metre in (1, 100, 1000):
         tables = in_unit(MATERIAL | {"gravity": 9.81}, metre) | {"body": [in_unit(body, metre)], "obstacle": [floor], "dimension": "3d" if solid else "plane-strain"}
         tables = approach.turned(read(tables, tmp_path, "unit"))
-        found.append(assembly.assemble(tables, met=approach.meetings(tables)).mesh.points / metre)
-    assert found[1].shape == found[0].shape == found[2].shape
-    assert max(abs(one - found[0]).max() for one in found) < 1e-12
+        node_sets.append(assembly.assemble(tables, met=approach.meetings(tables)).mesh.points / metre)
+    assert node_sets[1].shape == node_sets[0].shape == node_sets[2].shape
+    assert max(abs(nodes - node_sets[0]).max() for nodes in node_sets) < 1e-12

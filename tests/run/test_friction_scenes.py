@@ -19,9 +19,9 @@ FRICTIONLESS = {"contact", "energies", "force", "shapes", "velocity"}
 @pytest.fixture(scope="module")
 def oblique(tmp_path_factory):
     """The oblique impact as the paper may have run it, with the real FreeFem++."""
-    found = run.run(scene.load("disc-oblique-svk"), {"fields": 5}, tmp_path_factory.mktemp("friction") / "oblique")
-    report.draw(found)
-    return found
+    result = run.run(scene.load("disc-oblique-svk"), {"fields": 5}, tmp_path_factory.mktemp("friction") / "oblique")
+    report.draw(result)
+    return result
 
 
 def test_oblique_impact_closes_its_balance(oblique):
@@ -44,7 +44,7 @@ def test_a_missing_picture_of_the_contact_is_named(oblique):
     picture = oblique.folder / "figures/contact.png"
     assert "no contact.png" not in report.report(oblique, verbose=True)
     kept = picture.rename(oblique.folder / "kept.png")
-    assert "no contact.png" in (said := report.report(oblique, verbose=True)) and "keeps more" in said
+    assert "no contact.png" in (text := report.report(oblique, verbose=True)) and "keeps more" in text
     kept.rename(picture)
 
 
@@ -81,8 +81,8 @@ def test_report_tells_sliding_from_sticking(oblique):
 def test_report_tells_breakdown_and_unsolved_jumps(oblique):
     """Unsolved jumps are reported in plain words, and place and time of a breakdown in mm and ms.
     """
-    told = oblique.summary | {"unsolved_jumps": 7, "breakdown_time": 1.5e-3, "breakdown_x": 0.01, "breakdown_y": 0.002}
-    text = report.report(results.Record(oblique.folder, told, reused=False), verbose=True)
+    summary = oblique.summary | {"unsolved_jumps": 7, "breakdown_time": 1.5e-3, "breakdown_x": 0.01, "breakdown_y": 0.002}
+    text = report.report(results.Record(oblique.folder, summary, reused=False), verbose=True)
     assert "7 steps of points in a jump of the friction law" in text
     for line in (r"det F <= 0 from +1\.5 ms", r"there X = +10 mm", r"there Y = +2 mm"):
         assert re.search(line, text)

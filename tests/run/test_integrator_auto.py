@@ -23,12 +23,12 @@ def test_the_cheaper_one_is_taken_and_said(tmp_path, script, flags, chosen, why)
     The summary and the scene as used have the integrator, `skipped` has the reason, and the run
     equals that of this integrator to round-off.
     """
-    found = disc(tmp_path / "auto", script, **flags)
-    assert found.summary["integrator"] == chosen == results.read_scene(tmp_path / "auto")["integrator"]
-    assert any(words.startswith(why) for words in found.summary["skipped"])
+    result = disc(tmp_path / "auto", script, **flags)
+    assert result.summary["integrator"] == chosen == results.read_scene(tmp_path / "auto")["integrator"]
+    assert any(words.startswith(why) for words in result.summary["skipped"])
     named = disc(tmp_path / "named", script, **flags | {"integrator": chosen})
     for name, column in named.history.items():
-        assert found.history[name] == pytest.approx(column, rel=0, abs=1e-10 * max(abs(column))), name
+        assert result.history[name] == pytest.approx(column, rel=0, abs=1e-10 * max(abs(column))), name
 
 
 def test_parts_are_dearer_between_bodies(tmp_path):
@@ -37,16 +37,16 @@ def test_parts_are_dearer_between_bodies(tmp_path):
     Two discs take implicit steps for a number of substeps for which a disc on a plane takes
     explicit ones.
     """
-    found = run.run(scene.load("two-discs"), {"integrator": "auto", "accuracy": 0.02, "contact.friction_static": 0.0}, tmp_path, estimate=False).summary
-    parts = int(next(words for words in found["skipped"] if "explicit parts" in words).split("takes ")[1].split()[0])
-    assert found["integrator"] == "energy-momentum" and parts < found["dofs"]**0.4
+    summary = run.run(scene.load("two-discs"), {"integrator": "auto", "accuracy": 0.02, "contact.friction_static": 0.0}, tmp_path, estimate=False).summary
+    parts = int(next(words for words in summary["skipped"] if "explicit parts" in words).split("takes ")[1].split()[0])
+    assert summary["integrator"] == "energy-momentum" and parts < summary["dofs"]**0.4
 
 
 def test_the_count_of_parts_is_that_of_the_run(tmp_path):
     """The choice uses the number of substeps of a step, for half and quarter bodies as for whole
     ones."""
     for script, accuracy in (("ball-plane", 0.02), ("disc-plane", 0.005), ("ball-axisymmetric", 0.005)):
-        found = disc(tmp_path / script, script, **BALL | {"accuracy": accuracy})
-        said = next(words for words in found.summary["skipped"] if "explicit parts" in words)
-        parts = found.history["newton_iterations"].max()
-        assert int(said.split("takes ")[1].split()[0]) == pytest.approx(parts, abs=1), script
+        result = disc(tmp_path / script, script, **BALL | {"accuracy": accuracy})
+        sentence = next(words for words in result.summary["skipped"] if "explicit parts" in words)
+        parts = result.history["newton_iterations"].max()
+        assert int(sentence.split("takes ")[1].split()[0]) == pytest.approx(parts, abs=1), script

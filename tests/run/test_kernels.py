@@ -87,8 +87,8 @@ def test_forces_and_tangent_are_those_of_the_scripts(body, flags):
 
     verification/test_residual_and_tangent.py has further cases.
     """
-    given = {"nu": 0.3, "integrator": "energy-momentum"} | COARSE[body] | flags
-    kernels_are_the_scripts(measure(f"tangent-{body}", **given))
+    values = {"nu": 0.3, "integrator": "energy-momentum"} | COARSE[body] | flags
+    kernels_are_the_scripts(measure(f"tangent-{body}", **values))
 
 
 @pytest.mark.parametrize("integrator", ["newmark", "energy-momentum"])

@@ -21,11 +21,11 @@ def test_histories_are_those_of_the_scripts(tmp_path, name):
     Both stop where the relative work of the residual is below the tolerance. The error of a
     displacement is then below the square root of the tolerance.
     """
-    one, other = (run.run(scene.load(name), COARSE | RUNS[name] | {"without": without}, tmp_path / without, estimate=False) for without in ("none", "kernels"))
-    if not one.summary["kernels"]:
+    kernels, scripts = (run.run(scene.load(name), COARSE | RUNS[name] | {"without": without}, tmp_path / without, estimate=False) for without in ("none", "kernels"))
+    if not kernels.summary["kernels"]:
         pytest.skip("no compiler here")
-    assert one.summary["steps"] == other.summary["steps"] and one.summary["energy_drift"] < 1e-11
-    for column in set(one.history) - {"newton_iterations", "balance"}:
+    assert kernels.summary["steps"] == scripts.summary["steps"] and kernels.summary["energy_drift"] < 1e-11
+    for column in set(kernels.history) - {"newton_iterations", "balance"}:
         # A sum over bodies may be 0.
-        largest = max(np.abs(values).max() for also, values in other.history.items() if also.startswith(column))
-        np.testing.assert_allclose(one.history[column], other.history[column], rtol=0, atol=COARSE["tolerance"]**0.5 * largest, err_msg=column)
+        largest = max(np.abs(values).max() for also, values in scripts.history.items() if also.startswith(column))
+        np.testing.assert_allclose(kernels.history[column], scripts.history[column], rtol=0, atol=COARSE["tolerance"]**0.5 * largest, err_msg=column)

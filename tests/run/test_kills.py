@@ -50,14 +50,14 @@ MORE = [(route, number, receiver, point if "checkpoints" in route else EARLY, Fa
 
 
 def command(route: str, out: Path, speed: str = "8", **changed: str) -> list[str]:
-    given = COARSE | {"speed": speed} | changed | ({"checkpoint_every": "10"} if "checkpoints" in route else {})
+    values = COARSE | {"speed": speed} | changed | ({"checkpoint_every": "10"} if "checkpoints" in route else {})
     if route == "sweep":
         file = out.parent / "case.toml"
         file.write_text(SWEEP if speed == "8" else SWEEP.replace("0.4", "0.3"))
         return [sys.executable, "-m", "ffimpact", "sweep", str(file), "--out", str(out)]
     if route.startswith("direct"):
-        return freefem.find().words("edp/disc-plane.edp", *freefem.words_of(given | {"out": out}))
-    return [sys.executable, "-m", "ffimpact", "run", "disc-normal", "--quiet", "--set", *(f"{name}={value}" for name, value in given.items()), "--out", str(out)]
+        return freefem.find().words("edp/disc-plane.edp", *freefem.words_of(values | {"out": out}))
+    return [sys.executable, "-m", "ffimpact", "run", "disc-normal", "--quiet", "--set", *(f"{name}={value}" for name, value in values.items()), "--out", str(out)]
 
 
 def start(words: list[str]) -> subprocess.Popen:
@@ -67,9 +67,9 @@ def start(words: list[str]) -> subprocess.Popen:
 
 def finish(words: list[str]) -> str:
     process = start(words)
-    said, error = process.communicate(timeout=120)
+    output, error = process.communicate(timeout=120)
     assert process.returncode == 0, error
-    return said
+    return output
 
 
 def freefems(out: Path) -> list[int]:
@@ -111,10 +111,10 @@ def stop_at(point: str, process: subprocess.Popen, out: Path) -> list[int]:
     while not holds(out.parent, point):
         assert process.poll() is None and time.monotonic() < end, f"no {point}"
     stopped = set()
-    while found := set(freefems(out)) - stopped:
-        for pid in found:
+    while pids := set(freefems(out)) - stopped:
+        for pid in pids:
             send(pid, signal.SIGSTOP)
-        stopped |= found
+        stopped |= pids
     assert freefems(out), f"it ended behind {point}"
     # Also a command of FreeFem++ that now has another name.
     return sorted(stopped)
@@ -178,13 +178,13 @@ def test_kill(shelf, tmp_path, route, number, receiver, point, before):
         assert earlier in (content(out), content(tmp_path / "out.1"))
     kept = {path: path.read_bytes() for path in out.glob("runs/*/summary.json") if path.parent.suffix != ".part"}
     assert all((path.parent / "history.csv").exists() for path in kept)
-    left = (tmp_path / "out.part/checkpoint").exists()
+    has_checkpoint = (tmp_path / "out.part/checkpoint").exists()
     if not (route.startswith("direct") and (out / "record.json").exists()):   # a direct run that had ended is not repeated
         finish(words)
     assert answers(route, out) == expected
     # Finished runs were reused.
     assert all(path.read_bytes() == text for path, text in kept.items())
-    if left:  # the run continues
+    if has_checkpoint:  # the run continues
         assert read_summary(out)["resumed_at"] > 0
     if before:
         assert content(tmp_path / "out.1") == earlier

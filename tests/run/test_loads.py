@@ -65,8 +65,8 @@ def test_a_constant_pressure_around_a_body_has_no_resultant(tmp_path):
 def frequency(t: np.ndarray, values: np.ndarray, guess: float) -> float:
     """The angular frequency [rad/s] of the oscillation with its second harmonic that fits the
     values best."""
-    def off(one: np.ndarray) -> np.ndarray:
-        matrix = np.column_stack([np.ones_like(t), *(turn(k * one[0] * t) for k in (1, 2) for turn in (np.cos, np.sin))])
+    def off(frequencies: np.ndarray) -> np.ndarray:
+        matrix = np.column_stack([np.ones_like(t), *(turn(k * frequencies[0] * t) for k in (1, 2) for turn in (np.cos, np.sin))])
         return (matrix @ np.linalg.lstsq(matrix, values, rcond=None)[0] - values) / abs(values).max()
 
     return float(least_squares(off, [guess], x_scale=[guess]).x[0])

@@ -64,12 +64,12 @@ def by_process(words: str, *arguments: str | bytes, code: int = 10) -> None:
 def test_value_of_a_flag(name, value):
     """A value that FreeFem++ does not accept as a flag gives Python's message without suggestions,
     with what is accepted."""
-    said = directly(f"{name}: ", f"-{name}", value, "-out", "a/out")
+    message = directly(f"{name}: ", f"-{name}", value, "-out", "a/out")
     # The bound of nu depends on the law; the other one has a message of its own.
     if (name, value) not in (("nu", "0.5"), ("checkpoint_every", "-1")):
         with pytest.raises(BadInput) as error:
             parameters.check({name: value})
-        assert said == re.sub(r"; did you mean [^?]*\?", "", str(error.value)) and said.endswith(f"(accepted: {parameters.PARAMETERS[name].accepted})")
+        assert message == re.sub(r"; did you mean [^?]*\?", "", str(error.value)) and message.endswith(f"(accepted: {parameters.PARAMETERS[name].accepted})")
 
 
 @pytest.mark.few(3)
@@ -87,10 +87,10 @@ def test_name(capsys, name):
 def test_values_that_do_not_go_together(capsys, words):
     """Contradictory or impossible values, by all three interfaces. The folders made for the run are
     removed."""
-    given = SENSELESS[words]
-    by_python(capsys, words, "run", "disc-normal", "--set", *(f"{name}={value}" for name, value in given.items()), "--out", "a/b/out")
-    directly(words, *freefem.words_of(given), "-out", "a/b/out")
-    in_a_scene(capsys, words, "".join(f"{name} = {toml(value)}\n" for name, value in given.items()))
+    values = SENSELESS[words]
+    by_python(capsys, words, "run", "disc-normal", "--set", *(f"{name}={value}" for name, value in values.items()), "--out", "a/b/out")
+    directly(words, *freefem.words_of(values), "-out", "a/b/out")
+    in_a_scene(capsys, words, "".join(f"{name} = {toml(value)}\n" for name, value in values.items()))
 
 
 ENTRIES = ("title", "dimension", "young", "script", "body", "obstacle", "contact", "body.1.shape", "body.1.name", "body.1.radius", "body.1.position", "body.1.velocity",

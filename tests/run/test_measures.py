@@ -59,21 +59,21 @@ def test_what_is_saved_changes_no_answer(tmp_path_factory, instead):
 def test_one_impact_in_other_units_and_materials(tmp_path, world):
     """V19: with automatic penalty and sizes the dimensionless results depend on v/c, nu and law
     only, to 1e-6."""
-    paper, found = {"young": 7e6, "density": 1722.0, "radius": 0.05}, []
-    for name, each in (("paper", paper), ("other", world)):
-        c = (each["young"] / each["density"]) ** 0.5
-        impulse, rebound = answers(tmp_path / name, law="svk", nu=0.45, accuracy=0.02, penalty="auto", speed=8 / 63.757559 * c, **each)
-        found.append([impulse / (each["density"] * each["radius"] ** 2 * c), rebound / c])
-    assert found[1] == pytest.approx(found[0], rel=1e-6)
+    paper, ratios = {"young": 7e6, "density": 1722.0, "radius": 0.05}, []
+    for name, material in (("paper", paper), ("other", world)):
+        c = (material["young"] / material["density"]) ** 0.5
+        impulse, rebound = answers(tmp_path / name, law="svk", nu=0.45, accuracy=0.02, penalty="auto", speed=8 / 63.757559 * c, **material)
+        ratios.append([impulse / (material["density"] * material["radius"] ** 2 * c), rebound / c])
+    assert ratios[1] == pytest.approx(ratios[0], rel=1e-6)
 
 
-@pytest.mark.parametrize("without, said", [("flight", "flight before touch"), ("friction", "friction"), ("body-force", "body force")])
-def test_what_is_left_out_is_not_called_skipped(tmp_path, without, said):
+@pytest.mark.parametrize("without, effect", [("flight", "flight before touch"), ("friction", "friction"), ("body-force", "body force")])
+def test_what_is_left_out_is_not_called_skipped(tmp_path, without, effect):
     """`skipped` in the summary lists only effects that a run really skipped."""
     settings = {"accuracy": 0.2, "height": 1e-3, "end_time": 5e-4}
     full, left_out = (run.run(scene.load("disc-normal"), settings | {"without": word, "fields": 0}, tmp_path / word, estimate=False)
                       for word in ("none", without))
-    assert said in full.summary["skipped"] and said not in left_out.summary["skipped"]
+    assert effect in full.summary["skipped"] and effect not in left_out.summary["skipped"]
     assert left_out.summary["energy_drift"] < 1e-9
 
 

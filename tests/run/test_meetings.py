@@ -25,8 +25,8 @@ def peg(radius: float, kind: str = "circle", axes: int = 2) -> dict:
     return {"name": "peg", "kind": kind, "centre": [0, 0.015 - radius, 0][:axes], "radius": radius}
 
 
-def said(found: run.Record, name: str) -> list[str]:
-    return [one for one in found.summary["warnings"] if one.startswith(name + ": ")]
+def warnings_of(result: run.Record, name: str) -> list[str]:
+    return [warning for warning in result.summary["warnings"] if warning.startswith(name + ": ")]
 
 
 @pytest.mark.few(1)
@@ -43,45 +43,46 @@ def test_the_peak_of_a_face_that_strikes_flat_is_named(tmp_path, change):
     if "radius" in change:
         block = {"velocity": block["velocity"]}
     stiff = {} if "radius" in change else {"contact": {"penalty": 1e13}}
-    found = go(tmp_path, block | change, FLOOR, accuracy=0.02, density=1000, **stiff)
-    warned, (flat, *_) = said(found, "peak force"), [*said(found, "peak force"), ""]
-    assert not said(found, "corner") and bool(warned) == ("radius" not in change)
+    result = go(tmp_path, block | change, FLOOR, accuracy=0.02, density=1000, **stiff)
+    warned, (flat, *_) = warnings_of(result, "peak force"), [*warnings_of(result, "peak force"), ""]
+    assert not warnings_of(result, "corner") and bool(warned) == ("radius" not in change)
     if warned:
         speed = -(block | change)["velocity"][1]
         exact = 0.2 * speed * math.sqrt(1000 * 7e6 * 0.7 / (1.3 * 0.4))
-        assert float(re.search(r"is at most (\S+) N/m", flat)[1]) == pytest.approx(exact, rel=0.2) and found.summary["peak_force"] > 1.8 * exact
+        assert float(re.search(r"is at most (\S+) N/m", flat)[1]) == pytest.approx(exact, rel=0.2) and result.summary["peak_force"] > 1.8 * exact
         (tmp_path / "open").mkdir()
         open_one = go(tmp_path / "open", block | change, FLOOR, accuracy=0.02, density=1000)
-        assert open_one.summary["peak_force"] == pytest.approx(exact, rel=0.2) and not said(open_one, "peak force")
+        assert open_one.summary["peak_force"] == pytest.approx(exact, rel=0.2) and not warnings_of(open_one, "peak force")
 
 
 def test_a_normal_impact_does_not_creep(tmp_path):
     """Round-off moves a body along the plane, and its points less: there is no creep."""
-    assert not said(go(tmp_path, DISC | {"position": [0, 0.0501]}, FLOOR, accuracy=0.02, contact={"friction_static": 0.3}), "creep")
+    assert not warnings_of(go(tmp_path, DISC | {"position": [0, 0.0501]}, FLOOR, accuracy=0.02, contact={"friction_static": 0.3}), "creep")
 
 
 def test_what_turns_strikes_by_its_spin(tmp_path):
     """A rod that spins towards a peg strikes it with the velocity of its contact point."""
     rod = {"name": "rod", "shape": "rectangle", "width": 0.4, "height": 0.02, "position": [0, 0], "spin": 50}
-    one, = [each for each in approach.meetings(scene(rod, {"name": "peg", "kind": "circle", "centre": [0.15, 0.06], "radius": 0.01})) if each.time < 0.01][:1]
-    assert 0.15 * 50 < one.closing < 0.17 * 50 and one.time == pytest.approx(0.0051, abs=3e-4)
+    first, = [pair for pair in approach.meetings(scene(rod, {"name": "peg", "kind": "circle", "centre": [0.15, 0.06], "radius": 0.01})) if pair.time < 0.01][:1]
+    assert 0.15 * 50 < first.closing < 0.17 * 50 and first.time == pytest.approx(0.0051, abs=3e-4)
 
 
 @pytest.mark.parametrize("radius", [0.01, 0.0025, *(pytest.param(radius, marks=pytest.mark.robustness) for radius in (0.005, 0.001))])
 def test_a_disc_rebounds_from_a_peg(tmp_path, radius):
     """A disc of 50 mm at 3 m/s gets 80 N s/m from a peg of any radius: elements and automatic
     penalty follow the smaller radius."""
-    found = go(tmp_path, DISC, peg(radius))
-    assert MASS * (found.summary["rebound_vy"] + 3) == pytest.approx(80.3, abs=0.8)
-    assert not said(found, "small obstacle") and not said(found, "penetration") and found.summary["max_penetration"] < 0.05 * radius
+    result = go(tmp_path, DISC, peg(radius))
+    assert MASS * (result.summary["rebound_vy"] + 3) == pytest.approx(80.3, abs=0.8)
+    assert not warnings_of(result, "small obstacle") and not warnings_of(result, "penetration")
+    assert result.summary["max_penetration"] < 0.05 * radius
 
 
 def test_steps_do_not_pass_a_peg(tmp_path):
     """The flight is integrated in steps of three diameters of the peg. Contact begins when the disc
     reaches it."""
-    found = go(tmp_path, DISC | {"position": [0, 0.085]}, peg(0.0002), without="flight", accuracy=0.4, end_time=0.00675)
-    assert 3 * found.history["dt"].max() > 0.0012 and found.summary["contact_start"] == pytest.approx(0.02 / 3, rel=5e-3)
-    assert found.summary["max_penetration"] < 1e-5
+    result = go(tmp_path, DISC | {"position": [0, 0.085]}, peg(0.0002), without="flight", accuracy=0.4, end_time=0.00675)
+    assert 3 * result.history["dt"].max() > 0.0012 and result.summary["contact_start"] == pytest.approx(0.02 / 3, rel=5e-3)
+    assert result.summary["max_penetration"] < 1e-5
 
 
 def test_a_peg_between_the_points_is_measured_and_named(tmp_path):
@@ -91,9 +92,9 @@ def test_a_peg_between_the_points_is_measured_and_named(tmp_path):
     beside it.
     """
     coarse = DISC | FLAT | {"position": [0.004, 0.0651]}
-    found = go(tmp_path, coarse, [FLOOR | {"point": [0, -1]}, peg(0.001)], end_time=0.01)
-    assert found.summary["max_penetration"] == pytest.approx(0.03, abs=0.003)
-    (small,), (deep,) = said(found, "small obstacle"), said(found, "penetration")
+    result = go(tmp_path, coarse, [FLOOR | {"point": [0, -1]}, peg(0.001)], end_time=0.01)
+    assert result.summary["max_penetration"] == pytest.approx(0.03, abs=0.003)
+    (small,), (deep,) = warnings_of(result, "small obstacle"), warnings_of(result, "penetration")
     assert small.startswith("small obstacle: disc and peg ") and "radius is 0.001 m" in small and "disc and peg overlap" in deep
 
 
@@ -101,26 +102,26 @@ def test_a_spike_is_measured_and_named(tmp_path):
     """A corner without rounding is not resolved by any elements: a warning reports it, and the
     depth is that of the corner, not of the contact points beside it."""
     spike = {"name": "spike", "kind": "polyline", "closed": True, "vertices": [[0, 0.015], [0.01, -0.1], [-0.01, -0.1]]}
-    found = go(tmp_path, DISC | {"position": [0.004, 0.0661]}, spike, end_time=0.002)
-    (sentence,) = said(found, "sharp corner")
-    assert sentence.startswith("sharp corner: disc and spike ") and found.summary["max_penetration"] > 0.004
+    result = go(tmp_path, DISC | {"position": [0.004, 0.0661]}, spike, end_time=0.002)
+    (sentence,) = warnings_of(result, "sharp corner")
+    assert sentence.startswith("sharp corner: disc and spike ") and result.summary["max_penetration"] > 0.004
 
 
 def test_a_square_touches_with_its_corner_when_it_does(tmp_path):
     """Contact begins when the corner reaches the floor, not when the first point inside an edge
     does. The penetration is that of the corner."""
     square = {"name": "square", "shape": "rectangle", "width": 0.1, "height": 0.1, "angle": 45, "position": [0, 0.075], "velocity": [0, -2]}
-    found = go(tmp_path, square | FLAT, FLOOR, end_time=0.004)
-    assert found.summary["contact_start"] == pytest.approx((0.075 - 0.05 * math.sqrt(2)) / 2, rel=1e-9)
-    assert found.summary["max_penetration"] > 1e-4
+    result = go(tmp_path, square | FLAT, FLOOR, end_time=0.004)
+    assert result.summary["contact_start"] == pytest.approx((0.075 - 0.05 * math.sqrt(2)) / 2, rel=1e-9)
+    assert result.summary["max_penetration"] > 1e-4
 
 
 def test_a_cone_touches_with_its_tip_when_it_does(tmp_path):
     """The apex of a body of revolution is on the axis, where no area is, and contact begins with it
     nevertheless."""
     cone = {"name": "cone", "shape": "polygon", "vertices": [[0, 0], [0.04, 0.06], [0, 0.06]], "position": 0.05, "velocity": -2}
-    found = go(tmp_path, cone | FLAT, FLOOR, dimension="axisymmetric", end_time=0.004)
-    assert found.summary["contact_start"] == pytest.approx((0.05 - 0.75 * 0.06) / 2, rel=1e-9)
+    result = go(tmp_path, cone | FLAT, FLOOR, dimension="axisymmetric", end_time=0.004)
+    assert result.summary["contact_start"] == pytest.approx((0.05 - 0.75 * 0.06) / 2, rel=1e-9)
 
 
 def test_a_cube_touches_with_its_corner_when_it_does(tmp_path):
@@ -128,8 +129,8 @@ def test_a_cube_touches_with_its_corner_when_it_does(tmp_path):
     turn = math.degrees(math.acos(1 / math.sqrt(3))) / math.sqrt(2)
     cube = {"name": "cube", "shape": "box", "width": 0.1, "height": 0.1, "depth": 0.1, "turn": [-turn, 0, turn], "position": [0, 0.09, 0], "velocity": [0, -2, 0]}
     coarse = {"mesh_size": 0.05, "contact_mesh_size": 0.03}
-    found = go(tmp_path, cube | coarse, FLOOR | {"point": [0, 0, 0], "normal": [0, 1, 0]}, dimension="3d", symmetry="full", accuracy=0.4, end_time=0.0018)
-    assert found.summary["contact_start"] == pytest.approx((0.09 - 0.05 * math.sqrt(3)) / 2, rel=1e-9)
+    result = go(tmp_path, cube | coarse, FLOOR | {"point": [0, 0, 0], "normal": [0, 1, 0]}, dimension="3d", symmetry="full", accuracy=0.4, end_time=0.0018)
+    assert result.summary["contact_start"] == pytest.approx((0.09 - 0.05 * math.sqrt(3)) / 2, rel=1e-9)
 
 
 def test_crossed_edges_are_measured_and_named(tmp_path):
@@ -138,10 +139,10 @@ def test_crossed_edges_are_measured_and_named(tmp_path):
     bar = {"shape": "box", "height": 0.05} | FLAT
     upper = bar | {"name": "upper", "width": 0.1, "depth": 0.05, "turn": [45, 0, 0], "position": [0, 0.0712, 0], "velocity": [0, -1, 0]}
     lower = bar | {"name": "lower", "width": 0.05, "depth": 0.1, "turn": [0, 0, 45], "position": [0, 0, 0], "velocity": [0, 1, 0]}
-    found = go(tmp_path, [upper, lower], [], dimension="3d", symmetry="full", accuracy=0.4, end_time=0.0008)
+    result = go(tmp_path, [upper, lower], [], dimension="3d", symmetry="full", accuracy=0.4, end_time=0.0008)
     overlap = 2 * 0.0008 - (0.0712 - 0.05 * math.sqrt(2))
-    assert found.summary["max_penetration"] == pytest.approx(overlap / math.sqrt(2), rel=0.02)
-    (sentence,) = said(found, "unseen contact")
+    assert result.summary["max_penetration"] == pytest.approx(overlap / math.sqrt(2), rel=0.02)
+    (sentence,) = warnings_of(result, "unseen contact")
     assert sentence.startswith("unseen contact: upper and lower ") and "contact_mesh_size" in sentence
 
 
@@ -175,9 +176,10 @@ def contact_size(tables: Scene) -> float:
 def test_an_expression_of_a_sphere_gets_the_elements_of_one(distance):
     """Both for a signed distance and for another expression."""
     ball = {"name": "ball", "shape": "ball", "radius": 0.02, "position": [0, 0], "velocity": [0, -5]}
-    one, other = (scene(ball, {"name": "sphere"} | kind, dimension="axisymmetric")
-                  for kind in ({"kind": "sphere", "centre": [0, -0.0401], "radius": 0.02}, {"kind": "implicit", "distance": distance}))
-    assert contact_size(one) == pytest.approx(contact_size(other))
+    sphere, expression = (scene(ball, {"name": "sphere"} | kind, dimension="axisymmetric")
+                          for kind in ({"kind": "sphere", "centre": [0, -0.0401], "radius": 0.02},
+                                       {"kind": "implicit", "distance": distance}))
+    assert contact_size(sphere) == pytest.approx(contact_size(expression))
 
 
 def test_a_face_that_slides_until_it_rests_has_the_elements_of_one_that_hits():
@@ -207,8 +209,8 @@ def test_a_contact_that_begins_at_a_corner_is_named(tmp_path, angle, share):
     flat gives none.
     """
     block = {"name": "block", "shape": "rectangle", "width": 0.1, "height": 0.05, "angle": angle, "position": [0, 0.075], "velocity": [0, -2]}
-    found = go(tmp_path, block, FLOOR, accuracy=0.02)
-    assert found.summary["corner_share"] == pytest.approx(share, abs=0.05) and len(said(found, "corner")) == share
+    result = go(tmp_path, block, FLOOR, accuracy=0.02)
+    assert result.summary["corner_share"] == pytest.approx(share, abs=0.05) and len(warnings_of(result, "corner")) == share
 
 
 def test_a_flat_end_whose_rim_touches_first_is_no_corner(tmp_path):
@@ -219,8 +221,8 @@ def test_a_flat_end_whose_rim_touches_first_is_no_corner(tmp_path):
     """
     cylinder = {"name": "cylinder", "shape": "cylinder", "radius": 0.025, "height": 0.05, "position": [0, 0.0251]}
     plate = {"name": "plate", "kind": "plane", "point": [0, 0.0502], "normal": [0, -1], "velocity": [0, -0.3]}
-    found = go(tmp_path, cylinder, [FLOOR, plate], young=2e6, nu=0.45, density=1000, dimension="axisymmetric", end_time=0.03)
-    assert found.summary["impulse"] > 0 and found.summary["corner_share"] == 0 and not said(found, "corner")
+    result = go(tmp_path, cylinder, [FLOOR, plate], young=2e6, nu=0.45, density=1000, dimension="axisymmetric", end_time=0.03)
+    assert result.summary["impulse"] > 0 and result.summary["corner_share"] == 0 and not warnings_of(result, "corner")
 
 
 @pytest.mark.parametrize("thickness, obstacle, through", [
@@ -230,18 +232,18 @@ def test_a_flat_end_whose_rim_touches_first_is_no_corner(tmp_path):
 def test_a_body_that_is_pressed_through_a_thin_obstacle_is_named(tmp_path, thickness, obstacle, through):
     """Points deeper than half the thickness are pushed out on the far side: the body passes
     through, which is a warning."""
-    found = go(tmp_path, {"name": "disc", "shape": "disc", "radius": 0.05, "position": [0, 0.06], "velocity": [0, -20]}, {"name": "plate"} | obstacle(thickness))
-    assert (found.summary["rebound_vy"] < 0) == through == bool(said(found, "through"))
+    result = go(tmp_path, {"name": "disc", "shape": "disc", "radius": 0.05, "position": [0, 0.06], "velocity": [0, -20]}, {"name": "plate"} | obstacle(thickness))
+    assert (result.summary["rebound_vy"] < 0) == through == bool(warnings_of(result, "through"))
     if through:
-        assert "plate (" in said(found, "through")[0]
+        assert "plate (" in warnings_of(result, "through")[0]
 
 
 @pytest.mark.parametrize("shape, kind", [({"shape": "rectangle", "width": 0.2, "height": 0.1}, "warnings"), ({"shape": "disc", "radius": 0.05}, "notes")])
 def test_a_hard_flat_strike_is_warned_of_and_a_hard_round_one_has_a_note(tmp_path, shape, kind):
     """At a tenth of the wave speed: the peak force of a face that lands as a whole depends on a
     stiff penalty, not on the bodies, at any speed."""
-    found = go(tmp_path, shape | {"name": "body", "position": [0, 0.0501], "velocity": [0, -8]}, FLOOR, accuracy=0.02, density=1000, contact={"penalty": 1e13})
-    assert {each: any(one.startswith("peak force: ") for one in found.summary[each]) for each in ("warnings", "notes")} == {"warnings": kind == "warnings", "notes": kind == "notes"}
+    result = go(tmp_path, shape | {"name": "body", "position": [0, 0.0501], "velocity": [0, -8]}, FLOOR, accuracy=0.02, density=1000, contact={"penalty": 1e13})
+    assert {key: any(sentence.startswith("peak force: ") for sentence in result.summary[key]) for key in ("warnings", "notes")} == {"warnings": kind == "warnings", "notes": kind == "notes"}
 
 
 @pytest.mark.parametrize("tilt, turns", [(0.0, False), (1e-5, False), (0.02, True)])
@@ -256,8 +258,8 @@ def test_a_face_that_comes_down_flat_on_a_slope_meets_it_at_its_middle(tilt, tur
     up = [-math.sin(angle + tilt), math.cos(angle + tilt)]
     block = {"name": "block", "shape": "rectangle", "width": 0.1, "height": 0.05, "angle": 20,
              "position": [-0.0251 * math.sin(angle), 0.0251 * math.cos(angle) + 0.06 * tilt]}
-    given = scene(block, FLOOR | {"normal": up}, accuracy=0.02, gravity=9.81, until="rest", viscosity=500)
-    assert (len(approach.meetings(given)) > 1) == turns
+    problem = scene(block, FLOOR | {"normal": up}, accuracy=0.02, gravity=9.81, until="rest", viscosity=500)
+    assert (len(approach.meetings(problem)) > 1) == turns
     if not turns:
-        made = assembly.assemble(given)
+        made = assembly.assemble(problem)
         assert made.used["body"][0]["contact_mesh_size"] > 0.005 and len(made.mesh.triangles) < 500

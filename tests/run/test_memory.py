@@ -55,11 +55,11 @@ def test_unwritten_memory_changes_nothing(tmp_path, preloaded, name):
     """All digits of the history of a coarse run, with the block for the first half of the contact,
     are independent of uninitialised memory."""
     script, values = RUNS[name]
-    found, histories = freefem.find(), []
+    program, histories = freefem.find(), []
     for fill in ("000", "127"):
-        environment = found.environment | {"FILL": fill, "LD_PRELOAD": f"{preloaded}:{found.environment.get('LD_PRELOAD', '')}"}
+        environment = program.environment | {"FILL": fill, "LD_PRELOAD": f"{preloaded}:{program.environment.get('LD_PRELOAD', '')}"}
         flags = freefem.words_of(values | {"accuracy": 0.2, "out": tmp_path / fill})
-        done = found.call(f"edp/{script}.edp", *flags, env=environment)
+        done = program.call(f"edp/{script}.edp", *flags, env=environment)
         assert done.returncode == 0, done.stderr
         histories.append((tmp_path / fill / "history.csv").read_text())
     assert histories[0] == histories[1]

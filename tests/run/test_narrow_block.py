@@ -25,8 +25,8 @@ def test_vertices_cost_no_steps(case, tmp_path):
 
     The normals of an edge and of its vertex could alternate.
     """
-    found = run.run(read_scene(narrow(**case), tmp_path, "narrow"), {"fields": 0}, tmp_path / "run", estimate=False)
-    s, h = found.summary, found.history
+    result = run.run(read_scene(narrow(**case), tmp_path, "narrow"), {"fields": 0}, tmp_path / "run", estimate=False)
+    s, h = result.summary, result.history
     assert s["rejected_steps"] <= 5 and s["factorizations"] < 1.5 * s["steps"] and s["newton_iterations"] < 20 * s["steps"]
     assert s["energy_drift"] < 1e-9
     brought = s["mass_1"] * 5

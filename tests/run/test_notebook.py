@@ -42,12 +42,12 @@ def outputs(folder):
 
 def count(outputs: list, kind: str) -> int:
     """The number of outputs that can be shown as `kind`."""
-    return sum(kind in one.get("data", {}) for one in outputs)
+    return sum(kind in output.get("data", {}) for output in outputs)
 
 
 def test_no_cell_fails(outputs):
     """All cells run in their order in one kernel."""
-    assert not [one for made in outputs.values() for one in made if one.output_type == "error"]
+    assert not [output for made in outputs.values() for output in made if output.output_type == "error"]
 
 
 def test_results_and_tables_are_html(outputs):
@@ -65,6 +65,6 @@ def test_figures_are_shown(outputs, cell, pictures):
 def test_what_is_not_installed_is_a_line(folder, outputs, cell, package):
     """States need pyvista and the player needs k3d. If one is missing, a line has the installation
     command."""
-    (said,) = ["".join(one.text for one in outputs[cell] if one.output_type == "stream" and one.name == "stdout")]
-    assert said.count("\n") == 1 and (find_spec(package) is not None or f"pip install {package}" in said), said
+    (message,) = ["".join(output.text for output in outputs[cell] if output.output_type == "stream" and output.name == "stdout")]
+    assert message.count("\n") == 1 and (find_spec(package) is not None or f"pip install {package}" in message), message
     assert find_spec("k3d") is None or (folder / "impact.html").stat().st_size > 1e4

@@ -33,8 +33,8 @@ def test_what_theory_says_agrees():
     table = angles.judge(rows())
     assert angles.holds(table) and table[table.verdict == ""][["body", "kind", "angle"]].values.tolist() == [
         ["disc", "paper", SLIDES], ["disc", "paper", STICKS], ["disc", "slow", STICKS], ["ball", "paper", SLIDES], ["ball", "paper", STICKS]]
-    said = angles.report(table)
-    assert "7 of 7 runs with a theory agree with it" in said and "The requirement holds" in said
+    text = angles.report(table)
+    assert "7 of 7 runs with a theory agree with it" in text and "The requirement holds" in text
     assert table.loc[table.kind == "stiff", "asked [%]"].eq(5).all()
     sticks = table[(table.kind == "slow") & (table.body == "ball") & (table.angle == STICKS)]["asked [%]"].item()
     assert 5 < sticks < 30, "a ball that sticks is granted a share of the contact's radius over its own"

@@ -36,8 +36,8 @@ def test_it_runs_in_any_folder(fake, site, tmp_path):
     folder, and uses its own name."""
     done = call(site, tmp_path, "-c", "from ffimpact import scene; from ffimpact.running import run; run.run(scene.load('disc-normal'), {'fields': 0}, estimate=False)")
     assert done.returncode == 0, done.stderr
-    said = json.loads((tmp_path / "results/disc-normal/summary.json").read_text())["provenance"]
-    assert said["code"] == run.code_hash() and said["version"] == ffimpact.__version__ and said["git"] == "unknown"
+    provenance = json.loads((tmp_path / "results/disc-normal/summary.json").read_text())["provenance"]
+    assert provenance["code"] == run.code_hash() and provenance["version"] == ffimpact.__version__ and provenance["git"] == "unknown"
     assert call(site, tmp_path, "-m", "ffimpact", "run", "--help").stdout.startswith("usage: ffimpact run ")
 
 

@@ -39,19 +39,19 @@ def test_pages_are_as_the_scripts_have_it(path):
 @pytest.mark.parametrize("script", pages.SCRIPTS)
 def test_every_column_and_number_has_a_meaning(script):
     """Each has a unit and a meaning. No others have one."""
-    told = describe_results(
+    description = describe_results(
         {} if "ball-axi" in script else {"angle": 60, "friction_static": 0.3}, script
     )
     named = {
         name
         for key in ("columns", "summary", "contact_columns", "body_columns", "body_summary")
-        for name in told[key]
+        for name in description[key]
     }
-    meanings = [name for table in told["meanings"].values() for name in table]
+    meanings = [name for table in description["meanings"].values() for name in table]
     assert named <= set(meanings), named - set(meanings)
     assert all(
         words and not words.startswith(" ")
-        for table in told["meanings"].values()
+        for table in description["meanings"].values()
         for _, words in table.values()
     )
 
@@ -71,11 +71,11 @@ def test_every_equation_of_the_paper_has_its_line():
 def test_every_warning_is_listed():
     """The page has the first words of every sentence of output/warnings.py."""
     text = (PACKAGE / "output/warnings.py").read_text()
-    said = set(re.findall(r'(?:warn|note)\(\s*f?"([a-z -]+):', text))
-    assert len(said) > 30
+    names = set(re.findall(r'(?:warn|note)\(\s*f?"([a-z -]+):', text))
+    assert len(names) > 30
     rows = [row.split(" | ") for row in pages.warnings().splitlines()[2:]]
     listed = {row[0].removeprefix("| ") for row in rows}
-    assert said <= listed, said - listed
+    assert names <= listed, names - listed
     assert all(len(row) == 4 and row[3].removesuffix(" |") for row in rows), (
         "every message says what to do"
     )
@@ -126,7 +126,7 @@ def test_a_measurement_has_its_tables_its_figure_and_few_words(path):
     assert re.search(r"`python -m benchmarks ([\w-]+)", block)[1] in figures.DRAWN
     assert len((before + after).split()) <= 250
     linked = set(re.findall(r"\]\((\S+?\.csv)\)", block))
-    assert linked == {one.name for one in page.files(path)} and all(
+    assert linked == {file.name for file in page.files(path)} and all(
         len(pd.read_csv(path.with_name(name))) for name in linked
     )
     assert path.with_suffix(".svg").stat().st_size < 150_000

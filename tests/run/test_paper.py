@@ -40,10 +40,10 @@ from tests.support.paper_results import (
 @pytest.mark.parametrize("name, change, verdict, words", [(name, *case) for name, cases in CASES.items() for case in cases])
 def test_verdicts_follow_from_the_numbers(tmp_path, name, change, verdict, words):
     """Each statement is judged by its criterion, whatever the numbers are."""
-    given = base()
-    change(given)
-    found = FIND[name](Memory(tmp_path, given))
-    assert found.verdict == verdict and words in found.ours, found.ours
+    data = base()
+    change(data)
+    finding = FIND[name](Memory(tmp_path, data))
+    assert finding.verdict == verdict and words in finding.ours, finding.ours
 
 
 # No SVK run, or only runs that keep ellipticity.
@@ -58,17 +58,17 @@ def test_lost_ellipticity_is_judged_by_one_rule(tmp_path, name):
     """If every SVK run has lost ellipticity, no change of the results makes a statement about it
     agree, unless it is about exact conservation."""
     for change, _, _ in CASES[name]:
-        given = base()
-        change(given)
-        for runs in (given["summary"], given["stick-slip"]):
+        data = base()
+        change(data)
+        for runs in (data["summary"], data["stick-slip"]):
             if isinstance(runs, dict):
-                runs.update({each: end | {"ellipticity_lost_time": LOST} for each, end in runs.items()})
+                runs.update({key: end | {"ellipticity_lost_time": LOST} for key, end in runs.items()})
             else:
                 runs["ellipticity_lost_time"] = LOST
-        given["summaries"] = {each: [end | {"ellipticity_lost_time": LOST} for end in ends] for each, ends in given["summaries"].items()}
-        given["table"] = {each: table.assign(ellipticity_lost_time=LOST) for each, table in given["table"].items()}
-        found = FIND[name](Memory(tmp_path, given))
-        assert found.verdict != AGREES or name in EXACT and "on any mesh" in found.ours, found.ours
+        data["summaries"] = {key: [end | {"ellipticity_lost_time": LOST} for end in ends] for key, ends in data["summaries"].items()}
+        data["table"] = {key: table.assign(ellipticity_lost_time=LOST) for key, table in data["table"].items()}
+        finding = FIND[name](Memory(tmp_path, data))
+        assert finding.verdict != AGREES or name in EXACT and "on any mesh" in finding.ours, finding.ours
 
 
 @pytest.mark.parametrize("name", FIND)
@@ -76,8 +76,9 @@ def test_a_verdict_names_its_data(tmp_path, name):
     """The page has parameters and provenance of every run that a statement reads. Every statement
     reads runs or refers to them."""
     results = Memory(tmp_path, base())
-    found = FIND[name](results)
-    assert results.read <= set(found.runs) and (found.runs or "laws.csv" in found.ours) and (found.figures or name == "incompressible")
+    finding = FIND[name](results)
+    assert results.read <= set(finding.runs) and (finding.runs or "laws.csv" in finding.ours) and (
+        finding.figures or name == "incompressible")
 
 
 def test_figures_6b_and_8_are_over_the_same_speeds():
@@ -88,18 +89,18 @@ def test_figures_6b_and_8_are_over_the_same_speeds():
     """
     svk, neo = (sweep.load(name) for name in (SVK, NEO))
     assert svk.points == neo.points and svk.refine == neo.refine != {} and {point["nu"] for point in svk.points} == {0.3, 0.45}
-    found = {point["speed"] for point in svk.points if point["speed"] <= 11}
-    assert len(found) >= 40 and min(found) == 0.5 and max(found) > 10.75
-    for each in (svk, neo, sweep.load("calibrate")):
-        assert {"thresholded_contact_time", "ellipticity_lost_time"} <= set(each.collect)
+    speeds = {point["speed"] for point in svk.points if point["speed"] <= 11}
+    assert len(speeds) >= 40 and min(speeds) == 0.5 and max(speeds) > 10.75
+    for plan in (svk, neo, sweep.load("calibrate")):
+        assert {"thresholded_contact_time", "ellipticity_lost_time"} <= set(plan.collect)
 
 
 def test_the_control_differs_in_the_jump_alone():
     """friction-jump has the same runs with equal coefficients, for both laws, on two meshes."""
-    wanted = sweep.load("friction-jump")
-    used = [{**scene.load(wanted.scene).values, **wanted.base, **point} for point in wanted.points]
-    assert {(each["law"], each["friction_static"], each["friction_dynamic"]) for each in used} == {(law, static, 0.5) for law in ("svk", "neohookean") for static in (0.7, 0.5)}
-    assert wanted.refine.keys() == {"mesh_size", "contact_mesh_size"} and {each["regularization"] for each in used} == {"linear"}
+    plan = sweep.load("friction-jump")
+    used = [{**scene.load(plan.scene).values, **plan.base, **point} for point in plan.points]
+    assert {(values["law"], values["friction_static"], values["friction_dynamic"]) for values in used} == {(law, static, 0.5) for law in ("svk", "neohookean") for static in (0.7, 0.5)}
+    assert plan.refine.keys() == {"mesh_size", "contact_mesh_size"} and {values["regularization"] for values in used} == {"linear"}
 
 
 def test_page_holds_everything_itself(tmp_path):
@@ -146,24 +147,24 @@ def test_pictures_say_what_they_show():
 def test_the_page_of_all_statements(tmp_path, monkeypatch, capsys):
     """The command writes the page with every statement, verdict and figure, and prints the same.
     The counts add up."""
-    given = Memory(tmp_path, base())
+    memory = Memory(tmp_path, base())
     for *_, find in STATEMENTS:
-        for path in find(given).figures:
+        for path in find(memory).figures:
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_bytes(b"picture")
-    monkeypatch.setattr(paper.judging, "Results", lambda folder: given)
+    monkeypatch.setattr(paper.judging, "Results", lambda folder: memory)
     monkeypatch.setattr(paper, "require", lambda results: None)
     monkeypatch.setattr(paper, "verification", lambda folder: '<h2 id="verification">Verification</h2>')
     assert guarded(paper.main, ["--results", str(tmp_path)]) == 0
-    text, said = (tmp_path / "paper/report.html").read_text(), capsys.readouterr().out
+    text, output = (tmp_path / "paper/report.html").read_text(), capsys.readouterr().out
     assert all(f'id="s{k}"' in text for k in range(len(STATEMENTS))) and 'href="#verification"' in text
-    assert sum(int(number) for number, _ in re.findall(f"([0-9]+) ({'|'.join(paper.COLOURS)})", said.splitlines()[-2])) == len(STATEMENTS)
+    assert sum(int(number) for number, _ in re.findall(f"([0-9]+) ({'|'.join(paper.COLOURS)})", output.splitlines()[-2])) == len(STATEMENTS)
 
 
 def test_the_pictures_of_the_page_are_asked_for(tmp_path):
     """The figures of runs on the page are those that the cases must have left."""
-    given = Memory(tmp_path, base())
-    shown = {(path.parent.parent.name, path.stem) for *_, find in STATEMENTS for path in find(given).figures if path.parent.name == "figures"}
+    results = Memory(tmp_path, base())
+    shown = {(path.parent.parent.name, path.stem) for *_, find in STATEMENTS for path in find(results).figures if path.parent.name == "figures"}
     assert shown == {(name, kind) for name, kinds in paper.RUNS.items() for kind in kinds}
 
 
@@ -208,13 +209,13 @@ def test_values_are_listed_as_numbers(tmp_path):
 def test_the_map_of_the_oblique_disc_has_both_angles(tmp_path):
     """There is a row of maps for each angle to the plane and a column for each mesh. The text about
     the level mentions both."""
-    wanted = sweep.load(OBLIQUE)
-    table = pd.DataFrame(wanted.points).assign(exit=0, contact_time=4.4e-3)
+    plan = sweep.load(OBLIQUE)
+    table = pd.DataFrame(plan.points).assign(exit=0, contact_time=4.4e-3)
     table.loc[table.penalty < 5e8, "contact_time"] = 5e-3
-    sweep_figures.draw(wanted, table, tmp_path)
-    said = "\n".join(sweep_figures.findings(wanted, table, tmp_path))
+    sweep_figures.draw(plan, table, tmp_path)
+    text = "\n".join(sweep_figures.findings(plan, table, tmp_path))
     assert figures.plt.imread(tmp_path / "sweep.png").std() > 0
-    assert all(f"angle = {angle} deg, mesh size = {size} m: contact time = 4.5" in said for angle in (60, 30) for size in (0.01, 0.008))
+    assert all(f"angle = {angle} deg, mesh size = {size} m: contact time = 4.5" in text for angle in (60, 30) for size in (0.01, 0.008))
 
 
 def test_the_search_is_drawn_for_both_angles(tmp_path):
@@ -224,6 +225,6 @@ def test_the_search_is_drawn_for_both_angles(tmp_path):
     table = pd.DataFrame(stick_slip.grid(axes)).assign(exit=0, contact_time=4.5e-3, first=1.0, second=0.9, last=0.3, work_last=0.01, quiet=True, time=True)
     table["order"] = stick_slip.as_told(table)
     stick_slip.draw(table, axes, tmp_path / "map.png")
-    said = stick_slip.report(table)
+    text = stick_slip.report(table)
     assert (tmp_path / "map.png").stat().st_size > 10_000
-    assert all(f"{angle} degrees, {stick_slip.LAWS[law]}: of 8 runs 8 slide first" in said for angle in (60, 30) for law in stick_slip.LAW)
+    assert all(f"{angle} degrees, {stick_slip.LAWS[law]}: of 8 runs 8 slide first" in text for angle in (60, 30) for law in stick_slip.LAW)

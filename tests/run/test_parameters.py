@@ -10,8 +10,8 @@ from ffimpact.input.table import LAWS, SCRIPTS
 
 def test_the_scripts_take_what_the_table_says():
     """Every script starts with its parameters at their defaults and has the same laws."""
-    told = describe()
-    assert told["laws"].split("|") == list(LAWS) and told["scripts"].split("|") == list(SCRIPTS)
+    description = describe()
+    assert description["laws"].split("|") == list(LAWS) and description["scripts"].split("|") == list(SCRIPTS)
     for script in SCRIPTS:
         assert set(describe(script=script)["used"]) == set(parameters.names(script))
 
@@ -24,8 +24,8 @@ def test_each_script_takes_its_own_parameters():
     for script, name, value in (("disc-plane", "block_width", 3), ("bodies", "radius", 1)):
         with pytest.raises(BadInput) as error:
             parameters.check({name: value}, script)
-        with pytest.raises(BadInput) as asked:
+        with pytest.raises(BadInput) as refusal:
             describe({name: value}, script)
-        assert str(error.value) == str(asked.value) == f"{name}: {script} takes no such parameter (accepted: in {'|'.join(parameters.PARAMETERS[name].scripts)})"
+        assert str(error.value) == str(refusal.value) == f"{name}: {script} takes no such parameter (accepted: in {'|'.join(parameters.PARAMETERS[name].scripts)})"
     with pytest.raises(BadInput, match="script: 'ball' is not known .accepted: disc-plane|disc-block|ball-axisymmetric|ball-plane|bodies|bodies-3d"):
         describe({}, "ball")

@@ -25,8 +25,8 @@ def ran(tmp_path_factory):
 
     def at(which: str) -> Record:
         if which not in results:
-            name, given = SCENES[which]
-            results[which] = run.run(scene.load(name), {"accuracy": 0.4, "fields": 30} | given, tmp_path_factory.mktemp("run") / "out", estimate=False)
+            name, values = SCENES[which]
+            results[which] = run.run(scene.load(name), {"accuracy": 0.4, "fields": 30} | values, tmp_path_factory.mktemp("run") / "out", estimate=False)
         return results[which]
     return at
 
@@ -51,9 +51,9 @@ def test_largest_pressure(ran, which):
         assert row.max_pressure == pytest.approx(points.projected_pressure.max(), rel=1e-7)
         for body in range(1, 3 if "max_pressure_2" in row else 1):
             assert row[f"max_pressure_{body}"] == pytest.approx(points[points.body == body].projected_pressure.max(), rel=1e-7)
-    most = int(np.argmax(h["max_pressure"]))
-    assert s["max_pressure"] == h["max_pressure"][most] > 0 and s["max_pressure_time"] == h["t"][most]
-    there = [points.loc[points.projected_pressure.idxmax()] for points, row in at_the_same_times(result) if row.t == h["t"][most]]
+    peak = int(np.argmax(h["max_pressure"]))
+    assert s["max_pressure"] == h["max_pressure"][peak] > 0 and s["max_pressure_time"] == h["t"][peak]
+    there = [points.loc[points.projected_pressure.idxmax()] for points, row in at_the_same_times(result) if row.t == h["t"][peak]]
     assert not there or (there[0].X, there[0].Y) == pytest.approx((s["max_pressure_x"], s["max_pressure_y"]), rel=1e-6)
     assert (s["max_pressure_z"] is not None) == ("ball" in which)
 
@@ -84,10 +84,10 @@ def test_cells_have_the_number_of_their_body(ran, which, bodies):
     """The elements of a snapshot have the number of their body, from 1, as integers. Those of body
     2, the block, are below the disc's."""
     _, path = vtu.series(ran(which).folder / "fields.pvd")[0]
-    found = meshio.read(path)
-    numbers, cells = found.cell_data["body"][0], found.cells[0].data
+    mesh = meshio.read(path)
+    numbers, cells = mesh.cell_data["body"][0], mesh.cells[0].data
     assert numbers.dtype == np.int32 and len(numbers) == len(cells) and set(numbers) == {k + 1 for k in range(bodies)}
-    heights = [found.points[cells[numbers == k + 1], 1] for k in range(bodies)]
+    heights = [mesh.points[cells[numbers == k + 1], 1] for k in range(bodies)]
     assert bodies == 1 or heights[1].max() < heights[0].min() + 1e-6
 
 
@@ -132,20 +132,20 @@ def test_points_for_paraview(ran, which):
     files = vtu.series(folder / "fields/contact.pvd")
     assert [t for t, _ in files] == [t for t, _ in vtu.series(folder / "fields.pvd")] and {path.name for _, path in files} == {path.name for path in folder.glob("fields/contact-*.vtu")}
     for t, path in files:
-        wanted = table[np.isclose(table.t, t, rtol=1e-8, atol=0)]
-        if wanted.empty:
+        rows = table[np.isclose(table.t, t, rtol=1e-8, atol=0)]
+        if rows.empty:
             assert 'NumberOfPoints="0"' in path.read_text()
             continue
-        found = meshio.read(path)
-        assert len(found.points) == len(wanted)
-        axes = [axis for axis in "XYZ" if axis in wanted]
-        np.testing.assert_allclose(found.points[:, :len(axes)], wanted[axes], rtol=1e-8, atol=1e-12)
-        moved = found.points + found.point_data.pop("displacement")
-        np.testing.assert_allclose(moved[:, :len(axes)], wanted[[axis.lower() for axis in axes]], rtol=1e-8, atol=1e-12)
+        mesh = meshio.read(path)
+        assert len(mesh.points) == len(rows)
+        axes = [axis for axis in "XYZ" if axis in rows]
+        np.testing.assert_allclose(mesh.points[:, :len(axes)], rows[axes], rtol=1e-8, atol=1e-12)
+        moved = mesh.points + mesh.point_data.pop("displacement")
+        np.testing.assert_allclose(moved[:, :len(axes)], rows[[axis.lower() for axis in axes]], rtol=1e-8, atol=1e-12)
         names = [name for name in table if name not in "t s X Y Z x y z".split()]
-        assert set(names) == set(found.point_data)
+        assert set(names) == set(mesh.point_data)
         for name in names:
-            np.testing.assert_allclose(found.point_data[name], wanted[name], rtol=1e-8, err_msg=name)
+            np.testing.assert_allclose(mesh.point_data[name], rows[name], rtol=1e-8, err_msg=name)
 
 
 @pytest.mark.parametrize("which, panels, maps", [("disc", 3, 0), ("whole disc", 4, 0), ("revolution", 3, 0), ("ball", 3, 0), ("oblique ball", 4, 10), ("block", 3, 0)])

@@ -15,8 +15,8 @@ def test_every_scene_has_its_script():
     there = {path.stem for path in (ROOT / "benchmarks/programs").glob("*.py")}
     assert {f"ngsolve_{body}" for body in peers.BODIES.values()} | {"getfem_disc"} <= there
     assert {"ngsolve_two_bodies", "ffimpact_run"} <= there
-    for asked in (bench.PEERS, bench.PEERS_QUICK):
-        for name, others in asked.items():
+    for programs in (bench.PEERS, bench.PEERS_QUICK):
+        for name, others in programs.items():
             body = peers.BODIES[bench.CASES[name].scene]
             assert {f"{program}_{body}" for program, *_ in others if program != "textbook"} <= there
 
@@ -34,8 +34,8 @@ def test_ngsolve_says_the_same(name, sizes, step, form, tmp_path):
         pytest.skip("ngsolve is not installed")
     flags = {"law": "neohookean", "penalty": 1.5e10}
     theirs, reason = peers.run("ngsolve", form, *sizes, step, 120, scene=name, **flags)
-    given = flags | {"mesh_size": sizes[0], "contact_mesh_size": sizes[1], "dt": step, "fields": 0}
-    ours = run.run(scene.load(name), given, tmp_path / "out", estimate=False).summary
+    values = flags | {"mesh_size": sizes[0], "contact_mesh_size": sizes[1], "dt": step, "fields": 0}
+    ours = run.run(scene.load(name), values, tmp_path / "out", estimate=False).summary
     assert theirs, reason
     assert theirs["impulse"] == pytest.approx(ours["impulse"], rel=5e-3) and theirs["rebound_vy"] == pytest.approx(ours["rebound_vy"], rel=5e-3)
     assert theirs["contact_time"] == pytest.approx(ours["contact_time"], rel=0.02)
@@ -46,12 +46,12 @@ def test_ngsolve_says_the_same_with_friction(tmp_path):
     0.5 % in both forms; energy with friction work is conserved."""
     if not peers.find("ngsolve"):
         pytest.skip("ngsolve is not installed")
-    sizes, given = (0.016, 0.005), {"law": "neohookean", "speed": 12.0}
+    sizes, values = (0.016, 0.005), {"law": "neohookean", "speed": 12.0}
     case = equal_errors.CASES["oblique"]
-    ours = equal_errors.answers(case, equal_errors.OURS, peers.ours(60, "disc-oblique", mesh_size=sizes[0], contact_mesh_size=sizes[1], dt=1e-4, fields=0, **given)[0])
+    ours = equal_errors.answers(case, equal_errors.OURS, peers.ours(60, "disc-oblique", mesh_size=sizes[0], contact_mesh_size=sizes[1], dt=1e-4, fields=0, **values)[0])
     # The plain form takes mu of the previous step.
     for form, limit in (("tuned", 0.5), ("plain", 0.7)):
-        theirs, reason = peers.run("ngsolve", form, *sizes, 1e-4, 120, scene="disc-oblique", tolerance=1e-8, **given)
+        theirs, reason = peers.run("ngsolve", form, *sizes, 1e-4, 120, scene="disc-oblique", tolerance=1e-8, **values)
         assert theirs, reason
         assert equal_errors.errors(case, equal_errors.answers(case, form, theirs), ours)["error"] < limit
         assert theirs["energy_drift"] < 1e-4 and theirs["friction_work"] > 30
@@ -81,9 +81,9 @@ def test_ngsolve_says_the_same_of_a_clamped_beam(tmp_path):
 def test_ours_beside_the_peers():
     """This program runs by the interface of the other programs: its summary, and imports, set-up
     and time integration that add up to most of its process."""
-    found, reason = peers.ours(60, "disc-normal", accuracy=0.1, fields=0)
-    assert found, reason
-    parts = [found[f"{part}_seconds"] for part in ("imports", "setup", "cpu")]
-    assert min(parts) > 0 and 0.6 < sum(parts) / found["process_seconds"] < 1.05
-    assert found["impulse"] == pytest.approx(208.2, rel=0.01)
+    numbers, reason = peers.ours(60, "disc-normal", accuracy=0.1, fields=0)
+    assert numbers, reason
+    parts = [numbers[f"{part}_seconds"] for part in ("imports", "setup", "cpu")]
+    assert min(parts) > 0 and 0.6 < sum(parts) / numbers["process_seconds"] < 1.05
+    assert numbers["impulse"] == pytest.approx(208.2, rel=0.01)
     assert peers.ours(60, "disc-normal", speed=-1)[1].startswith("exit code")

@@ -74,7 +74,7 @@ def test_a_study_says_which_of_how_many(fake, shown, tmp_path):
     fake("brief")
     study.study([{"speed": 4.0}], tmp_path / "sweeps/mine", {"fields": 0}, 60.0)
     study.study([{"speed": 4.0}, {"speed": 5.0}, {"speed": 6.0}], tmp_path / "sweeps/mine", {"fields": 0}, 60.0)
-    one, bar = shown
+    first, bar = shown
     assert bar.seen[0] == (0.0, "sweeps/mine: 1 of 3 done") and bar.seen[-2:] == [(1.0, "sweeps/mine: 3 of 3 done"), (1.0, "closed")]
     assert any(0 < share < 0.5 and words.endswith("1 of 3 done") for share, words in bar.seen)
 

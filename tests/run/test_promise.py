@@ -38,7 +38,7 @@ def test_a_mixture_has_all_dimensions_friction_and_two_bodies(count):
     """Every kind has its share, and equal seeds give equal scenes. All are accepted with automatic
     penalty."""
     drawn = draws.mixture(promise.SEED, count)
-    assert drawn == draws.mixture(promise.SEED, count) and not any(one in drawn for one in draws.mixture(7, count))
+    assert drawn == draws.mixture(promise.SEED, count) and not any(entry in drawn for entry in draws.mixture(7, count))
     assert {name for name, _ in drawn} == set(draws.MIXTURE) and abs(len(drawn) - count) < 3
     for name, point in drawn:
         made = promise.open_scene(name, point)

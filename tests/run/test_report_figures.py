@@ -27,8 +27,8 @@ def test_the_key_of_a_comparison_stands_above_its_panels(tmp_path, monkeypatch):
     monkeypatch.setattr(compare.plt, "close", lambda figure: None)
     compare.draw({"disc-normal": run, "disc-normal-neohookean": run}, tmp_path / "both.png")
     figure = compare.plt.gcf()
-    assert "ellipticity" not in " ".join(text.get_text() for one in figure.legends for text in one.get_texts())
-    boxes = [one.get_tightbbox() for one in (*figure.legends, *figure.axes)]
+    assert "ellipticity" not in " ".join(text.get_text() for legend in figure.legends for text in legend.get_texts())
+    boxes = [artist.get_tightbbox() for artist in (*figure.legends, *figure.axes)]
     assert all(0 <= box.y0 and box.y1 <= figure.bbox.y1 for box in boxes)
     assert not [pair for pair in itertools.combinations(boxes, 2) if Bbox.intersection(*pair)]
 
@@ -53,12 +53,12 @@ def test_limits_of_friction_are_not_clipped():
 def test_failed_points_have_rows_of_their_own():
     """Points without a value are marked below the axis, with a row for each curve; a breakdown is
     labelled; the paper's number is a star at its speed."""
-    wanted = sweep.load("contact-time-svk")
-    rows = pd.DataFrame([point | dict(exit=12 * (point["speed"] > 10), contact_time=5e-3, thresholded_contact_time=4.9e-3) for point in wanted.points])
-    figure = sweep_figures.draw_lines(wanted, rows, None)
+    plan = sweep.load("contact-time-svk")
+    rows = pd.DataFrame([point | dict(exit=12 * (point["speed"] > 10), contact_time=5e-3, thresholded_contact_time=4.9e-3) for point in plan.points])
+    figure = sweep_figures.draw_lines(plan, rows, None)
     crosses = [line for line in figure.axes[0].lines if line.get_marker() == "x"]
     heights = [set(line.get_ydata()) for line in crosses]
-    assert len(crosses) == 2 and all(max(each) < 0 for each in heights) and not heights[0] & heights[1]
+    assert len(crosses) == 2 and all(max(levels) < 0 for levels in heights) and not heights[0] & heights[1]
     assert {"ν = 0.3: broke down (det F ≤ 0), no value", "paper, section 3.3: 4.8 ms"} <= set(labels(figure.axes[0]))
     for axes in figure.axes:
         star, = (line for line in axes.lines if line.get_marker() == "*")

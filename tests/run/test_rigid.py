@@ -36,8 +36,8 @@ def test_a_disc_slides_until_it_rolls(tmp_path):
 
 def test_mass_and_inertia_are_those_given(tmp_path):
     """A disc with I = m R^2, as a thin ring, keeps half of its speed."""
-    given = "mass = 3\ninertia = 0.0075\n"
-    text = DISC.replace("density = 1000\n", "") + given + "position = [0, 0.05]\nvelocity = [1, 0]\n" + FLOOR + "friction_static = 0.3\n"
+    entries = "mass = 3\ninertia = 0.0075\n"
+    text = DISC.replace("density = 1000\n", "") + entries + "position = [0, 0.05]\nvelocity = [1, 0]\n" + FLOOR + "friction_static = 0.3\n"
     summary, history = run(tmp_path, "gravity = 9.81\nend_time = 0.2\n" + text)
     assert summary["mass"] == pytest.approx(3, rel=1e-12)
     assert history.vx.iloc[-1] == pytest.approx(1 / 2, rel=0.015)
@@ -50,7 +50,7 @@ def test_it_is_the_limit_of_a_stiff_disc(tmp_path):
     rigid, _ = run(tmp_path, text, "rigid")
     stiff, _ = run(tmp_path, text.replace("rigid = true", 'law = "svk"\nyoung = 1e9\nnu = 0.3'), "stiff", body__1__density=1000)
     for name in ("impulse", "rebound_vy_1", "rebound_vy_2"):
-        apart = 0.005 * abs(stiff[name]) + max(one["estimated_error"]["rebound"] for one in (rigid, stiff)) * abs(stiff[name])
+        apart = 0.005 * abs(stiff[name]) + max(summary["estimated_error"]["rebound"] for summary in (rigid, stiff)) * abs(stiff[name])
         assert abs(rigid[name] - stiff[name]) < apart, name
     assert rigid["energy_drift"] < 1e-9 and rigid["momentum_drift"] < 1e-10
 
@@ -90,7 +90,7 @@ def test_a_rigid_body_is_asked_for_no_material(tmp_path):
     """The stiffness that represents rigidity is not a material of the user."""
     steel = BLOCK.replace("young = 1e6", "young = 2e11")
     summary, _ = run(tmp_path, DISC + "position = [0, 0.0501]\nvelocity = [0, -50]\n" + steel, accuracy=0.3)
-    assert not [one for one in summary["warnings"] if one.startswith("density")]
+    assert not [warning for warning in summary["warnings"] if warning.startswith("density")]
 
 
 def test_fields_show_where_a_rigid_body_is(tmp_path):
@@ -98,19 +98,19 @@ def test_fields_show_where_a_rigid_body_is(tmp_path):
     translation."""
     text = DISC + "position = [0, 0.0501]\nvelocity = [0, -1]\n" + BLOCK
     run(tmp_path, "fields = 3\n" + text)
-    found = vtu.read(sorted((tmp_path / "scene" / "fields").glob("0*.vtu"))[-1])
-    disc = np.linalg.norm(found.points, axis=1) < 0.05 + 1e-6  # in the mesh it is about the origin
-    moved = found.fields["displacement"][disc]
-    assert disc.sum() > 20 and all(np.isfinite(field).all() for field in found.fields.values())
-    assert np.ptp(moved[:, 1]) < 1e-6 and found.fields["von_mises"][disc].max() == 0 < found.fields["von_mises"].max()
-    assert found.fields["jacobian"][disc] == pytest.approx(1, abs=1e-4)
+    snapshot = vtu.read(sorted((tmp_path / "scene" / "fields").glob("0*.vtu"))[-1])
+    disc = np.linalg.norm(snapshot.points, axis=1) < 0.05 + 1e-6  # in the mesh it is about the origin
+    moved = snapshot.fields["displacement"][disc]
+    assert disc.sum() > 20 and all(np.isfinite(field).all() for field in snapshot.fields.values())
+    assert np.ptp(moved[:, 1]) < 1e-6 and snapshot.fields["von_mises"][disc].max() == 0 < snapshot.fields["von_mises"].max()
+    assert snapshot.fields["jacobian"][disc] == pytest.approx(1, abs=1e-4)
 
 
 def test_two_rigid_discs_on_a_soft_one(tmp_path):
     """The total momentum is constant."""
     soft = '[[body]]\nshape = "disc"\nradius = 0.05\nposition = [0, 0]\nlaw = "neohookean"\nyoung = 1e6\nnu = 0.3\n'
-    one = '[[body]]\nshape = "disc"\nradius = 0.03\nrigid = true\nposition = [{}, 0]\nvelocity = [{}, 0]\n'
-    summary, history = run(tmp_path, "density = 1000\naccuracy = 0.1\n" + soft + one.format(0.0801, -1) + one.format(-0.0801, 1))
+    template = '[[body]]\nshape = "disc"\nradius = 0.03\nrigid = true\nposition = [{}, 0]\nvelocity = [{}, 0]\n'
+    summary, history = run(tmp_path, "density = 1000\naccuracy = 0.1\n" + soft + template.format(0.0801, -1) + template.format(-0.0801, 1))
     assert summary["momentum_drift"] < 1e-11 and summary["energy_drift"] < 1e-9
     assert history.momentum_x.abs().max() < 1e-9 * history.momentum_x_2.abs().max()
     assert summary["rebound_vx_2"] == pytest.approx(-summary["rebound_vx_3"], rel=0.02)
@@ -154,7 +154,7 @@ def test_an_obstacle_works_exactly_what_the_body_gains(tmp_path):
 def test_a_rigid_body_has_no_part_in_the_projected_volume_of_others(tmp_path, law, nu):
     """A rigid body has hardly any strain, and the volume ratio of its elements is 1."""
     short = [f"law={law}", f"nu={nu}", "accuracy=0.1", "end_time=0.002"]
-    assert main(["run", "drop-weight", "--out", str(tmp_path / "run"), *(word for one in short for word in ("--set", one))]) == 0
+    assert main(["run", "drop-weight", "--out", str(tmp_path / "run"), *(word for entry in short for word in ("--set", entry))]) == 0
     history = pd.read_csv(tmp_path / "run/history.csv")
     assert abs(history["elastic_1"]).max() < 1e-4 * history["elastic_2"].max()
     assert 0 < json.loads((tmp_path / "run/summary.json").read_text())["volume_change"] < 0.1

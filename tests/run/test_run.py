@@ -30,8 +30,8 @@ def test_finished_run_is_complete(fake, tmp_path):
 
 def test_python_takes_numbers_of_numpy_and_paths_as_text(fake, tmp_path):
     """Scripts use np.linspace in loops, and any form of folder and scene names."""
-    found = run.run(scene.load(Path("disc-normal")), {"speed": np.linspace(1, 4, 2)[1], "fields": np.int64(2)}, str(tmp_path / "out"), estimate=False)
-    assert found.scene["speed"] == 4 and found.scene["fields"] == 2 and found.folder == tmp_path / "out"
+    result = run.run(scene.load(Path("disc-normal")), {"speed": np.linspace(1, 4, 2)[1], "fields": np.int64(2)}, str(tmp_path / "out"), estimate=False)
+    assert result.scene["speed"] == 4 and result.scene["fields"] == 2 and result.folder == tmp_path / "out"
 
 
 def test_mesh_has_the_described_sizes(fake, tmp_path):
@@ -39,15 +39,15 @@ def test_mesh_has_the_described_sizes(fake, tmp_path):
     used = go(tmp_path / "out").scene
     m = mesh.read(tmp_path / "out/mesh.msh")
     length = np.linalg.norm(m.points[m.edges[:, 1]] - m.points[m.edges[:, 0]], axis=1)
-    wanted = describe({name: value for name, value in used.items() if name != "script"})["used"]
-    assert wanted["contact_mesh_size"] == pytest.approx(length.min(), rel=0.2) and wanted["mesh_size"] == pytest.approx(length.max(), rel=0.3)
+    expected = describe({name: value for name, value in used.items() if name != "script"})["used"]
+    assert expected["contact_mesh_size"] == pytest.approx(length.min(), rel=0.2) and expected["mesh_size"] == pytest.approx(length.max(), rel=0.3)
 
 
-@pytest.mark.parametrize("given, half", [
+@pytest.mark.parametrize("values, half", [
     ({}, True), ({"angle": 60}, False), ({"spin": 1}, False), ({"symmetry": "full"}, False), ({"symmetry": "half"}, True)])
-def test_half_is_meshed_where_it_is_enough(fake, tmp_path, given, half):
+def test_half_is_meshed_where_it_is_enough(fake, tmp_path, values, half):
     """Half a disc is meshed unless direction, spin or the user require the whole."""
-    m = mesh.read(go(tmp_path / "out", given).folder / "mesh.msh")
+    m = mesh.read(go(tmp_path / "out", values).folder / "mesh.msh")
     assert (m.points[:, 0].min() >= 0) == half
 
 

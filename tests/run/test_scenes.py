@@ -34,9 +34,9 @@ MINE = {"title": "A disc meets a soft one and a moving post", "law": "neohookean
 @pytest.fixture(scope="module")
 def block(tmp_path_factory):
     """Half of disc-block, coarse."""
-    found = run.run(scene.load("disc-block"), {"accuracy": 0.4, "fields": 3}, tmp_path_factory.mktemp("block") / "run")
-    report.draw(found)
-    return found
+    result = run.run(scene.load("disc-block"), {"accuracy": 0.4, "fields": 3}, tmp_path_factory.mktemp("block") / "run")
+    report.draw(result)
+    return result
 
 
 @pytest.fixture(scope="module")
@@ -44,9 +44,9 @@ def mine(tmp_path_factory):
     """A run of the file above, and the path of the file."""
     folder = tmp_path_factory.mktemp("mine")
     (folder / "mine.toml").write_text(to_toml(MINE))
-    found = run.run(scene.load(str(folder / "mine.toml")), {}, folder / "run")
-    report.draw(found)
-    return found, folder / "mine.toml"
+    result = run.run(scene.load(str(folder / "mine.toml")), {}, folder / "run")
+    report.draw(result)
+    return result, folder / "mine.toml"
 
 
 # ---- disc-block
@@ -54,9 +54,9 @@ def mine(tmp_path_factory):
 def test_each_body_has_its_columns_and_numbers(block):
     """history.csv and summary.json have the described columns and numbers of two bodies. The totals
     are sums over the bodies."""
-    wanted, h, s = scene.load("disc-block"), block.history, block.summary
-    assert list(h) == wanted.columns and {"vy_1", "vy_2", "kinetic_1"} <= set(h) and "block_width" in block.scene
-    assert set(wanted.numbers) <= set(s) and s["provenance"]["script"] == "disc-block" and s["estimated_error"] is not None
+    problem, h, s = scene.load("disc-block"), block.history, block.summary
+    assert list(h) == problem.columns and {"vy_1", "vy_2", "kinetic_1"} <= set(h) and "block_width" in block.scene
+    assert set(problem.numbers) <= set(s) and s["provenance"]["script"] == "disc-block" and s["estimated_error"] is not None
     for name in ("kinetic", "elastic", "momentum_y"):
         assert h[name] == pytest.approx(h[f"{name}_1"] + h[f"{name}_2"], rel=1e-9, abs=1e-9 * abs(h[name]).max())
     assert s["mass_1"] == pytest.approx(1722 * np.pi * 0.25, rel=1e-2) and s["mass_2"] == pytest.approx(1722 * 20, rel=1e-9)
@@ -78,8 +78,10 @@ def test_lost_ellipticity_is_a_warning(block):
     """St. Venant-Kirchhoff beyond its range gives a warning for two bodies as for one. A law that
     keeps ellipticity does not."""
     hard = run.run(scene.load("disc-block"), {"accuracy": 0.4, "speed": 25, "fields": 0, "breakdown": "continue"}, block.folder.parent / "hard", estimate=False)
-    assert hard.summary["ellipticity_lost_time"] > 0 and any(each.startswith("ellipticity: lost from") for each in hard.summary["warnings"])
-    assert block.summary["ellipticity_lost_time"] is None and not any(each.startswith("ellipticity") for each in block.summary["warnings"])
+    assert hard.summary["ellipticity_lost_time"] > 0 and any(
+        warning.startswith("ellipticity: lost from") for warning in hard.summary["warnings"])
+    assert block.summary["ellipticity_lost_time"] is None and not any(
+        warning.startswith("ellipticity") for warning in block.summary["warnings"])
 
 
 # ---- a scene file
@@ -90,16 +92,16 @@ def test_the_folder_of_a_scene_of_ones_own(mine, tmp_path):
 
     FreeFEM recognised each body with its place and material.
     """
-    found, path = mine
-    s, h = found.summary, found.history
+    result, path = mine
+    s, h = result.summary, result.history
     assert (s["mass_1"], s["mass_2"]) == pytest.approx((1722 * math.pi * 0.05**2, 1722 * math.pi * 0.04**2), rel=1e-4)
     assert (h["x_1"][0], h["y_1"][0], h["x_2"][0], h["y_2"][0], h["vx_1"][0], h["vx_2"][0]) == pytest.approx((-0.052, 0, 0.04, 0, 4, 0), abs=1e-5)
-    assert {"mesh.msh", "scene.dat", "scene.toml", "history.csv", "summary.json", "fields.pvd"} <= {each.name for each in found.folder.iterdir()}
-    assert s["provenance"]["mesh"] == hashlib.sha256((found.folder / "mesh.msh").read_bytes()).hexdigest() and s["provenance"]["gmsh"]
-    assembly.prepare(scene.load(str(found.folder / "scene.toml")), tmp_path)
-    assert (tmp_path / "scene.dat").read_text() == (found.folder / "scene.dat").read_text()
-    assert run.run(scene.load(str(path)), {}, found.folder).reused
-    assert not run.reusable(scene.load(str(path)).override({"body.2.young": 5e6}), found.folder)
+    assert {"mesh.msh", "scene.dat", "scene.toml", "history.csv", "summary.json", "fields.pvd"} <= {file.name for file in result.folder.iterdir()}
+    assert s["provenance"]["mesh"] == hashlib.sha256((result.folder / "mesh.msh").read_bytes()).hexdigest() and s["provenance"]["gmsh"]
+    assembly.prepare(scene.load(str(result.folder / "scene.toml")), tmp_path)
+    assert (tmp_path / "scene.dat").read_text() == (result.folder / "scene.dat").read_text()
+    assert run.run(scene.load(str(path)), {}, result.folder).reused
+    assert not run.reusable(scene.load(str(path)).override({"body.2.young": 5e6}), result.folder)
     assert s["rebound_vx_2"] != 0 and s["energy_drift"] < 1e-8 and s["estimated_error"] is not None
 
 
@@ -107,11 +109,11 @@ def test_the_folder_of_a_scene_of_ones_own(mine, tmp_path):
 def test_entries_are_set_on_the_command_line(mine, capsys):
     """--set body.2.young=... is in the scene as used, and a direct run with the files of the folder
     gives the same results."""
-    found, path = mine
+    result, path = mine
     out = path.parent / "set"
     assert main(["run", str(path), "--set", "body.2.young=8e6", "fields=0", "--out", str(out), "--quiet"]) == 0, capsys.readouterr().err
     other = json.loads((out / "summary.json").read_text())
-    assert other["impulse"] > found.summary["impulse"] and run.read_scene(out)["body"][1]["young"] == 8e6
+    assert other["impulse"] > result.summary["impulse"] and run.read_scene(out)["body"][1]["young"] == 8e6
     direct = freefem_run("-mesh", str(out / "mesh.msh"), "-bodies", str(out / "scene.dat"), *freefem.words_of(values(out)), "-out", str(path.parent / "direct"))
     assert direct.returncode == 0, direct.stderr
     assert json.loads((path.parent / "direct/record.json").read_text())["impulse"] == pytest.approx(other["impulse"], rel=1e-9)
@@ -120,8 +122,8 @@ def test_entries_are_set_on_the_command_line(mine, capsys):
 @pytest.mark.robustness
 def test_a_killed_run_goes_on(mine, monkeypatch):
     """A run of bodies that ends at a checkpoint continues from it with the same results."""
-    found, path = mine
-    wanted, real = scene.load(str(path)).override({"checkpoint_every": 5}), freefem.Process.end
+    original, path = mine
+    problem, real = scene.load(str(path)).override({"checkpoint_every": 5}), freefem.Process.end
 
     def killed(process, progress=None):
         while not (out.with_name("killed.part") / "checkpoint").exists() and process.child.poll() is None:
@@ -131,11 +133,11 @@ def test_a_killed_run_goes_on(mine, monkeypatch):
     monkeypatch.setattr(freefem.Process, "end", killed)
     out = path.parent / "killed"
     with pytest.raises(Failure, match="goes on from the last checkpoint"):
-        run.run(wanted, {}, out, estimate=False)
+        run.run(problem, {}, out, estimate=False)
     monkeypatch.setattr(freefem.Process, "end", real)
-    result = run.run(wanted, {}, out, estimate=False)
+    result = run.run(problem, {}, out, estimate=False)
     assert result.summary["resumed_at"] > 0
-    assert result.summary["impulse"] == pytest.approx(found.summary["impulse"], rel=1e-9)
+    assert result.summary["impulse"] == pytest.approx(original.summary["impulse"], rel=1e-9)
 
 
 @pytest.mark.robustness
@@ -144,9 +146,9 @@ def test_a_sweep_reaches_every_entry(mine):
     path = mine[1].with_name("sweep.toml")
     path.write_text('scene = "mine.toml"\ncollect = ["rebound_vx_1", "rebound_vx_2"]\n[set]\nfields = 0\n[product]\nbody.2.young = [2e6, 8e6]\n'
                     '"contact.penalty" = [5e9]\n[figure]\nx = "body.2.young"\ny = "rebound_vx_2"\n')
-    wanted = sweep.load(str(path))
-    assert wanted.points == [{"body.2.young": 2e6, "contact.penalty": 5e9}, {"body.2.young": 8e6, "contact.penalty": 5e9}]
-    rows = sweep.collect(wanted, path.parent / "sweep")
+    plan = sweep.load(str(path))
+    assert plan.points == [{"body.2.young": 2e6, "contact.penalty": 5e9}, {"body.2.young": 8e6, "contact.penalty": 5e9}]
+    rows = sweep.collect(plan, path.parent / "sweep")
     assert (rows.exit == 0).all() and rows.rebound_vx_2.nunique() == 2 and (path.parent / "sweep/sweep.png").exists()
     for text, words in (("body.3.young = [1e6]", "body.3.young: there is no body.3 in the scene"), ("body.2.yung = [1e6]", "body.2.yung: no such entry, set to "),
                         ("body.1.velocity = [[1, 0], [2, 0]]", "single numbers and words"), ("radius = [1]", "radius: no such entry, set to ")):
@@ -158,22 +160,22 @@ def test_a_sweep_reaches_every_entry(mine):
 def test_coarser_and_finer_elements(mine):
     """The scene for another mesh has larger elements on every meshed body by this factor, and the
     same contact."""
-    wanted = scene.load(str(mine[1]))
+    problem = scene.load(str(mine[1]))
     used = run.read_scene(mine[0].folder)
-    built = assembly.assemble(wanted.override(finer.scaled(wanted, wanted.values, used, 0.5)))
+    built = assembly.assemble(problem.override(finer.scaled(problem, problem.values, used, 0.5)))
     assert [body["mesh_size"] for body in built.used["body"]] == [0.5 * body["mesh_size"] for body in used["body"]]
     assert built.used["contact"] == used["contact"] and built.values["accuracy"] == 0.25 * used["accuracy"]
-    assert len(built.mesh.triangles) > 2 * len(assembly.assemble(wanted).mesh.triangles)
+    assert len(built.mesh.triangles) > 2 * len(assembly.assemble(problem).mesh.triangles)
 
 
 @pytest.mark.parametrize("factor, kept", [(estimate.COARSER, False), (1 / estimate.COARSER, True)])
 def test_a_finer_run_keeps_what_a_scene_asks_for(mine, factor, kept):
     """In scenes of bodies, as in those of the paper, only the coarser run writes no output, as it
     is only compared."""
-    asked = {"fields": 5, "modes": 4, "checkpoint_every": 7}
-    wanted = scene.load(str(mine[1])).override(asked)
-    other = wanted.override(finer.scaled(wanted, wanted.values, run.read_scene(mine[0].folder), factor))
-    assert {name: other.values[name] for name in asked} == asked | ({} if kept else parameters.OUTPUT)
+    requests = {"fields": 5, "modes": 4, "checkpoint_every": 7}
+    problem = scene.load(str(mine[1])).override(requests)
+    other = problem.override(finer.scaled(problem, problem.values, run.read_scene(mine[0].folder), factor))
+    assert {name: other.values[name] for name in requests} == requests | ({} if kept else parameters.OUTPUT)
 
 
 # ---- figures
@@ -182,26 +184,26 @@ def test_a_finer_run_keeps_what_a_scene_asks_for(mine, factor, kept):
 def test_figures_of_several_bodies(which, request):
     """Energies, velocities, forces, shapes and pressure are drawn, and restitution if there are
     several impacts. The title has the materials."""
-    found = request.getfixturevalue(which)
-    found = found[0] if which == "mine" else found
-    drawn = {path.name for path in (found.folder / "figures").iterdir()}
+    result = request.getfixturevalue(which)
+    result = result[0] if which == "mine" else result
+    drawn = {path.name for path in (result.folder / "figures").iterdir()}
     assert drawn - {"bounces.png"} == {"contact.png", "energies.png", "force.png", "shapes.png", "velocity.png"}
-    assert ("bounces.png" in drawn) == (len(impacts.several(impacts.read(found.folder))) > 0)
-    assert all(path.stat().st_size > 5000 for path in (found.folder / "figures").iterdir())
-    assert ("target: neo-Hookean, E = 4 MPa" if which == "mine" else "disc on block: St. Venant") in drawing.title(found.scene)
-    assert "rebound velocity, " + ("x, target" if which == "mine" else "y, block") in report.report(found, verbose=True)
+    assert ("bounces.png" in drawn) == (len(impacts.several(impacts.read(result.folder))) > 0)
+    assert all(path.stat().st_size > 5000 for path in (result.folder / "figures").iterdir())
+    assert ("target: neo-Hookean, E = 4 MPa" if which == "mine" else "disc on block: St. Venant") in drawing.title(result.scene)
+    assert "rebound velocity, " + ("x, target" if which == "mine" else "y, block") in report.report(result, verbose=True)
 
 
 def test_bodies_are_drawn_where_they_are(mine):
     """The displacement moves the bodies from their reference places, side by side, to those of the
     scene. The post moves, too."""
-    found = mine[0]
-    t, path = vtu.series(found.folder / "fields.pvd")[-1]
+    result = mine[0]
+    t, path = vtu.series(result.folder / "fields.pvd")[-1]
     points = figures.deformed(vtu.read(path), False).points
-    left, right, *_ = bodies.limits([figures.deformed(vtu.read(path), False)])
-    xs = [np.interp(t, found.history["t"], found.history[f"x_{b}"]) for b in (1, 2)]
-    assert points[:, 0].min() == pytest.approx(xs[0] - 0.05, abs=0.004) and left < points[:, 0].min() < points[:, 0].max() < right
-    assert bodies.obstacles_of(found.scene)[0].velocity.tolist() == [-1, 0]
+    x_min, x_max, *_ = bodies.limits([figures.deformed(vtu.read(path), False)])
+    xs = [np.interp(t, result.history["t"], result.history[f"x_{b}"]) for b in (1, 2)]
+    assert points[:, 0].min() == pytest.approx(xs[0] - 0.05, abs=0.004) and x_min < points[:, 0].min() < points[:, 0].max() < x_max
+    assert bodies.obstacles_of(result.scene)[0].velocity.tolist() == [-1, 0]
 
 
 # ---- what is refused
@@ -216,7 +218,7 @@ def values(folder) -> dict:
     return {name: value for name, value in (used | used["contact"]).items() if name in parameters.names("bodies")}
 
 
-@pytest.mark.parametrize("words, said", [
+@pytest.mark.parametrize("words, message", [
     (("disc-normal", "--set", "block_width=3"), "block_width: disc-plane takes no such parameter (accepted: in disc-block)"),
     (("disc-block", "--mesh", "MESH"), "mesh: disc-block takes no such parameter (accepted: in disc-plane|ball-axisymmetric|bodies|bodies-axisymmetric|bodies-3d)"),
     (("two-discs", "--mesh", "MESH"), "mesh: is of one body"),
@@ -225,12 +227,12 @@ def values(folder) -> dict:
     (("two-discs", "--set", "body.1.position=[0,0]"), "body.1.position: 'left' overlaps 'right' (body.2)"),
     (("two-discs", "--set", "contact.friction_dynamic=0.5"), "contact.friction_dynamic: 0.5 is larger than friction_static 0.3"),
 ])
-def test_what_python_refuses(words, said, tmp_path, capsys):
+def test_what_python_refuses(words, message, tmp_path, capsys):
     """Exit code 10, one line, no files left."""
     (tmp_path / "m.msh").write_text("4 2 4\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n1 2 3 0\n1 3 4 0\n1 2 1\n2 3 1\n3 4 1\n4 1 1\n")
     code = main(["run", *(str(tmp_path / "m.msh") if word == "MESH" else word for word in words), "--out", str(tmp_path / "out"), "--quiet"])
     error = capsys.readouterr().err
-    assert code == 10 and error.count("\n") == 1 and said in error, error
+    assert code == 10 and error.count("\n") == 1 and message in error, error
     assert [path.name for path in tmp_path.iterdir()] == ["m.msh"]
 
 
@@ -263,13 +265,13 @@ def test_a_shaft_of_a_file_has_its_flats(tmp_path):
     points = np.vstack([radius * np.column_stack([np.cos(angles), np.sin(angles)]), [0, 0]])
     mesh.write(mesh.Mesh(points, spokes, spokes[:, 1:], np.ones(16, dtype=int)), tmp_path / "shaft.msh")
     body = {"name": "shaft", "shape": "mesh", "file": "shaft.msh", "position": [0, 0.0101], "velocity": [0, -2], "angle": 60}
-    found = run.run(read_scene(FALLING | {"body": [body], "end_time": 3e-3}, tmp_path, "shaft"), {}, tmp_path / "run")
-    assert found.summary["estimated_error_excludes"][-1] == "mesh" and any("those of the step" in one or "not estimated" in one for one in found.summary["warnings"] + found.summary["notes"])
+    result = run.run(read_scene(FALLING | {"body": [body], "end_time": 3e-3}, tmp_path, "shaft"), {}, tmp_path / "run")
+    assert result.summary["estimated_error_excludes"][-1] == "mesh" and any("those of the step" in sentence or "not estimated" in sentence for sentence in result.summary["warnings"] + result.summary["notes"])
     area = radius**2 * (math.pi - 2 * flat + math.sin(2 * flat))
-    assert found.summary["energy_initial"] == pytest.approx(area * 1722 * 2, rel=1e-4) and abs(found.summary["rebound_spin"]) > 50
-    assert "outline: shaft: 14 edges on circles, 2 straight edges; 16 may touch\n" in (found.folder / "log.txt").read_text()
+    assert result.summary["energy_initial"] == pytest.approx(area * 1722 * 2, rel=1e-4) and abs(result.summary["rebound_spin"]) > 50
+    assert "outline: shaft: 14 edges on circles, 2 straight edges; 16 may touch\n" in (result.folder / "log.txt").read_text()
     # 0.3 % more than the file.
-    assert not any(one.startswith("mass") for one in found.summary["warnings"])
+    assert not any(warning.startswith("mass") for warning in result.summary["warnings"])
 
 
 def test_bodies_turn_about_their_stated_centre(tmp_path):
@@ -278,11 +280,11 @@ def test_bodies_turn_about_their_stated_centre(tmp_path):
 
     They come into contact at the same time, and their positions agree to round-off.
     """
-    found = []
+    results = []
     for axes, angle in (([0.06, 0.03], 0), ([0.03, 0.06], 90)):
         body = {"shape": "ellipse", "semi_axes": axes, "angle": angle, "position": [0, 0.031], "velocity": [0, -1], "mesh_size": 0.015}
-        found.append(run.run(read_scene(FALLING | {"body": [body], "end_time": 1.1e-3}, tmp_path, "ellipse"), {}, tmp_path / str(angle), estimate=False))
-    first, second = found
+        results.append(run.run(read_scene(FALLING | {"body": [body], "end_time": 1.1e-3}, tmp_path, "ellipse"), {}, tmp_path / str(angle), estimate=False))
+    first, second = results
     assert first.summary["contact_start"] == pytest.approx(second.summary["contact_start"], rel=1e-9)
     assert second.history["y"] == pytest.approx(first.history["y"], abs=1e-12) and abs(second.history["x"]).max() < 1e-12
 
@@ -297,8 +299,8 @@ def test_a_body_that_passes_through_itself_is_warned_about(tmp_path):
     pin = {"shape": "polygon", "vertices": [[0, 0], [0.1, 0], [0.1, 0.01], [0.01, 0.01], [0.01, 0.02], [0.1, 0.02], [0.1, 0.03], [0, 0.03]],
            "position": [0, 0.0151], "velocity": [0, -6], "mesh_size": 0.009, "contact_mesh_size": 0.009}
     for end, words in ((4e-3, "overlap: the body passes through itself from t = "), (8e-4, "")):
-        found = run.run(read_scene(FALLING | {"body": [pin], "end_time": end, "contact": {"self_contact": "off"}}, tmp_path, "pin"), {}, tmp_path / "pin", estimate=False)
-        warned = [one for one in found.summary["warnings"] if "overlap" in one]
+        result = run.run(read_scene(FALLING | {"body": [pin], "end_time": end, "contact": {"self_contact": "off"}}, tmp_path, "pin"), {}, tmp_path / "pin", estimate=False)
+        warned = [warning for warning in result.summary["warnings"] if "overlap" in warning]
         assert len(warned) == (words != "")
         for sentence in warned:
             assert sentence.startswith(words) and 8e-4 < float(sentence.split("t = ")[1].split()[0]) < 4e-3
@@ -313,8 +315,8 @@ def test_bodies_that_never_meet(tmp_path, dimension, shape, zeros):
     def prepare(up: float, **more) -> None:
         def body(name: str, y: float, v: float) -> dict:
             return dict(name=name, shape=shape, radius=0.02, position=[0, y] + zeros * [0], velocity=[0, v] + zeros * [0])
-        given = dict(dimension=dimension, law="neohookean", young=1e6, nu=0.3, density=1000, accuracy=0.4, body=[body("above", 0.05, up), body("below", 0, 0)])
-        assembly.prepare(read_scene(given | more, tmp_path, "two"), tmp_path)
+        tables = dict(dimension=dimension, law="neohookean", young=1e6, nu=0.3, density=1000, accuracy=0.4, body=[body("above", 0.05, up), body("below", 0, 0)])
+        assembly.prepare(read_scene(tables | more, tmp_path, "two"), tmp_path)
 
     with pytest.raises(BadInput, match="^velocity: 0 of every body"):
         prepare(0)
@@ -335,7 +337,7 @@ def inputs(tmp_path_factory):
 
 
 @pytest.mark.few(10)
-@pytest.mark.parametrize("file, old, new, said", [
+@pytest.mark.parametrize("file, old, new, message", [
     ("scene.dat", "ffimpact-bodies 1", "ffimpact-bodies 2", "does not begin with 'ffimpact-bodies 1'"),
     ("scene.dat", "neohookean 7000000.0", "neohookean seven", "has a word where a number belongs"),
     ("scene.dat", "pairs 0", "pairs 1", "ends too early"),
@@ -360,7 +362,7 @@ def inputs(tmp_path_factory):
     ("scene.dat", None, None, "bodies: the file"),
     ("mesh.msh", None, None, "mesh: the file"),
 ])
-def test_what_a_direct_run_refuses(file, old, new, said, inputs, tmp_path):
+def test_what_a_direct_run_refuses(file, old, new, message, inputs, tmp_path):
     """bodies.edp with a bad data file or mesh: exit code 10, one line, no files left."""
     for name in ("scene.dat", "mesh.msh"):
         text = (inputs / name).read_text()
@@ -372,7 +374,7 @@ def test_what_a_direct_run_refuses(file, old, new, said, inputs, tmp_path):
         if name != file or old:
             (tmp_path / name).write_text(text)
     done = freefem_run("-mesh", str(tmp_path / "mesh.msh"), "-bodies", str(tmp_path / "scene.dat"), "-accuracy", "0.4", "-out", str(tmp_path / "out"))
-    assert done.returncode == 10 and said in done.stderr and done.stderr.count("\n") == 1, done.stderr
+    assert done.returncode == 10 and message in done.stderr and done.stderr.count("\n") == 1, done.stderr
     assert not (tmp_path / "out").exists()
 
 
@@ -392,16 +394,16 @@ def _other_triangles(text: str, what: str, new) -> str:
 
 
 @pytest.mark.few(2)
-@pytest.mark.parametrize("script, flags, said", [
+@pytest.mark.parametrize("script, flags, message", [
     ("bodies", ("-accuracy", "0.4"), "bodies: -bodies FILE is missing"),
     ("bodies", ("-radius", "1"), "radius: bodies takes no such parameter (accepted: in disc-plane|disc-block|ball-plane|ball-axisymmetric)"),
     ("disc-block", ("-bodies", "x"), "bodies: disc-block takes no such parameter (accepted: in bodies|bodies-axisymmetric|bodies-3d)"),
     ("disc-plane", ("-block_height", "1"), "block_height: disc-plane takes no such parameter (accepted: in disc-block)"),
 ])
-def test_flags_of_another_script_are_refused(script, flags, said):
+def test_flags_of_another_script_are_refused(script, flags, message):
     """A direct run refuses parameters that its script does not use, with exit code 10."""
     done = freefem_run(*flags, script=script)
-    assert done.returncode == 10 and said in done.stderr and done.stderr.count("\n") == 1
+    assert done.returncode == 10 and message in done.stderr and done.stderr.count("\n") == 1
 
 
 def test_scripts_describe_themselves():
@@ -412,7 +414,7 @@ def test_scripts_describe_themselves():
 
 # ---- dependent entries
 
-@pytest.mark.parametrize("name, given, opened, kept", [
+@pytest.mark.parametrize("name, entries, opened, kept", [
     ("disc-oblique", {"friction_static": "0.3"}, {"friction_dynamic": 0.3}, {"penalty": 1e10, "slip_velocity": 0.1}),
     ("disc-oblique", {"friction_static": 0.8}, {"friction_dynamic": 0.8}, {"penalty": 1e10}),
     ("disc-oblique", {"friction_static": 0.8, "friction_dynamic": 0.6}, {"friction_dynamic": 0.6}, {}),
@@ -422,21 +424,21 @@ def test_scripts_describe_themselves():
     ("disc-rolling", {"radius": 0.5}, {"mesh_size": "open", "contact_mesh_size": "open", "penalty": "auto"}, {"end_time": 0.2}),
     ("disc-normal", {"height": 0.01}, {}, {"penalty": 1e10}),  # height of the fall, not of a body
     ("disc-block", {"radius": 0.1}, {"block_width": 2.0, "block_height": 0.4}, {})])
-def test_what_a_scene_fixed_for_its_own_follows(name, given, opened, kept):
+def test_what_a_scene_fixed_for_its_own_follows(name, entries, opened, kept):
     """If material, size or static friction of a built-in scene is set alone, its dependent entries
     become automatic, and a sentence reports it.
 
     All other entries stay.
     """
     before = scene.load(name)
-    after = before.override(given)
-    used, alone = after.description()["used"], before.override(dict.fromkeys(set(opened) - set(given), "auto") | given
-                                                               if "open" not in opened.values() else {"mesh_size": 0, "contact_mesh_size": 0, "penalty": "auto"} | given)
+    after = before.override(entries)
+    used, alone = after.description()["used"], before.override(dict.fromkeys(set(opened) - set(entries), "auto") | entries
+                                                               if "open" not in opened.values() else {"mesh_size": 0, "contact_mesh_size": 0, "penalty": "auto"} | entries)
     assert all(used[entry] == alone.description()["used"][entry] for entry in opened)
     assert all(used[entry] == value for entry, value in opened.items() if not isinstance(value, str))
     assert all(used[entry] == value == before.description()["used"][entry] for entry, value in kept.items())
-    freed = set(opened) - set(given)
-    assert len(after.released) == len(freed) and all(any(said.startswith(f"{entry} is reset to automatic") for said in after.released) for entry in freed)
+    freed = set(opened) - set(entries)
+    assert len(after.released) == len(freed) and all(any(message.startswith(f"{entry} is reset to automatic") for message in after.released) for entry in freed)
 
 
 def test_what_a_scene_of_bodies_fixed_follows():
@@ -463,7 +465,7 @@ def test_what_a_scene_of_bodies_fixed_follows():
 def test_a_sweep_over_friction_sets_both(tmp_path):
     """Every point of an axis friction_static has one coefficient if the dynamic one is not set;
     else it has two."""
-    for more, wanted in (("", [0.7, 0.3]), ("[set]\nfriction_dynamic = 0.2\n", [0.2, 0.2])):
+    for more, expected in (("", [0.7, 0.3]), ("[set]\nfriction_dynamic = 0.2\n", [0.2, 0.2])):
         (tmp_path / "friction.toml").write_text(f'scene = "disc-oblique"\n{more}[product]\nfriction_static = [0.7, 0.3]\n')
-        found = sweep.load(str(tmp_path / "friction.toml"))
-        assert [scene.load(found.scene).override(found.base | point).description()["used"]["friction_dynamic"] for point in found.points] == wanted
+        plan = sweep.load(str(tmp_path / "friction.toml"))
+        assert [scene.load(plan.scene).override(plan.base | point).description()["used"]["friction_dynamic"] for point in plan.points] == expected

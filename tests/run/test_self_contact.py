@@ -27,9 +27,9 @@ from tests.support.self_contact import (
 )
 
 
-def partners(given: dict) -> list[tuple[int, int]]:
+def partners(tables: dict) -> list[tuple[int, int]]:
     """The contact pairs of bodies with themselves in a scene."""
-    return [(pair.first, pair.second) for pair in read(given).pairs if pair.first == pair.second]
+    return [(pair.first, pair.second) for pair in read(tables).pairs if pair.first == pair.second]
 
 
 @pytest.mark.few(1)
@@ -37,20 +37,20 @@ def partners(given: dict) -> list[tuple[int, int]]:
 def test_a_hairpin_closes_and_opens_again(tmp_path, friction):
     """Its free arm closes the slot of 10 mm at 6 m/s, to a hundredth of it, and returns. Energy
     with friction work is conserved."""
-    found = ran(tmp_path, SCENE | {"body": [PIN], "end_time": 12e-3, "fields": 40, "contact": {"friction_static": friction}})
-    balanced(found)
-    assert "self-contact" not in found.summary["skipped"] and (found.summary["friction_work"] > 0.1) == (friction > 0)
+    result = ran(tmp_path, SCENE | {"body": [PIN], "end_time": 12e-3, "fields": 40, "contact": {"friction_static": friction}})
+    balanced(result)
+    assert "self-contact" not in result.summary["skipped"] and (result.summary["friction_work"] > 0.1) == (friction > 0)
     # Without the corners of the ends, which lie beyond the last contact points.
-    slot = distances(found, lambda x, y: (abs(y - 0.005) < 1e-9) & (abs(x - 0.01) < 0.035), lambda x, y: (abs(y + 0.005) < 1e-9) & (x > -0.03))
+    slot = distances(result, lambda x, y: (abs(y - 0.005) < 1e-9) & (abs(x - 0.01) < 0.035), lambda x, y: (abs(y + 0.005) < 1e-9) & (x > -0.03))
     closed = slot.argmin()
-    assert abs(slot[closed]) < 2e-4 and slot[0] > 0.0099 and slot[closed:].max() > 0.003 and found.summary["max_penetration"] < 2e-4
+    assert abs(slot[closed]) < 2e-4 and slot[0] > 0.0099 and slot[closed:].max() > 0.003 and result.summary["max_penetration"] < 2e-4
 
 
 def test_a_ring_hits_a_plane_so_hard_that_it_closes(tmp_path):
     """Its inner sides come into contact and separate before it leaves the plane."""
-    found = ran(tmp_path, SCENE | {"body": [RING], "end_time": 14e-3, "fields": 30})
-    balanced(found)
-    hole = distances(found, lambda x, y: (abs(np.hypot(x, y) - 0.044) < 1e-9) & (y > 0.02), lambda x, y: (abs(np.hypot(x, y) - 0.044) < 1e-9) & (y < -0.02))
+    result = ran(tmp_path, SCENE | {"body": [RING], "end_time": 14e-3, "fields": 30})
+    balanced(result)
+    hole = distances(result, lambda x, y: (abs(np.hypot(x, y) - 0.044) < 1e-9) & (y > 0.02), lambda x, y: (abs(np.hypot(x, y) - 0.044) < 1e-9) & (y < -0.02))
     assert abs(hole.min()) < 1e-3 and hole[hole.argmin():].max() > 0.003
 
 
@@ -60,11 +60,11 @@ def test_a_free_hairpin_keeps_all_momenta(tmp_path, friction):
     """A disc closes the slot of a free hairpin off its centre: self-contact neither moves nor
     rotates the hairpin as a whole."""
     disc = DISC | {"position": [0.04, 0.0255], "velocity": [0, -12]}
-    found = ran(tmp_path, SCENE | {"obstacle": [], "body": [PIN | {"position": [0, 0], "velocity": [0, 0]}, disc], "end_time": 4e-3, "fields": 20, "contact": {"friction_static": friction}})
-    balanced(found)
-    slot = distances(found, lambda x, y: (abs(y - 0.005) < 1e-9) & (x > -0.03) & (x < 0.06), lambda x, y: (abs(y + 0.005) < 1e-9) & (x > -0.03) & (x < 0.06))
+    result = ran(tmp_path, SCENE | {"obstacle": [], "body": [PIN | {"position": [0, 0], "velocity": [0, 0]}, disc], "end_time": 4e-3, "fields": 20, "contact": {"friction_static": friction}})
+    balanced(result)
+    slot = distances(result, lambda x, y: (abs(y - 0.005) < 1e-9) & (x > -0.03) & (x < 0.06), lambda x, y: (abs(y + 0.005) < 1e-9) & (x > -0.03) & (x < 0.06))
     assert abs(slot.min()) < 5e-4
-    h = found.history
+    h = result.history
     for column, scale in (("momentum_x", h["momentum_y"]), ("momentum_y", h["momentum_y"]), ("angular_momentum", h["angular_momentum"])):
         assert np.ptp(h[column]) < 1e-9 * abs(scale[0])
 
@@ -74,11 +74,11 @@ def test_a_groove_of_revolution_closes(tmp_path):
     contact with its other flange."""
     flanges = [[0, 0], [0.05, 0], [0.05, 0.005], [0.012, 0.005], [0.012, 0.009], [0.05, 0.009], [0.05, 0.014], [0, 0.014]]
     body = {"shape": "polygon", "vertices": flanges, "position": 0.00705, "velocity": -12, "mesh_size": 0.005, "contact_mesh_size": 0.005}
-    given = SCENE | {"dimension": "axisymmetric", "body": [body], "end_time": 2e-3, "contact": {"friction_static": 0.3}}
-    assert partners(given) == [(0, 0)]
-    found, free = (ran(tmp_path, given | {"contact": {"friction_static": 0.3, "self_contact": word}}, word) for word in ("auto", "off"))
-    balanced(found)
-    assert any(one.startswith("overlap") for one in free.summary["warnings"])
+    tables = SCENE | {"dimension": "axisymmetric", "body": [body], "end_time": 2e-3, "contact": {"friction_static": 0.3}}
+    assert partners(tables) == [(0, 0)]
+    result, free = (ran(tmp_path, tables | {"contact": {"friction_static": 0.3, "self_contact": word}}, word) for word in ("auto", "off"))
+    balanced(result)
+    assert any(warning.startswith("overlap") for warning in free.summary["warnings"])
 
 
 def test_which_bodies_touch_themselves(tmp_path):
@@ -89,15 +89,15 @@ def test_which_bodies_touch_themselves(tmp_path):
     """
     thick, block = RING | {"inner_radius": 0.01}, DISC | {"position": [1, 1]}
     bodies = [PIN, RING | {"position": [0.3, 0.1]}, thick | {"name": "thick", "position": [0.6, 0.1]}, block]
-    given = SCENE | {"body": bodies}
-    assert partners(given) == [(0, 0), (1, 1)] == partners(given | {"contact": {"self_contact": "auto"}})
-    assert partners(given | {"contact": {"self_contact": "on"}}) == [(0, 0), (1, 1), (2, 2), (3, 3)]
+    tables = SCENE | {"body": bodies}
+    assert partners(tables) == [(0, 0), (1, 1)] == partners(tables | {"contact": {"self_contact": "auto"}})
+    assert partners(tables | {"contact": {"self_contact": "on"}}) == [(0, 0), (1, 1), (2, 2), (3, 3)]
     own = {"self_contact": "off", "pair": [{"bodies": ["thick", "thick"], "penalty": 1e9}]}
-    assert partners(given | {"contact": {"self_contact": "off"}}) == [] and partners(given | {"contact": own}) == [(2, 2)]
-    assert partners(given | {"obstacle": [], "contact": {"pairing": "pairwise"}}) == []
-    for contact, said in (({"self_contact": "yes"}, "^contact.self_contact: 'yes' is not known .accepted: auto|on|off"), ({"self_contact": "on", "pairing": "pairwise"}, "^contact.self_contact: on, but pairing = 'pairwise'")):
-        with pytest.raises(BadInput, match=said):
-            read(given | {"contact": contact})
+    assert partners(tables | {"contact": {"self_contact": "off"}}) == [] and partners(tables | {"contact": own}) == [(2, 2)]
+    assert partners(tables | {"obstacle": [], "contact": {"pairing": "pairwise"}}) == []
+    for contact, message in (({"self_contact": "yes"}, "^contact.self_contact: 'yes' is not known .accepted: auto|on|off"), ({"self_contact": "on", "pairing": "pairwise"}, "^contact.self_contact: on, but pairing = 'pairwise'")):
+        with pytest.raises(BadInput, match=message):
+            read(tables | {"contact": contact})
     _, used, _ = assembly.prepare(read(SCENE | {"body": [PIN], "contact": {"penalty": 1e9}}), tmp_path)
     assert used["contact"]["self_contact"] == "auto" and used["contact"]["pair"] == [{"bodies": ["pin", "pin"], "penalty": 1e9, "friction_static": 0, "friction_dynamic": 0}]
     assert partners(used) == [(0, 0)] and assembly.prepare(read(used), tmp_path)[1] == used
@@ -129,8 +129,8 @@ def test_walls_of_a_hole_stop_each_other(tmp_path, shape):
     """
     body = SHAPES[shape](tmp_path)
     def pinched(word: str, end: float):
-        given = PINCHED | {"body": [body], "end_time": end, "contact": {"self_contact": word}}
-        return run.run(read(given, tmp_path), {}, tmp_path / f"{word}-{end}", estimate=False)
+        tables = PINCHED | {"body": [body], "end_time": end, "contact": {"self_contact": word}}
+        return run.run(read(tables, tmp_path), {}, tmp_path / f"{word}-{end}", estimate=False)
     stopped, passed, before = pinched("auto", 1.3e-3), pinched("off", 1.3e-3), pinched("off", 5e-4)
     assert stopped.summary["status"] == "ok" and stopped.summary["energy_drift"] < 1e-9
     assert not overlaps(stopped) and stopped.summary["max_penetration"] < 5e-4
@@ -151,9 +151,9 @@ def test_walls_of_a_ring_are_watched(tmp_path):
             "mesh_size": 0.0025, "contact_mesh_size": 0.0025}
     below = {"kind": "circle", "centre": [0, -0.0651], "radius": 0.015}
     above = below | {"centre": [0, 0.0651], "velocity": [0, -2]}
-    given = {"law": "neohookean", "young": 2e6, "nu": 0.3, "density": 1000, "accuracy": 0.2,
-             "body": [ring], "obstacle": [below, above], "contact": {"self_contact": "off"}}
-    apart, crossed = (ran(tmp_path, given | {"end_time": end}, f"{end}") for end in (0.044, 0.0465))
+    tables = {"law": "neohookean", "young": 2e6, "nu": 0.3, "density": 1000, "accuracy": 0.2,
+              "body": [ring], "obstacle": [below, above], "contact": {"self_contact": "off"}}
+    apart, crossed = (ran(tmp_path, tables | {"end_time": end}, f"{end}") for end in (0.044, 0.0465))
     assert not overlaps(apart)
     sentence, = overlaps(crossed)
     assert 0.044 < float(sentence.split("t = ")[1].split()[0]) <= 0.0465

@@ -95,9 +95,9 @@ def test_without_pyvista_the_rest_is_drawn(ball, no_pyvista, capsys):
     result = ball("quarter")
     (result.folder / "figures/solid.png").unlink(missing_ok=True)
     assert main(["figures", str(result.folder)]) == 0
-    said = capsys.readouterr()
-    assert "contact.png" in said.out and "solid.png" not in said.out and not (result.folder / "figures/solid.png").exists()
-    assert re.fullmatch(r"ffimpact: without figures/solid.png: PyVista is not installed \(\S+ -m pip install pyvista vtk\)\n", said.err)
+    captured = capsys.readouterr()
+    assert "contact.png" in captured.out and "solid.png" not in captured.out and not (result.folder / "figures/solid.png").exists()
+    assert re.fullmatch(r"ffimpact: without figures/solid.png: PyVista is not installed \(\S+ -m pip install pyvista vtk\)\n", captured.err)
     stage = movie.stage_of(result)
     stage.show(2e-3)
     assert isinstance(stage, movie.PlaneStage)
@@ -116,8 +116,8 @@ def test_a_crash_of_the_renderer_is_said_and_harms_nothing(ball, monkeypatch, ca
 @pytest.mark.robustness
 def test_a_run_says_nothing_of_it(ball, no_pyvista, tmp_path, capfd):
     """`make ball` without PyVista draws its figures and prints nothing on stderr."""
-    given = [f"{name}={value}" for name, value in COARSE.items()]
-    assert main(["run", "ball", "--set", *given, "end_time=2e-4", "speed=2", "--out", str(tmp_path / "out")]) == 0
+    settings = [f"{name}={value}" for name, value in COARSE.items()]
+    assert main(["run", "ball", "--set", *settings, "end_time=2e-4", "speed=2", "--out", str(tmp_path / "out")]) == 0
     assert capfd.readouterr().err == "" and (tmp_path / "out/figures/energies.png").exists()
 
 
@@ -166,7 +166,8 @@ def test_obstacles_are_in_the_views(ball):
     """For a scene of one body the plane y = 0 is shown, for a scene of bodies its obstacles."""
     result = ball("quarter")
     views = solid.Views(vtu.series(result.folder / "fields.pvd"), contact.read(result.folder), result.scene)
-    assert [one.kind for one in views.rigid] == ["plane"] and views.rigid[0].gap(np.array([[0.1, 0.02, 0.3]])) == pytest.approx([0.02])
+    assert [obstacle.kind for obstacle in views.rigid] == ["plane"]
+    assert views.rigid[0].gap(np.array([[0.1, 0.02, 0.3]])) == pytest.approx([0.02])
     among = dict(script="bodies-3d", dimension="3d", symmetry="quarter", obstacle=[dict(kind="sphere", centre=[0, -0.1, 0], radius=0.05)])
     views = solid.Views(vtu.series(result.folder / "fields.pvd"), contact.read(result.folder), among)
-    assert [one.kind for one in views.rigid] == ["sphere"] and views.at(views.times[1]).t == pytest.approx(views.times[1])
+    assert [obstacle.kind for obstacle in views.rigid] == ["sphere"] and views.at(views.times[1]).t == pytest.approx(views.times[1])

@@ -87,8 +87,8 @@ def test_bad_scenes(tmp_path, case):
 
 def test_what_breaks_the_symmetry(tmp_path):
     """A part of the bodies is computed only if initial state and obstacles are symmetric."""
-    for part, said in (({"velocity": (0, -2, 1)}, "starts away from z = 0, along z"), ({"spin": (0, 0, 1)}, "starts away from x = 0, along x, or turning")):
+    for part, message in (({"velocity": (0, -2, 1)}, "starts away from z = 0, along z"), ({"spin": (0, 0, 1)}, "starts away from x = 0, along x, or turning")):
         write(Scene([ball((0, 0, 0), 0.05, 1, 4, **part)], [("plane", (0, -1, 0, 0, 1, 0), (0, 0, 0))], copies=4), tmp_path)
-        refused(tmp_path, f"bodies: body0 {said}")
+        refused(tmp_path, f"bodies: body0 {message}")
     write(Scene([ball((0, 0, 0), 0.05, 1, 4)], [("plane", (0, -1, 0, 0.1, 1, 0), (0, 0, 0))], copies=4), tmp_path)
     refused(tmp_path, "bodies: obstacle 1, 'plane', has no mirror symmetry")

@@ -36,18 +36,18 @@ def order(monkeypatch):
 def test_two_at_a_time_give_the_same_to_the_last_digit(order, monkeypatch, tmp_path, name):
     """With two cores the coarser run starts before the main one has ended and runs once. Results,
     estimates and files equal those of sequential runs."""
-    found = {}
+    runs = {}
     for cores in (2, 1):
         monkeypatch.setattr(freefem, "CORES", cores)
-        found[cores] = go(name, tmp_path / str(cores) / "out")
+        runs[cores] = go(name, tmp_path / str(cores) / "out")
         both = [event for event in order if "finer" not in event]
         assert sorted(both) == ["coarser ends", "coarser starts", "out.part ends", "out.part starts"]
         assert (both.index("coarser starts") < both.index("out.part ends")) == (cores == 2)
         order.clear()
-    both = [{key: value for key, value in of.summary.items() if key not in EFFORT} for of in found.values()]
+    both = [{key: value for key, value in result.summary.items() if key not in EFFORT} for result in runs.values()]
     assert both[0] == both[1] and both[0]["estimated_error"]
-    assert all((found[1].folder / file).read_bytes() == (found[2].folder / file).read_bytes() for file in ANSWERS)
-    assert {path.name for path in found[1].folder.iterdir()} == {path.name for path in found[2].folder.iterdir()}
+    assert all((runs[1].folder / file).read_bytes() == (runs[2].folder / file).read_bytes() for file in ANSWERS)
+    assert {path.name for path in runs[1].folder.iterdir()} == {path.name for path in runs[2].folder.iterdir()}
 
 
 @pytest.mark.parametrize("why", ["a thread of a study", "no estimate", "one core"])
@@ -65,14 +65,14 @@ def test_sizes_that_are_used_otherwise_are_run_again(order, monkeypatch, tmp_pat
     """If the simultaneous coarser run is not the one that the finished main run requires, it is
     ended and repeated."""
     monkeypatch.setattr(freefem, "CORES", 2)
-    wanted, guesses = scene.load("disc-normal"), []
+    problem, guesses = scene.load("disc-normal"), []
 
     def other(values, used, factor, own_mesh=True):
         guesses.append(estimate.other(values, used, factor, own_mesh))
         return guesses[-1] | ({"mesh_size": 0.02} if len(guesses) == 1 else {})
-    monkeypatch.setattr(solver, "scaled", lambda scene, *given: other(*given))
-    found = run.run(wanted, SCENES["disc-normal"], tmp_path / "out", progress=False)
-    assert order.count("coarser starts") == 2 and found.summary["estimated_error"] and not list(tmp_path.glob("out.*"))
+    monkeypatch.setattr(solver, "scaled", lambda scene, *arguments: other(*arguments))
+    result = run.run(problem, SCENES["disc-normal"], tmp_path / "out", progress=False)
+    assert order.count("coarser starts") == 2 and result.summary["estimated_error"] and not list(tmp_path.glob("out.*"))
 
 
 def test_a_main_run_that_fails_takes_the_other_with_it(order, monkeypatch, tmp_path):
@@ -89,7 +89,7 @@ def test_a_run_beside_that_fails_is_said_where_it_was(monkeypatch, tmp_path):
     """A coarser run without a result does not change the main one, and a sentence has the reason
     why the error is unknown."""
     monkeypatch.setattr(freefem, "CORES", 2)
-    wanted = scene.load("disc-normal")
-    monkeypatch.setattr(solver, "scaled", lambda scene, *given: estimate.other(*given) | {"speed": 60, "law": "svk"})
-    found = run.run(wanted, SCENES["disc-normal"] | {"law": "neohookean"}, tmp_path / "out", progress=False)
-    assert found.summary["estimated_error"] is None and "the error is not estimated: the run with 1.4 times larger" in " ".join(found.summary["warnings"])
+    problem = scene.load("disc-normal")
+    monkeypatch.setattr(solver, "scaled", lambda scene, *arguments: estimate.other(*arguments) | {"speed": 60, "law": "svk"})
+    result = run.run(problem, SCENES["disc-normal"] | {"law": "neohookean"}, tmp_path / "out", progress=False)
+    assert result.summary["estimated_error"] is None and "the error is not estimated: the run with 1.4 times larger" in " ".join(result.summary["warnings"])

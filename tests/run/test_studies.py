@@ -66,7 +66,7 @@ def test_time_limit_kills_and_reports(fake, tmp_path):
 def test_an_error_that_nobody_expects_is_a_row(fake, tmp_path, monkeypatch, capsys):
     """An error of the program itself affects its own row only and is printed."""
     work = study.outcome_of
-    monkeypatch.setattr(study, "outcome_of", lambda folder, wanted, *more: 1 / 0 if wanted.values["speed"] == 4 else work(folder, wanted, *more))
+    monkeypatch.setattr(study, "outcome_of", lambda folder, problem, *more: 1 / 0 if problem.values["speed"] == 4 else work(folder, problem, *more))
     rows = go(tmp_path)
     assert rows.exit.tolist() == [1, 1, 0, 0] and rows.message[0] == "ZeroDivisionError: division by zero"
     assert "Traceback" in capsys.readouterr().err

@@ -44,14 +44,14 @@ def oscillations(t: np.ndarray, values: np.ndarray, guess: list[float]) -> tuple
     """Angular frequencies near the guess, and the mean and the amplitudes of cosines and sines,
     that fit the values best."""
     def waves(frequencies: np.ndarray) -> np.ndarray:
-        return np.column_stack([np.ones_like(t), *(turn(one * t) for one in frequencies for turn in (np.cos, np.sin))])
+        return np.column_stack([np.ones_like(t), *(turn(frequency * t) for frequency in frequencies for turn in (np.cos, np.sin))])
 
     def off(frequencies: np.ndarray) -> np.ndarray:
         matrix = waves(frequencies)
         return (matrix @ np.linalg.lstsq(matrix, values, rcond=None)[0] - values) / abs(values).max()
 
-    found = least_squares(off, guess, x_scale=guess).x
-    return found, np.linalg.lstsq(waves(found), values, rcond=None)[0]
+    solution = least_squares(off, guess, x_scale=guess).x
+    return solution, np.linalg.lstsq(waves(solution), values, rcond=None)[0]
 
 
 @pytest.fixture(scope="module", name="beam")
@@ -67,12 +67,12 @@ def test_a_clamped_beam_has_its_bending_frequencies(beam):
     These are up to 2.6 % below those without shear, which the beam does not have.
     """
     slender = [euler_bernoulli(factor) for factor in (1.875104, 4.694091, 7.854757)]
-    exact = [brentq(timoshenko, 0.85 * one, 1.01 * one) for one in slender]
+    exact = [brentq(timoshenko, 0.85 * frequency, 1.01 * frequency) for frequency in slender]
     assert [a / b for a, b in zip(exact, slender)] == pytest.approx([0.998, 0.989, 0.974], abs=1e-3)
     history = beam.history
     middle = history["t"][1:] - history["dt"][1:] / 2  # forces are means over a step
-    found, _ = oscillations(middle, history["support_moment_1"][1:], exact)
-    assert found == pytest.approx(exact, rel=1e-3)
+    frequencies, _ = oscillations(middle, history["support_moment_1"][1:], exact)
+    assert frequencies == pytest.approx(exact, rel=1e-3)
 
 
 def test_a_step_load_overshoots_to_twice_the_static_state(beam):
@@ -84,7 +84,7 @@ def test_a_step_load_overshoots_to_twice_the_static_state(beam):
     """
     history = beam.history
     middle = history["t"][1:] - history["dt"][1:] / 2
-    guess = [brentq(timoshenko, 0.85 * euler_bernoulli(one), 1.01 * euler_bernoulli(one)) for one in (1.8751, 4.6941, 7.8548)]
+    guess = [brentq(timoshenko, 0.85 * euler_bernoulli(root), 1.01 * euler_bernoulli(root)) for root in (1.8751, 4.6941, 7.8548)]
     _, (mean, cosine, sine, *_) = oscillations(middle, history["support_moment_1"][1:], guess)
     assert mean == pytest.approx(-FORCE * LENGTH, rel=2e-3)
     assert -cosine / mean == pytest.approx(4 / 1.875104**2, rel=5e-3) and abs(sine) < 1e-2 * abs(cosine)

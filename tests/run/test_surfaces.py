@@ -14,11 +14,11 @@ def test_a_slab_is_a_plane(tmp_path):
     """They agree to the accuracy of the solver. The file is beside the scene, in mm, and is copied
     to the results."""
     slab(tmp_path / "slab.stl")
-    found = run(tmp_path, 'kind = "surface"\nfile = "slab.stl"\nscale = 0.001')
+    summary = run(tmp_path, 'kind = "surface"\nfile = "slab.stl"\nscale = 0.001')
     plane = run(tmp_path, 'kind = "plane"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]', name="plane")
     for name in ("impulse", "rebound_vx", "rebound_vy", "rebound_spin", "friction_work"):
-        assert found[name] == pytest.approx(plane[name], rel=1e-6), name
-    assert found["energy_drift"] < 1e-9
+        assert summary[name] == pytest.approx(plane[name], rel=1e-6), name
+    assert summary["energy_drift"] < 1e-9
     assert list((tmp_path / "scene" / "body-files").glob("*.stl"))
 
 
@@ -44,5 +44,5 @@ def test_wrong_files(tmp_path, capsys, what, named):
     file = tmp_path / "scene.toml"
     file.write_text(SCENE.format(obstacle='kind = "surface"\n' + what, position="[0, 0.0501, 0]"))
     assert main(["run", str(file), "--out", str(tmp_path / "out")]) == 10
-    said = capsys.readouterr().err
-    assert named in said and said.startswith("ffimpact: ")
+    message = capsys.readouterr().err
+    assert named in message and message.startswith("ffimpact: ")

@@ -27,13 +27,13 @@ from tests.support.sweep import COARSE, DRAWN, SIX, orphans, table, write
 def test_points_are_products_of_axes_and_zips(tmp_path):
     """Every combination of lists, ranges and zips, with the first axis slowest. Each point appears
     again with its refinement."""
-    wanted = sweep.load(str(write(tmp_path, 'scene = "disc-oblique"\n[product]\nspeed = { from = 1, to = 100, points = 3, spacing = "log" }\n'
-                                  '[[zip]]\nnu = [0.3, 0.4]\nlaw = ["svk", "neohookean"]\n[refine]\naccuracy = 0.001\n')))
-    assert [tuple(point.values()) for point in wanted.points] == [
+    plan = sweep.load(str(write(tmp_path, 'scene = "disc-oblique"\n[product]\nspeed = { from = 1, to = 100, points = 3, spacing = "log" }\n'
+                                '[[zip]]\nnu = [0.3, 0.4]\nlaw = ["svk", "neohookean"]\n[refine]\naccuracy = 0.001\n')))
+    assert [tuple(point.values()) for point in plan.points] == [
         (v, n, law) for v in (1.0, 10.0, 100.0) for n, law in ((0.3, "svk"), (0.4, "neohookean"))]
-    assert wanted.axes == ["speed", "nu", "law"] and wanted.scene == "disc-oblique" and wanted.base == {"fields": 0}
-    assert wanted.runs == wanted.points + [point | {"accuracy": 0.001} for point in wanted.points]
-    assert wanted.collect == describe_results()["summary"] and "contact_time" in wanted.collect
+    assert plan.axes == ["speed", "nu", "law"] and plan.scene == "disc-oblique" and plan.base == {"fields": 0}
+    assert plan.runs == plan.points + [point | {"accuracy": 0.001} for point in plan.points]
+    assert plan.collect == describe_results()["summary"] and "contact_time" in plan.collect
 
 
 @pytest.mark.parametrize("text, words", [
@@ -105,11 +105,11 @@ def test_built_in_sweeps_are_sound(name):
     No point leaves entries automatic that its scene fixes: an axis of the static coefficient has
     the dynamic one beside it.
     """
-    wanted = sweep.load(name)
-    given = sweep.scene.load(wanted.scene)
-    assert not {said for point in wanted.points for said in given.override(wanted.base | point).released}
-    assert "nu" in wanted.axes or "ν = " in sweep_figures.constants(wanted)
-    assert wanted.title != name and wanted.figure and f" {name}" in (parameters.ROOT / "Makefile").read_text()
+    plan = sweep.load(name)
+    scene = sweep.scene.load(plan.scene)
+    assert not {message for point in plan.points for message in scene.override(plan.base | point).released}
+    assert "nu" in plan.axes or "ν = " in sweep_figures.constants(plan)
+    assert plan.title != name and plan.figure and f" {name}" in (parameters.ROOT / "Makefile").read_text()
 
 
 # ---- the table
@@ -124,9 +124,9 @@ def test_table_and_figure(fake, tmp_path, capsys):
     assert (rows.exit == 0).all() and (rows.impulse == 208.2).all() and fake.starts() == 6
     assert {path.name for path in out.iterdir()} == {"runs", "sweep.csv", "sweep.png", "sweep.toml"}
     assert (out / "sweep.toml").read_text() == DRAWN and plt.imread(out / "sweep.png").std() > 0
-    said = capsys.readouterr().out
-    assert "6 of 6 points finished" in said and "ν = 0.3: contact time over speed" in said and "no error bars" in said
-    assert "\nunits: speed m/s, contact_time s" in said
+    output = capsys.readouterr().out
+    assert "6 of 6 points finished" in output and "ν = 0.3: contact time over speed" in output and "no error bars" in output
+    assert "\nunits: speed m/s, contact_time s" in output
     assert all(results.read_scene(folder)["mesh_size"] == 0.02 for folder in (out / "runs").iterdir())
 
 
@@ -138,20 +138,21 @@ def test_failed_points_are_kept_with_their_reason(fake, tmp_path, capsys, mode, 
     fake(mode)
     path, out = write(tmp_path, DRAWN), tmp_path / "out"
     assert main(["sweep", str(path), "--out", str(out)]) == returned
-    rows, said = table(out), capsys.readouterr()
-    assert (rows.exit == code).all() and rows.message.notna().all() and "0 of 6 points finished" in said.out
+    rows, captured = table(out), capsys.readouterr()
+    assert (rows.exit == code).all() and rows.message.notna().all() and "0 of 6 points finished" in captured.out
     assert rows.impulse.isna().all(), "what a failed run came to is no result"
-    assert f"failed, exit {code}: speed=4.0,nu=0.3" in said.out
-    assert said.err.count("\n") == returned and ("6 of 6 points have no answer" in said.err and "runs again" in said.err) == (returned == 1)
+    assert f"failed, exit {code}: speed=4.0,nu=0.3" in captured.out
+    assert captured.err.count("\n") == returned and (
+        "6 of 6 points have no answer" in captured.err and "runs again" in captured.err) == (returned == 1)
     assert main(["sweep", str(path), "--out", str(out)]) == returned and fake.starts() == (12 if returned else 6)
 
 
 def test_bad_input_of_a_point_is_said_with_its_code(fake, tmp_path, capsys):
     """A point that cannot run is a row, and the sweep ends with its exit code and one line."""
     assert main(["sweep", str(write(tmp_path, "[product]\nmesh_size = [0.02, 1.0]\n")), "--out", str(tmp_path / "out")]) == 10
-    said = capsys.readouterr()
-    assert said.err.count("\n") == 1 and "1 of 2 points have no answer, first: mesh_size=1.0: mesh_size: 1 is larger than the radius 0.05" in said.err
-    assert table(tmp_path / "out").exit.tolist() == [0, 10] and "again" not in said.err
+    captured = capsys.readouterr()
+    assert captured.err.count("\n") == 1 and "1 of 2 points have no answer, first: mesh_size=1.0: mesh_size: 1 is larger than the radius 0.05" in captured.err
+    assert table(tmp_path / "out").exit.tolist() == [0, 10] and "again" not in captured.err
 
 
 def test_a_parameter_with_the_name_of_a_result_keeps_its_values(fake, tmp_path):
@@ -166,8 +167,8 @@ def test_a_parameter_with_the_name_of_a_result_keeps_its_values(fake, tmp_path):
 def test_damaged_folders_are_run_again(fake, tmp_path, text):
     """An invalid failure.json stops nothing."""
     path, out = write(tmp_path, COARSE + "[product]\nspeed = [4]\n"), tmp_path / "out"
-    wanted = sweep.load(str(path))
-    place = study.place(out, wanted.points[0])
+    plan = sweep.load(str(path))
+    place = study.place(out, plan.points[0])
     place.mkdir(parents=True)
     (place / "failure.json").write_text(text)
     assert sweep.main([str(path), "--out", str(out)]) == 0 and (table(out).exit == 0).all()
@@ -186,9 +187,9 @@ def test_error_bars_are_what_refining_changes(tmp_path):
     """With [refine] the number is that of the refined run, and its error the difference to the
     plain one."""
     text = "collect = ['impulse', 'dofs']\n[set]\ndegree = 1\nend_time = 1e-3\naccuracy = 0.02\n[product]\nspeed = [4, 8]\n[refine]\naccuracy = 0.005\n"
-    wanted = sweep.load(str(write(tmp_path, text)))
-    rows = sweep.collect(wanted, tmp_path / "out")
-    plain, fine = (study.study([point | extra for point in wanted.points], tmp_path / "out", wanted.base, 60.0) for extra in ({}, wanted.refine))
+    plan = sweep.load(str(write(tmp_path, text)))
+    rows = sweep.collect(plan, tmp_path / "out")
+    plain, fine = (study.study([point | extra for point in plan.points], tmp_path / "out", plan.base, 60.0) for extra in ({}, plan.refine))
     assert plain.reused.all() and fine.reused.all() and (plain.dofs != fine.dofs).all()
     assert rows.impulse.tolist() == fine.impulse.tolist() and (rows.impulse_error > 0).all()
     assert rows.impulse_error.tolist() == (fine.impulse - plain.impulse).abs().tolist()
@@ -239,18 +240,18 @@ def test_snakemake_gives_the_same_table(fake, tmp_path):
     pd.testing.assert_frame_equal(table(out), table(calm))
 
 
-@pytest.mark.parametrize("given, stars", [
+@pytest.mark.parametrize("settings, stars", [
     ("law = 'svk'\n[product]\nspeed = [4, 8]", 1), ("law = 'neohookean'\n[product]\nspeed = [4, 8]", 0),
     ("law = 'svk'\n[product]\nspeed = [4, 8]\nlaw = ['neohookean', 'svk']", 1), ("young = 5e6\n[product]\nspeed = [4, 8]", 0),
     ("viscosity = 10\n[product]\nspeed = [4, 8]", 0)])
-def test_the_papers_star_stands_in_studies_of_its_scene(fake, tmp_path, given, stars):
+def test_the_papers_star_stands_in_studies_of_its_scene(fake, tmp_path, settings, stars):
     """The paper's number is drawn only if one of the curves has its law and scene."""
-    by = "by = 'law'\n" if "'neohookean', 'svk'" in given else ""
-    given = given.replace("law = 'svk'\n", "") if by else given
-    text = f"[set]\n{given}\n[figure]\nx = 'speed'\ny = 'contact_time'\n{by}"
-    wanted = sweep.load(str(write(tmp_path, text)))
-    rows = pd.DataFrame(wanted.points).assign(exit=0, contact_time=4.7e-3)
-    figure = sweep_figures.draw_lines(wanted, rows, tmp_path)
+    by = "by = 'law'\n" if "'neohookean', 'svk'" in settings else ""
+    settings = settings.replace("law = 'svk'\n", "") if by else settings
+    text = f"[set]\n{settings}\n[figure]\nx = 'speed'\ny = 'contact_time'\n{by}"
+    plan = sweep.load(str(write(tmp_path, text)))
+    rows = pd.DataFrame(plan.points).assign(exit=0, contact_time=4.7e-3)
+    figure = sweep_figures.draw_lines(plan, rows, tmp_path)
     assert sum(line.get_marker() == "*" for line in figure.axes[0].lines) == stars
     plt.close(figure)
 
@@ -266,8 +267,8 @@ def test_the_sweep_of_the_docs_is_sound(tmp_path):
     """The example of docs/how-to/sweeps.md is accepted."""
     text = (parameters.ROOT / "docs/how-to/sweeps.md").read_text()
     example = re.search(r"```\n(scene = \"disc-normal\".*?)```", text, re.S)[1]
-    wanted = sweep.load(str(write(tmp_path, example)))
-    assert len(wanted.points) == 32 and wanted.refine and wanted.figure
+    plan = sweep.load(str(write(tmp_path, example)))
+    assert len(plan.points) == 32 and plan.refine and plan.figure
 
 
 def test_a_refused_point_keeps_no_other(fake, tmp_path, capsys):
@@ -275,15 +276,15 @@ def test_a_refused_point_keeps_no_other(fake, tmp_path, capsys):
     run, and --open does not list it."""
     shutil.copy(parameters.ROOT / "orchestrate/ffimpact/scenes/two-discs.toml", tmp_path / "two.toml")
     path = write(tmp_path, 'scene = "two.toml"\ncollect = ["impulse"]\n[product]\n"body.1.position.1" = [0.05, -0.06]\n')
-    wanted = sweep.load(str(path))
-    place = study.place(tmp_path / "out", wanted.points[0])
-    found = study.outcomes(wanted.points, tmp_path / "out", wanted.base, sweep.scene.load(wanted.scene))
-    assert list(found) == [place] and found[place]["exit"] == 10 and "overlaps 'right'" in found[place]["message"]
+    plan = sweep.load(str(path))
+    place = study.place(tmp_path / "out", plan.points[0])
+    outcomes = study.outcomes(plan.points, tmp_path / "out", plan.base, sweep.scene.load(plan.scene))
+    assert list(outcomes) == [place] and outcomes[place]["exit"] == 10 and "overlaps 'right'" in outcomes[place]["message"]
     path.write_text('scene = "disc-normal"\ncollect = ["contact_time"]\n' + COARSE + '[[zip]]\nangle = [60, 90]\nsymmetry = ["half", "half"]\n')
     capsys.readouterr()
     assert main(["sweep", str(path), "--out", str(tmp_path / "plane")]) == 10
-    said, rows = capsys.readouterr(), table(tmp_path / "plane")
+    captured, rows = capsys.readouterr(), table(tmp_path / "plane")
     assert list(rows.exit) == [10, 0] and rows.contact_time.notna().tolist() == [False, True]
-    assert "first: angle=60.0,symmetry=half: symmetry: half" in said.err and said.err.count("\n") == 1 and "failed, exit 10: angle=60.0,symmetry=half" in said.out
+    assert "first: angle=60.0,symmetry=half: symmetry: half" in captured.err and captured.err.count("\n") == 1 and "failed, exit 10: angle=60.0,symmetry=half" in captured.out
     # No point is left.
     assert main(["sweep", str(write(tmp_path, 'scene = "two.toml"\n[product]\n"body.1.position.1" = [0.05, 0.06]\n')), "--list"]) == 10

@@ -12,28 +12,28 @@ from tests.support.tubes import HEAD, run
 def test_a_tube_on_its_end_is_a_bar(tmp_path):
     """nu = 0: it leaves with its speed after 2 h/c, within the error estimates. Its mass is that of
     Pappus' theorem."""
-    found = run(tmp_path, 'shape = "tube"\nradius = 0.03\ninner_radius = 0.02\nheight = 0.1\nposition = [0, 0.0501]')
-    error = found["estimated_error"]
-    assert abs(found["restitution"] - 1) < error["rebound"] < 0.02
+    summary = run(tmp_path, 'shape = "tube"\nradius = 0.03\ninner_radius = 0.02\nheight = 0.1\nposition = [0, 0.0501]')
+    error = summary["estimated_error"]
+    assert abs(summary["restitution"] - 1) < error["rebound"] < 0.02
     exact = 2 * 0.1 / math.sqrt(1000)
-    assert abs(found["contact_time"] / exact - 1) < error["contact_time"]
-    assert found["mass"] == pytest.approx(1000 * math.pi * (0.03**2 - 0.02**2) * 0.1, rel=1e-12)
-    assert found["energy_drift"] < 1e-8 and found["momentum_drift"] < 1e-10
+    assert abs(summary["contact_time"] / exact - 1) < error["contact_time"]
+    assert summary["mass"] == pytest.approx(1000 * math.pi * (0.03**2 - 0.02**2) * 0.1, rel=1e-12)
+    assert summary["energy_drift"] < 1e-8 and summary["momentum_drift"] < 1e-10
 
 
 def test_an_o_ring_has_the_mass_of_a_torus(tmp_path):
     """The mass is 2 pi R pi r^2 times the density, on curved elements. Energy and momentum are
     conserved."""
-    found = run(tmp_path, 'shape = "torus"\nradius = 0.03\nsection = 0.01\nposition = [0, 0.0101]', nu=0.3)
-    assert found["mass"] == pytest.approx(1000 * 2 * math.pi * 0.03 * math.pi * 0.01**2, rel=1e-3)
-    assert found["energy_drift"] < 1e-9 and found["momentum_drift"] < 1e-10 and 0.5 < found["restitution"] < 1
+    summary = run(tmp_path, 'shape = "torus"\nradius = 0.03\nsection = 0.01\nposition = [0, 0.0101]', nu=0.3)
+    assert summary["mass"] == pytest.approx(1000 * 2 * math.pi * 0.03 * math.pi * 0.01**2, rel=1e-3)
+    assert summary["energy_drift"] < 1e-9 and summary["momentum_drift"] < 1e-10 and 0.5 < summary["restitution"] < 1
 
 
 def test_a_ball_is_caught_by_a_ring(tmp_path):
     """It falls on the round inner edge of the ring, and both are driven apart without overlap."""
     ball = '[[body]]\nshape = "ball"\nradius = 0.025\nposition = [0, 0.0445]\nvelocity = [0, -0.3]\n'
-    found = run(tmp_path, 'shape = "torus"\nradius = 0.03\nsection = 0.01\nposition = [0, 0.0101]', nu=0.3, accuracy=0.1, beside=ball)
-    assert found["energy_drift"] < 1e-8 and not any("overlap" in one for one in found["warnings"])
+    summary = run(tmp_path, 'shape = "torus"\nradius = 0.03\nsection = 0.01\nposition = [0, 0.0101]', nu=0.3, accuracy=0.1, beside=ball)
+    assert summary["energy_drift"] < 1e-8 and not any("overlap" in warning for warning in summary["warnings"])
 
 
 def test_a_mesh_file_beside_the_axis(tmp_path):
@@ -47,9 +47,9 @@ def test_a_mesh_file_beside_the_axis(tmp_path):
     lines = [f"{(n + 1) * (m + 1)} {len(cells)} {len(ring)}", *(f"{a} {b} 1" for a, b in zip(x.ravel(), y.ravel())),
              *(f"{a} {b} {c} 0" for a, b, c in cells), *(f"{a} {b} 1" for a, b in zip(ring, ring[1:] + ring[:1]))]
     (tmp_path / "tube.msh").write_text("\n".join(lines) + "\n")
-    found = run(tmp_path, 'shape = "mesh"\nfile = "tube.msh"\nposition = [0, 0.0501]')
-    assert found["mass"] == pytest.approx(1000 * math.pi * (0.03**2 - 0.02**2) * 0.1, rel=1e-12)
-    assert found["restitution"] == pytest.approx(1, abs=0.03)
+    summary = run(tmp_path, 'shape = "mesh"\nfile = "tube.msh"\nposition = [0, 0.0501]')
+    assert summary["mass"] == pytest.approx(1000 * math.pi * (0.03**2 - 0.02**2) * 0.1, rel=1e-12)
+    assert summary["restitution"] == pytest.approx(1, abs=0.03)
 
 
 @pytest.mark.parametrize("entries, named", [
@@ -64,8 +64,8 @@ def test_wrong_sections(tmp_path, capsys, entries, named):
     file = tmp_path / "scene.toml"
     file.write_text(HEAD.format(nu=0.0, accuracy=0.1) + entries + "\nposition = [0, 0.1]\n")
     assert main(["run", str(file), "--out", str(tmp_path / "out")]) == 10
-    said = capsys.readouterr().err
-    assert named in said and said.count("\n") == 1
+    message = capsys.readouterr().err
+    assert named in message and message.count("\n") == 1
 
 
 def test_a_wall_too_thin_to_mesh_is_refused(tmp_path, capsys):

@@ -20,7 +20,7 @@ from verification.case import Row
 @pytest.fixture
 def cases(monkeypatch, fake):
     """cases(case, ...): replaces the real cases."""
-    return lambda *given: monkeypatch.setattr(verify, "CASES", given)
+    return lambda *replacements: monkeypatch.setattr(verify, "CASES", replacements)
 
 
 FINE = [("half: a", 0.2, 1.05, 1, 1), ("half: b", 0.2, 1e-9, 0), ("half: a", 0.1, 1.004, 1, 1), ("half: b", 0.1, 1e-9, 0)]

@@ -48,9 +48,9 @@ def browser(tmp_path_factory):
     for argument in [*ARGUMENTS.split(), f"user-data-dir={profile}"]:
         options.add_argument(f"--{argument}")
     service = webdriver.ChromeService(driver)
-    found = webdriver.Chrome(options=options, service=service)
-    yield found
-    found.quit()
+    chrome = webdriver.Chrome(options=options, service=service)
+    yield chrome
+    chrome.quit()
 
 
 def test_a_page_is_small_and_needs_no_network(result, tmp_path):
@@ -67,12 +67,12 @@ def test_the_picture_follows_slider_and_field(result, tmp_path, browser):
     browser.get(result.view(tmp_path / "impact.html").as_uri())
     wait(browser, "return Number(document.body.dataset.state) > 0")  # state of the largest force
     move(browser, "state", 0)
-    first, cursor = seen(browser), left(browser)
+    first, cursor = seen(browser), cursor_position(browser)
     last = len(result.fields.times) - 1
     move(browser, "state", last // 2)
     middle = seen(browser)
     assert len(np.unique(middle.reshape(-1, 3), axis=0)) > 200  # colours of the body
-    assert (first != middle).any(axis=2).mean() > 0.01 and left(browser) > cursor
+    assert (first != middle).any(axis=2).mean() > 0.01 and cursor_position(browser) > cursor
     move(browser, "field", "speed")
     assert (seen(browser) != middle).any(axis=2).mean() > 0.01
     choices = "return [...document.querySelectorAll('#field option')].map((one) => one.value)"
@@ -98,7 +98,7 @@ def move(browser, name, value):
     browser.execute_script(script, name, value)
 
 
-def left(browser):
+def cursor_position(browser):
     """The position of the cursor in the figure [%]."""
     return float(
         browser.execute_script("return parseFloat(document.getElementById('cursor').style.left)")
@@ -129,16 +129,16 @@ def test_the_command_writes_a_page(result, tmp_path, capsys):
 
 def test_energy_density_is_that_of_the_history(tmp_path):
     """Its integral over the reference area is the elastic energy, to the error of its means."""
-    found = ff.run(drop(), accuracy=0.05, estimate=False, out=tmp_path / "run")
-    history = found.history
-    times = np.array(found.fields.times)
+    record = ff.run(drop(), accuracy=0.05, estimate=False, out=tmp_path / "run")
+    history = record.history
+    times = np.array(record.fields.times)
     k = int(np.argmin(abs(times - history.t[history.elastic.idxmax()])))
-    state = vtu.read(vtu.series(found.folder / "fields.pvd")[k][1])
+    state = vtu.read(vtu.series(record.folder / "fields.pvd")[k][1])
     corners = state.points[state.triangles]
     (ax, ay), (bx, by) = (corners[:, 1] - corners[:, 0]).T, (corners[:, 2] - corners[:, 0]).T
     density = state.fields["energy_density"][state.triangles].mean(axis=1)
     energy = (abs(ax * by - ay * bx) / 2 * density).sum()
-    copies = 2 if found.scene.get("symmetry") == "half" else 1
+    copies = 2 if record.scene.get("symmetry") == "half" else 1
     assert copies * energy == pytest.approx(
         np.interp(times[k], history.t, history.elastic), rel=0.02
     )

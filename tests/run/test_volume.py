@@ -22,7 +22,7 @@ def test_an_impact_keeps_energy_and_momenta(tmp_path, name):
     script, flags = SCENES[name]
     run, scripted = (disc(tmp_path / without, script, **IMPACT | flags, without=without) for without in ("none", "kernels"))
     summary = run.summary
-    assert summary["volume"] == "projected" and not any("locking" in said for said in summary["warnings"])
+    assert summary["volume"] == "projected" and not any("locking" in warning for warning in summary["warnings"])
     assert summary["energy_drift"] < 1e-9 and summary["momentum_drift"] < 1e-9 and (summary["angular_momentum_drift"] or 0) < 1e-9
     same = scripted.summary["rejected_steps"] == 0   # with friction and nu near 0.5 the scripts may need smaller steps
     assert same or scripted.summary["impulse"] == pytest.approx(summary["impulse"], rel=0.03)
@@ -48,7 +48,7 @@ def test_bodies_of_a_scene_each_have_theirs(tmp_path):
         body = {"shape": "disc", "radius": 0.05, "law": "neohookean", "young": 7e6, "density": 1722.0}
         return {"accuracy": 0.2, "body": [body | {"name": "a", "position": [0, 0.051], "velocity": [0, -3], "nu": nu, "law": law},
                                           body | {"name": "b", "position": [0.02, -0.051], "velocity": [0, 0], "nu": 0.3}]}
-    runs = [bodies(tmp_path / str(given[0]), scene(*given)).summary for given in ((0.45,), (0.4999,), (0.5, "incompressible"))]
+    runs = [bodies(tmp_path / str(arguments[0]), scene(*arguments)).summary for arguments in ((0.45,), (0.4999,), (0.5, "incompressible"))]
     assert [run["volume"] for run in runs] == ["plain", "projected", "projected"]
     assert max(run["energy_drift"] for run in runs) < 1e-9 and runs[1]["newton_iterations"] < 1.3 * runs[0]["newton_iterations"]
     assert runs[2]["impulse"] == pytest.approx(runs[1]["impulse"], rel=2e-3)
@@ -74,8 +74,8 @@ def test_incompressible_bodies_keep_their_volume(tmp_path, name):
     """J = 1: the mean volume of every element is constant to 1e-6, energy and momenta to 1e-9, with
     and without kernels."""
     script, flags = SCENES[name]
-    given = HELD | {"tolerance": 1e-14} | {key: value for key, value in flags.items() if key != "law"}
-    run, scripted = (disc(tmp_path / without, script, **given, without=without) for without in ("none", "kernels"))
+    values = HELD | {"tolerance": 1e-14} | {key: value for key, value in flags.items() if key != "law"}
+    run, scripted = (disc(tmp_path / without, script, **values, without=without) for without in ("none", "kernels"))
     summary = run.summary
     assert summary["volume_change"] < 1e-6 and summary["energy_drift"] < 1e-9
     assert summary["volume_spread"] >= 1 - summary["min_jacobian"] - 1e-6
@@ -113,11 +113,11 @@ def test_laws_with_j_1(tmp_path, law, own, script):
 
     In the plane the two invariants are then equal, and Mooney-Rivlin is neo-Hookean.
     """
-    one = disc(tmp_path / "one", script, **HELD | {"law": law, "law_parameters": own}).summary
-    assert one["volume_change"] < 1e-6 and one["energy_drift"] < 1e-9 and one["volume"] == "projected"
+    summary = disc(tmp_path / "one", script, **HELD | {"law": law, "law_parameters": own}).summary
+    assert summary["volume_change"] < 1e-6 and summary["energy_drift"] < 1e-9 and summary["volume"] == "projected"
     if script == "disc-plane":
         named = disc(tmp_path / "named", script, **HELD).summary
-        assert one["impulse"] == pytest.approx(named["impulse"], rel=1e-5) and one["contact_time"] == pytest.approx(named["contact_time"], rel=1e-4)
+        assert summary["impulse"] == pytest.approx(named["impulse"], rel=1e-5) and summary["contact_time"] == pytest.approx(named["contact_time"], rel=1e-4)
 
 
 @pytest.mark.few(2)

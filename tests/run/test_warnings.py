@@ -57,17 +57,17 @@ CASES = [
 @pytest.fixture(scope="module")
 def disc(tmp_path_factory):
     """The outcome of a run with these flags. Each set runs once."""
-    known = {}
+    outcomes = {}
 
     def go(flags: dict) -> measure.Outcome:
         key = json.dumps(flags, sort_keys=True)
-        if key not in known:
-            known[key] = measure.disc(tmp_path_factory.mktemp("disc"), **flags)
-        return known[key]
+        if key not in outcomes:
+            outcomes[key] = measure.disc(tmp_path_factory.mktemp("disc"), **flags)
+        return outcomes[key]
     return go
 
 
-def found(outcome: measure.Outcome, name: str, kind: str = "warnings") -> list[str]:
+def sentences_of(outcome: measure.Outcome, name: str, kind: str = "warnings") -> list[str]:
     return [sentence for sentence in outcome.summary[kind] if sentence.startswith(name + ": ")]
 
 
@@ -76,10 +76,10 @@ def found(outcome: measure.Outcome, name: str, kind: str = "warnings") -> list[s
 def test_each_warning_appears_where_it_should_and_only_there(disc, name, bad, good, number, limits):
     """There is one sentence with fact, number and advice, and none of this name if the condition
     does not hold. `message` is for failures."""
-    sentences = found(disc(bad), name)
+    sentences = sentences_of(disc(bad), name)
     assert len(sentences) == 1 and ": take " in sentences[0] and not set(sentences[0]) & set('";'), sentences
     assert limits[0] <= float(re.search(number, sentences[0])[1]) <= limits[1], sentences[0]
-    assert disc(bad).summary["message"] == "" and found(disc(good), name) == []
+    assert disc(bad).summary["message"] == "" and sentences_of(disc(good), name) == []
 
 
 NOTES = [("contact time", LONG, LONG | dict(accuracy=0.05), r"for the last (\S+) % of it", (0.5, 5)),
@@ -91,9 +91,9 @@ NOTES = [("contact time", LONG, LONG | dict(accuracy=0.05), r"for the last (\S+)
 def test_what_is_always_so_of_a_number_is_a_note(disc, name, bad, good, number, limits):
     """It has the number, is not a warning, and refers to the number of the summary whose footnote
     it is."""
-    sentence, = found(disc(bad), name, "notes")
+    sentence, = sentences_of(disc(bad), name, "notes")
     assert limits[0] <= float(re.search(number, sentence)[1]) <= limits[1], sentence
-    assert found(disc(bad), name) == [] == found(disc(good), name, "notes") and disc(bad).summary[notes.number(sentence)] > 0
+    assert sentences_of(disc(bad), name) == [] == sentences_of(disc(good), name, "notes") and disc(bad).summary[notes.number(sentence)] > 0
 
 
 # Metal foam, expanded polystyrene, aerogel, metallic microlattice, diamond, beryllium, a soft gel
@@ -105,7 +105,7 @@ REAL = [(300, 1e9), (11, 3e6), (3, 1e4), (5, 5e4), (3500, 1.1e12), (1850, 2.9e11
 @pytest.mark.parametrize("density, young", REAL)
 def test_real_materials_are_not_asked_about(disc, density, young):
     speed = 0.05 * (young / density)**0.5
-    assert found(disc(COARSE | dict(density=density, young=young, speed=speed, nu=0.3)), "density") == []
+    assert sentences_of(disc(COARSE | dict(density=density, young=young, speed=speed, nu=0.3)), "density") == []
 
 
 @pytest.mark.parametrize("name, names", [("disc-normal", []), ("disc-oblique-svk", ["ellipticity"]), ("ball-axisymmetric-svk", ["breakdown"])])
@@ -113,9 +113,9 @@ def test_scenes_of_the_paper_have_no_warning_or_the_one_that_a_reader_must_know(
     """Each with its estimate and default settings. The screen has a line for each sentence, with
     its mark at the number, and the place of the whole text."""
     result = run.run(scene.load(name), {"fields": 0}, tmp_path / "out")
-    assert [notes.name(each) for each in result.summary["warnings"]] == names
+    assert [notes.name(sentence) for sentence in result.summary["warnings"]] == names
     lines, whole = report.report(result).splitlines(), report.report(result, verbose=True)
-    assert [line.split()[1] for line in lines if line.startswith("  warning ")] == [f"{each}:" for each in names]
+    assert [line.split()[1] for line in lines if line.startswith("  warning ")] == [f"{word}:" for word in names]
     footnotes = [line for line in lines if line.startswith("  [")]
     assert all(len(line) <= 100 and not line.endswith("...") for line in footnotes + [line for line in lines if line.startswith("  warning")])
     assert any(re.match(r"  peak force +\S+( ± \S+)? kN(/m)? \[1\]( |$)", line) for line in lines) and footnotes[0].startswith("  [1]       peak force: ")
@@ -126,25 +126,25 @@ def test_scenes_of_the_paper_have_no_warning_or_the_one_that_a_reader_must_know(
 def test_numbers_of_the_warnings_are_those_of_the_history(disc):
     """Penetration, energy and ellipticity of the warnings agree with history and summary."""
     deep = disc(COARSE | dict(penalty=1e8))
-    told = float(re.search(r"(\S+) % of the radius", found(deep, "penetration")[0])[1])
-    assert told == pytest.approx(100 * deep.history["max_penetration"].max() / 0.05, rel=0.05)
+    number = float(re.search(r"(\S+) % of the radius", sentences_of(deep, "penetration")[0])[1])
+    assert number == pytest.approx(100 * deep.history["max_penetration"].max() / 0.05, rel=0.05)
     spins = disc(SPINS | dict(integrator="backward-euler"))
-    told, h = float(re.search(r"off by (\S+) %", found(spins, "angular momentum")[0])[1]), spins.history
+    number, h = float(re.search(r"off by (\S+) %", sentences_of(spins, "angular momentum")[0])[1]), spins.history
     flies = h["normal_force"].cumsum() == 0
-    assert told == pytest.approx(100 * spins.summary["angular_momentum_drift"], rel=0.05)
+    assert number == pytest.approx(100 * spins.summary["angular_momentum_drift"], rel=0.05)
     # Without friction a disc cannot rotate about its centre.
-    assert told / 100 >= 1 - h["angular_momentum"][flies][-1] / h["angular_momentum"][0] > 1e-3
+    assert number / 100 >= 1 - h["angular_momentum"][flies][-1] / h["angular_momentum"][0] > 1e-3
     damped = disc(DAMPED)
-    told = float(re.search(r"lost (\S+) %", found(damped, "energy")[0])[1])
-    assert told == pytest.approx(-100 * damped.history["balance"].min() / damped.summary["energy_initial"], rel=0.05)
+    number = float(re.search(r"lost (\S+) %", sentences_of(damped, "energy")[0])[1])
+    assert number == pytest.approx(-100 * damped.history["balance"].min() / damped.summary["energy_initial"], rel=0.05)
     lost = disc(COARSE | dict(speed=9))
-    told = float(re.search(r"from t = (\S+) s", found(lost, "ellipticity")[0])[1])
-    assert told == pytest.approx(lost.summary["ellipticity_lost_time"], rel=1e-5)
+    number = float(re.search(r"from t = (\S+) s", sentences_of(lost, "ellipticity")[0])[1])
+    assert number == pytest.approx(lost.summary["ellipticity_lost_time"], rel=1e-5)
     soft = disc(COARSE | dict(penalty=1e9))
     h = soft.history
     peak = np.argmax(np.where(h["max_penetration"] > 0, h["elastic"], 0))
-    told = float(re.search(r"(\S+) % of the elastic", found(soft, "penalty")[0])[1])
-    assert told == pytest.approx(100 * h["contact"][peak] / h["elastic"][peak], rel=0.05)
+    number = float(re.search(r"(\S+) % of the elastic", sentences_of(soft, "penalty")[0])[1])
+    assert number == pytest.approx(100 * h["contact"][peak] / h["elastic"][peak], rel=0.05)
 
 
 @pytest.mark.parametrize("flags", [LONG, COARSE, COARSE | dict(height=1e-3), COARSE | dict(dt=3e-4), OBLIQUE | dict(slip_velocity=2)])
@@ -176,37 +176,37 @@ def test_contact_that_is_not_over_is_measured_to_the_end(disc):
     end of contact."""
     outcome = disc(COARSE | dict(end_time=2e-3))
     assert outcome.summary["contact_time"] == pytest.approx(2e-3 - outcome.summary["contact_start"], rel=1e-9)
-    assert 0.95 * 2e-3 < outcome.summary["thresholded_contact_time"] <= 2e-3 and found(outcome, "contact time") == []
+    assert 0.95 * 2e-3 < outcome.summary["thresholded_contact_time"] <= 2e-3 and sentences_of(outcome, "contact time") == []
 
 
 @pytest.mark.parametrize("speed, gravity", [(8, 0), (8, 9.81), (0, 9.81)])
 def test_an_impact_that_is_not_over_is_named_under_gravity_too(disc, speed, gravity):
     """At the end_time the body is in contact, and the force is far above the weight. A body that
     lies on the plane is not reported."""
-    assert bool(found(disc(COARSE | dict(speed=speed, gravity=gravity, end_time=2e-3)), "not over")) == (speed > 0)
+    assert bool(sentences_of(disc(COARSE | dict(speed=speed, gravity=gravity, end_time=2e-3)), "not over")) == (speed > 0)
 
 
 def test_no_contact_no_contact_time(disc):
     """A flight has neither contact time nor this warning; nor has one whose energy is below the
     round-off of its balance."""
-    assert [each.split(":")[0] for each in disc(COARSE | dict(speed=0, spin=1e-13, height=1, end_time=1e-3)).summary["warnings"]] == ["no contact"]
+    assert [warning.split(":")[0] for warning in disc(COARSE | dict(speed=0, spin=1e-13, height=1, end_time=1e-3)).summary["warnings"]] == ["no contact"]
     outcome = disc(COARSE | dict(height=1, end_time=1e-3))
-    assert outcome.summary["contact_time"] is outcome.summary["thresholded_contact_time"] is None and [each.split(":")[0] for each in outcome.summary["warnings"]] == ["no contact"]
+    assert outcome.summary["contact_time"] is outcome.summary["thresholded_contact_time"] is None and [warning.split(":")[0] for warning in outcome.summary["warnings"]] == ["no contact"]
 
 
 def test_evaluation_of_a_direct_run_prints_its_warnings(tmp_path, capsys):
     """The script prints none. `ffimpact evaluate` prints the warnings of summary.json on stderr."""
     process = freefem.find().call("edp/disc-plane.edp", "-accuracy", "0.1", "-penalty", "1e8", "-out", str(tmp_path / "out"), timeout=120)
     assert "warning" not in process.stdout and main(["evaluate", str(tmp_path / "out")]) == 0
-    told = results.read_summary(tmp_path / "out")["warnings"]
-    assert len(told) > 1 and capsys.readouterr().err.splitlines() == [f"ffimpact: warning: {sentence}" for sentence in told]
+    sentences = results.read_summary(tmp_path / "out")["warnings"]
+    assert len(sentences) > 1 and capsys.readouterr().err.splitlines() == [f"ffimpact: warning: {sentence}" for sentence in sentences]
 
 
 def test_the_report_shows_them_and_figures_do_not(tmp_path):
     """The report has a line for each. Figures do not depend on the warnings."""
     result = run.run(scene.load("disc-normal"), dict(penalty=1e8, accuracy=0.1, fields=0), tmp_path / "out", estimate=False)
-    told, lines = result.summary["warnings"], report.report(result).splitlines()
-    assert len(told) > 1 and [line for line in lines if line.startswith("  warning ")] == [notes.line("  warning   ", each) for each in told]
+    sentences, lines = result.summary["warnings"], report.report(result).splitlines()
+    assert len(sentences) > 1 and [line for line in lines if line.startswith("  warning ")] == [notes.line("  warning   ", sentence) for sentence in sentences]
     drawn = {path: path.read_bytes() for path in drawing.draw(result.folder)}
     path = result.folder / "summary.json"
     path.write_text(json.dumps(json.loads(path.read_text()) | {"warnings": [], "notes": []}))

@@ -101,14 +101,14 @@ WRONG = {
 
 @pytest.mark.parametrize("name", WRONG)
 def test_what_is_wrong_is_named(tmp_path, capsys, name):
-    tables, said = WRONG[name]
+    tables, message = WRONG[name]
     for file, text in FILES.items():
         (tmp_path / file).write_text(text)
     scene = tmp_path / "scene.toml"
     scene.write_text(to_toml(tables))
     assert main(["run", str(scene), "--quiet", "--out", str(tmp_path / "out")]) == 10
     error = capsys.readouterr().err
-    assert said in error and len(error.splitlines()) == 1, error
+    assert message in error and len(error.splitlines()) == 1, error
     assert not (tmp_path / "out" / "summary.json").exists()
 
 
@@ -116,7 +116,7 @@ def test_symmetry_that_a_support_or_load_breaks_is_refused(tmp_path, capsys):
     """Half or a quarter of a body in space is possible only if its supports and loads are
     symmetric."""
     box = {"name": "box", "shape": "box", "width": 0.1, "height": 0.1, "depth": 0.1, "position": [0, 0, 0]}
-    for word, more, said in (
+    for word, more, message in (
             ("quarter", {"support": [{"where": "left"}]}, "'box' has a support that is not its own mirror image in the plane x = 0 (accepted: auto|full|half)"),
             ("half", {"support": [{"where": "top", "motion": [0, 0, "t"]}]}, "'box' has a support that acts along z (accepted: auto|full)"),
             ("quarter", {"load": [{"where": "top", "traction": [1, 0, 0]}]}, "'box' has a load that acts along x (accepted: auto|full|half)"),
@@ -124,4 +124,4 @@ def test_symmetry_that_a_support_or_load_breaks_is_refused(tmp_path, capsys):
         scene = tmp_path / "scene.toml"
         scene.write_text(to_toml(BASE | {"dimension": "3d", "symmetry": word, "body": [box | more]}))
         assert main(["run", str(scene), "--quiet", "--out", str(tmp_path / "out")]) == 10
-        assert said in capsys.readouterr().err
+        assert message in capsys.readouterr().err

@@ -12,8 +12,8 @@ SCENE = {"young": 7e6, "nu": 0.45, "density": 1722, "law": "svk", "body": [DISC,
 SQUARE = [[0, 0], [1, 0], [1, 1], [0, 1]]
 
 
-def read(given: dict, folder=SCENES) -> Scene:
-    return read_scene(given, folder, "scene")
+def read(tables: dict, folder=SCENES) -> Scene:
+    return read_scene(tables, folder, "scene")
 
 
 def with_body(**entries) -> dict:
@@ -22,7 +22,7 @@ def with_body(**entries) -> dict:
 
 
 def changed(*entries: tuple) -> dict:
-    given = copy.deepcopy(SCENE | {"obstacle": [FLOOR]})
+    tables = copy.deepcopy(SCENE | {"obstacle": [FLOOR]})
     for name, value in entries:
-        given = set_entry(given, name, value)
-    return given
+        tables = set_entry(tables, name, value)
+    return tables

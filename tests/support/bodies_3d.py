@@ -26,8 +26,9 @@ def prism(corners: int, path) -> None:
     points = np.vstack([[[0, 0, 0]], *(np.column_stack([0.05 * np.cos(turn), np.full(corners, y), 0.05 * np.sin(turn)]) for y in (-0.04, 0.04))])
     k = np.arange(corners)
     low, high = 1 + k, 1 + corners + k
-    sides = np.vstack([np.column_stack(one) for one in ((low, high, np.roll(high, -1)), (low, np.roll(high, -1), np.roll(low, -1)))])
-    ends = np.vstack([np.column_stack([np.full(corners - 2, one[0]), one[1:-1], one[2:]]) for one in (low, high)])
+    sides = np.vstack([np.column_stack(columns) for columns in ((low, high, np.roll(high, -1)),
+                                                                (low, np.roll(high, -1), np.roll(low, -1)))])
+    ends = np.vstack([np.column_stack([np.full(corners - 2, indices[0]), indices[1:-1], indices[2:]]) for indices in (low, high)])
     cells = solid_mesh.right_handed(points, np.column_stack([np.zeros(4 * corners - 4, dtype=int), np.vstack([sides, ends])]))
     faces = mesh.boundary(cells)
     solid_mesh.write(solid_mesh.SolidMesh(points, cells, faces, np.ones(len(faces), dtype=int)), np.zeros(len(cells), dtype=int), path)

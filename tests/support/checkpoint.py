@@ -64,12 +64,12 @@ def assert_same(folder: Path, straight: Path) -> None:
     for name in set(expected) - set(EFFORT):
         exact = not isinstance(expected[name], float)
         assert there[name] == (expected[name] if exact else pytest.approx(expected[name], rel=1e-9, abs=1e-11)), name
-    there, expected = (pd.read_csv(each / "contacts.csv") for each in (folder, straight))
+    there, expected = (pd.read_csv(run_folder / "contacts.csv") for run_folder in (folder, straight))
     pd.testing.assert_frame_equal(there, expected, rtol=1e-9)
     states, expected = (sorted(place.glob("fields/[0-9]*.vtu")) for place in (folder, straight))
     assert [path.name for path in states] == [path.name for path in expected]
     for path, other in zip(states, expected):
-        there, wanted = meshio.read(path).point_data, meshio.read(other).point_data
-        assert list(there) == list(wanted)
-        for name, values in wanted.items():
+        there, reference = meshio.read(path).point_data, meshio.read(other).point_data
+        assert list(there) == list(reference)
+        for name, values in reference.items():
             np.testing.assert_allclose(there[name], values, rtol=1e-7, atol=1e-7 * np.abs(values).max(), err_msg=name)

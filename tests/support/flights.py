@@ -17,6 +17,6 @@ def read(*bodies: dict, obstacles: tuple = (), **more) -> Scene:
     return read_scene(RUBBER | more | {"body": [*bodies], "obstacle": [*obstacles]}, Path("."), "flights")
 
 
-def go(tmp_path: Path, given: scene.Scene, values: dict | None = None) -> tuple[pd.DataFrame, run.Record]:
-    found = run.run(given, values or {}, tmp_path / "out", estimate=False)
-    return pd.read_csv(found.folder / "contacts.csv"), found
+def go(tmp_path: Path, problem: scene.Scene, values: dict | None = None) -> tuple[pd.DataFrame, run.Record]:
+    result = run.run(problem, values or {}, tmp_path / "out", estimate=False)
+    return pd.read_csv(result.folder / "contacts.csv"), result

@@ -21,7 +21,7 @@ normal = [0, 1]
 """
 
 
-def given(text: str, tmp_path, **entries) -> scene.Scene:
+def scene_of(text: str, tmp_path, **entries) -> scene.Scene:
     """The scene of a text with some entries set. In names two underscores stand for a dot."""
     path = tmp_path / "scene.toml"
     path.write_text(text)

@@ -5,15 +5,15 @@ from pathlib import Path
 
 def at_work(out: Path) -> list[int]:
     """The numbers of the running processes with this folder in their command line."""
-    found = []
+    pids = []
     for place in Path("/proc").glob("[0-9]*"):
         try:
             words, state = (place / "cmdline").read_bytes(), (place / "stat").read_text().rpartition(")")[2].split()[0]
         except OSError:
             continue
         if str(out).encode() in words and state != "Z":
-            found.append(int(place.name))
-    return found
+            pids.append(int(place.name))
+    return pids
 
 
 def place(route: str, shelf: Path) -> Path:

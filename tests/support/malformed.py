@@ -37,8 +37,8 @@ def tree(folder: Path) -> set[str]:
     return {str(path.relative_to(folder)) for path in folder.rglob("*")}
 
 
-def check(code: int, error: str, words: str, wanted: int, before: set[str]) -> None:
-    assert code == wanted, error
+def check(code: int, error: str, words: str, expected: int, before: set[str]) -> None:
+    assert code == expected, error
     assert re.match(rf"ffimpact: .*(?:{words})", error) and error.endswith("\n"), error
     lines = error.splitlines()
     assert len(lines) < 25 and all(line.startswith("ffimpact: ") for line in lines), error

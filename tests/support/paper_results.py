@@ -68,10 +68,10 @@ class Memory(paper_judging.Results):
     selected values).
     """
 
-    def __init__(self, folder, given):
+    def __init__(self, folder, data):
         super().__init__(folder)
         # read: the folders that were read.
-        self.given, self.read = given, set()
+        self.given, self.read = data, set()
 
     def summary(self, name):
         self.read.add(self.run(name))
@@ -91,7 +91,7 @@ class Memory(paper_judging.Results):
 
     def histories(self, name, **values):
         self.read |= set(self.pair(name, **values))
-        return [_arrays(each) for each in self.given["histories"][name, *sorted(values.items())]]
+        return [_arrays(columns) for columns in self.given["histories"][name, *sorted(values.items())]]
 
     def summaries(self, name, **values):
         self.read |= set(self.pair(name, **values))
@@ -160,7 +160,7 @@ def base() -> dict:
     """Results that give the verdict of the first case of each statement."""
     both = ("svk", "neohookean")
     rebound = {"rebound_vx": 3.0, "rebound_vx_error": 0.01, "rebound_vy": 8.7, "rebound_vy_error": 0.0, "contact_time": 4.1e-3, "contact_time_error": 3e-5, "exit": 0}
-    given = {
+    data = {
         "laws": laws(),
         "stick-slip": pd.DataFrame({"angle": [60.0, 60.0, 60.0, 30.0], "law": ["svk", "svk", "neohookean", "svk"], "exit": 0, "order": [False, False, True, False],
                                     "quiet": [False, True, True, True], "ellipticity_lost_time": np.nan}),
@@ -203,5 +203,5 @@ def base() -> dict:
                                              "ellipticity_lost_time": 2e-3 if h == 0.01 or k == 1e9 else np.nan}
                                             for nu in (0.3, 0.45) for k, time in ((3e8, 6.1e-3), (5e8, 6.031e-3), (1e9, 5.8e-3)) for h in (0.0175, 0.015, 0.01)]),
         }}
-    given["table"]["calibrate-ball-3d"] = given["table"]["calibrate-ball"].assign(energy_drift=1e-11).query("mesh_size > 0.01")
-    return deepcopy(given)
+    data["table"]["calibrate-ball-3d"] = data["table"]["calibrate-ball"].assign(energy_drift=1e-11).query("mesh_size > 0.01")
+    return deepcopy(data)

@@ -6,7 +6,7 @@ SCENE = dict(script="disc-plane", law="svk", young=7e6, nu=0.45, density=1722, r
              body_force_y=0, friction_static=0, penalty=1e10, touched=(0.0, 3.93e-3))
 
 
-def history(**given) -> dict[str, np.ndarray]:
+def history(**columns) -> dict[str, np.ndarray]:
     """A contact of 4 ms and 1 ms of flight after it, in steps of 0.05 ms. The first row is just
     before contact."""
     t = np.linspace(5e-5, 5e-3, 100)
@@ -14,7 +14,7 @@ def history(**given) -> dict[str, np.ndarray]:
     force = np.where(t < 4e-3, 1e4 * np.sin(np.pi * t / 4e-3), 0)
     return dict(t=t, dt=np.full_like(t, 5e-5), normal_force=force, friction_force=none, kinetic=400 - 100 * np.sin(np.pi * t / 5e-3), elastic=100 * np.sin(np.pi * t / 5e-3),
                 contact=none + 1e-3, friction_work=none, external_work=none, balance=none + 1e-9, vx=none, vy=np.linspace(-8, 8, 100), spin=none,
-                sliding_fraction=none + 1, reverse_fraction=none) | given
+                sliding_fraction=none + 1, reverse_fraction=none) | columns
 
 
 def labels(axes) -> list[str]:

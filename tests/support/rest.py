@@ -11,12 +11,12 @@ def weight(volume: float) -> float:
     return volume * DENSITY * GRAVITY
 
 
-def rests(found, force: float) -> None:
+def rests(result, force: float) -> None:
     """Asserts that a run ended at rest.
 
     The contact force equals the weight to the accuracy, momentum is exact, and the balance of all
     energies closes.
     """
-    assert found.summary["ended"] == "rest" and found.summary["status"] == "ok"
-    assert found.history["normal_force"][-1] == pytest.approx(force, rel=ACCURACY)
-    assert found.summary["energy_drift"] < 1e-9 and found.summary["momentum_drift"] < 1e-7
+    assert result.summary["ended"] == "rest" and result.summary["status"] == "ok"
+    assert result.history["normal_force"][-1] == pytest.approx(force, rel=ACCURACY)
+    assert result.summary["energy_drift"] < 1e-9 and result.summary["momentum_drift"] < 1e-7

@@ -29,8 +29,8 @@ def run(tmp_path, text: str, name: str = "scene", **more):
     file = tmp_path / f"{name}.toml"
     file.write_text(text)
     out = tmp_path / name
-    given = [word for key, value in more.items() for word in ("--set", f"{key.replace('__', '.')}={value}")]
-    assert main(["run", str(file), "--out", str(out), "--quiet", *given]) == 0
+    flags = [word for key, value in more.items() for word in ("--set", f"{key.replace('__', '.')}={value}")]
+    assert main(["run", str(file), "--out", str(out), "--quiet", *flags]) == 0
     return json.loads((out / "summary.json").read_text()), pd.read_csv(out / "history.csv")
 
 

@@ -28,8 +28,8 @@ PINCHED = SCENE | {"young": 2e6, "density": 1000, "fields": 40,
                    "obstacle": [FLOOR | {"point": [0, -HIGH / 2 - 1e-4]}, PEG]}
 
 
-def read(given: dict, folder: Path = Path()):
-    return read_scene(given, folder, "self")
+def read(tables: dict, folder: Path = Path()):
+    return read_scene(tables, folder, "self")
 
 
 def box_file(folder: Path, contact: str = "") -> dict:
@@ -57,38 +57,38 @@ def box_file(folder: Path, contact: str = "") -> dict:
     return {"name": "box", "shape": "mesh", "file": "box.msh", "position": [0, 0]}
 
 
-def slot_of(found) -> np.ndarray:
+def slot_of(result) -> np.ndarray:
     """The smallest height of the slot in every snapshot, away from its ends."""
     def wall(side: int):
         return lambda x, y: (abs(y - side * SLOT_HIGH / 2) < 1e-9) & (abs(x) < 0.45 * SLOT_WIDE)
-    return distances(found, wall(1), wall(-1))
+    return distances(result, wall(1), wall(-1))
 
 
-def overlaps(found) -> list[str]:
-    return [one for one in found.summary["warnings"] if one.startswith("overlap: ")]
+def overlaps(result) -> list[str]:
+    return [warning for warning in result.summary["warnings"] if warning.startswith("overlap: ")]
 
 
-def ran(tmp_path, given: dict, name: str = "run"):
-    return run.run(read(given), {}, tmp_path / name, estimate=False)
+def ran(tmp_path, tables: dict, name: str = "run"):
+    return run.run(read(tables), {}, tmp_path / name, estimate=False)
 
 
-def distances(found, of, to) -> np.ndarray:
-    """The smallest height of the nodes of the reference set `of` above the polygon through those of
-    `to`, for every snapshot.
+def distances(result, upper, lower) -> np.ndarray:
+    """The smallest height of the nodes of the reference set `upper` above the polygon through those of
+    `lower`, for every snapshot.
 
     The polygon covers every x once.
     """
     least = []
-    for _, path in vtu.series(found.folder / "fields.pvd"):
+    for _, path in vtu.series(result.folder / "fields.pvd"):
         seen = vtu.read(path)
         X, x = seen.points, seen.points + seen.fields["displacement"][:, :2]
-        above, below = x[of(*X.T)], x[to(*X.T)]
+        above, below = x[upper(*X.T)], x[lower(*X.T)]
         below = below[np.argsort(below[:, 0])]
         least.append((above[:, 1] - np.interp(above[:, 0], *below.T))[(above[:, 0] > below[0, 0]) & (above[:, 0] < below[-1, 0])].min())
     return np.array(least)
 
 
-def balanced(found, energy: float = 1e-9) -> None:
-    s = found.summary
+def balanced(result, energy: float = 1e-9) -> None:
+    s = result.summary
     assert s["status"] == "ok" and s["energy_drift"] < energy and s["momentum_drift"] < 1e-9 and (s.get("angular_momentum_drift") or 0) < 1e-9
-    assert not any(one.startswith(("overlap", "energy", "momentum", "angular")) for one in s["warnings"])
+    assert not any(warning.startswith(("overlap", "energy", "momentum", "angular")) for warning in s["warnings"])

@@ -8,5 +8,5 @@ SCENES = {"disc-normal": {"accuracy": "0.1", "fields": "0"}, "two-discs": {"accu
 ANSWERS = ("history.csv", "contacts.csv", "scene.toml")
 
 
-def go(name: str, out, **given) -> results.Record:
-    return run.run(scene.load(name), SCENES[name] | given, out, progress=False)
+def go(name: str, out, **values) -> results.Record:
+    return run.run(scene.load(name), SCENES[name] | values, out, progress=False)

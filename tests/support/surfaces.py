@@ -33,7 +33,7 @@ def stl(path: Path, points: np.ndarray, triangles: np.ndarray) -> Path:
         file.write("solid one\n")
         for corners in points[triangles]:
             file.write("facet normal 0 0 0\nouter loop\n")
-            file.writelines("vertex {!r} {!r} {!r}\n".format(*map(float, one)) for one in corners)
+            file.writelines("vertex {!r} {!r} {!r}\n".format(*map(float, vertex)) for vertex in corners)
             file.write("endloop\nendfacet\n")
         file.write("endsolid one\n")
     return path
@@ -54,7 +54,7 @@ def sphere(path: Path, radius: float, splits: int) -> Path:
     for _ in range(splits):
         a, b, c = corners.transpose(1, 0, 2)
         ab, bc, ca = a + b, b + c, c + a
-        corners = np.vstack([np.stack(one, axis=1) for one in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))])
+        corners = np.vstack([np.stack(triangle, axis=1) for triangle in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))])
         corners /= np.linalg.norm(corners, axis=2, keepdims=True)
     return stl(path, (radius * corners - [0, radius, 0]).reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3))
 

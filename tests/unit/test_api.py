@@ -55,13 +55,13 @@ def test_a_body_may_be_given_as_the_table_of_a_file():
 
 def test_all_that_is_wrong_with_a_scene_is_told_at_once():
     """The message has a line for each error, in whatever table it is."""
-    given = drop().table()
-    given["body"][0] |= {"radius": -1, "velocty": [0, 1], "position": [0, "x"]}
-    given["obstacle"][0] |= {"exponent": 2}
-    given["contact"] |= {"pair": [{"penalti": 3}]}
-    given |= {"accuracy": 3, "foo": 1}
+    tables = drop().table()
+    tables["body"][0] |= {"radius": -1, "velocty": [0, 1], "position": [0, "x"]}
+    tables["obstacle"][0] |= {"exponent": 2}
+    tables["contact"] |= {"pair": [{"penalti": 3}]}
+    tables |= {"accuracy": 3, "foo": 1}
     with pytest.raises(ff.BadInput) as caught:
-        ff.Scene.of(given)
+        ff.Scene.of(tables)
     wrong = ("accuracy", "foo", "body.1.radius", "body.1.velocty", "body.1.position.2")
     wrong += ("obstacle.1.exponent", "contact.pair.1.penalti")
     assert {line.partition(": ")[0] for line in caught.value.messages} == set(wrong)
@@ -144,9 +144,9 @@ def test_the_command_prints_the_schema(capsys):
 
 def test_help_lists_the_entries_with_their_units():
     """A notebook shows the entries of the constructor, their meaning, and which are required."""
-    told = inspect.signature(ff.Disc).parameters
-    assert "[m]" in told["radius"].annotation and told["radius"].default is inspect.Parameter.empty
-    assert told["material"].default is None and "[m/s]" in told["velocity"].annotation
+    parameters = inspect.signature(ff.Disc).parameters
+    assert "[m]" in parameters["radius"].annotation and parameters["radius"].default is inspect.Parameter.empty
+    assert parameters["material"].default is None and "[m/s]" in parameters["velocity"].annotation
     assert "bodies" in inspect.signature(ff.Scene).parameters
 
 

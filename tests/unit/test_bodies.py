@@ -79,16 +79,16 @@ def test_open_values_follow_the_scripts_rule():
 
     `friction_dynamic` follows `friction_static`. Prescribed values do not change.
     """
-    asked = []
+    requests = []
 
     def rule(values):
-        asked.append(values)
+        requests.append(values)
         return {"used": {"penalty": 123.0, "slip_velocity": 0.5, "mesh_size": 0.3, "contact_mesh_size": 0.2}, "touch_arc": 0.5}
-    given = changed(("body.1.young", 1e9), ("contact.friction_static", 0.4), ("body.2.position", [0, 0]))
-    values = assembly.assemble(read(given), rule).values
+    tables = changed(("body.1.young", 1e9), ("contact.friction_static", 0.4), ("body.2.position", [0, 0]))
+    values = assembly.assemble(read(tables), rule).values
     assert (values["penalty"], values["slip_velocity"], values["friction_dynamic"]) == (123.0, 0.5, 0.4)
-    assert asked[0]["young"] == 7e6 and asked[0]["radius"] == pytest.approx(0.5, rel=1e-5) and asked[0]["speed"] == pytest.approx(10, rel=1e-4)
-    assert assembly.assemble(read(set_entry(given, "contact.penalty", 5e8)), rule).values["penalty"] == 5e8
+    assert requests[0]["young"] == 7e6 and requests[0]["radius"] == pytest.approx(0.5, rel=1e-5) and requests[0]["speed"] == pytest.approx(10, rel=1e-4)
+    assert assembly.assemble(read(set_entry(tables, "contact.penalty", 5e8)), rule).values["penalty"] == 5e8
 
 
 def test_a_file_is_named_with_what_is_wrong_in_it(tmp_path):
@@ -178,10 +178,10 @@ def odd_texts(count: int) -> list[str]:
 def test_what_toml_accepts_is_written_back():
     """Everything that a TOML file can contain is written so that it reads back equal."""
     texts = odd_texts(400)
-    said = {text: [text, 1e-300, -0.0, True, 10**30, [[], [1.5, "x"]], math.inf] for text in texts}
-    said |= {"table": {text: text for text in texts}, "list": [{"a": text, "b": {text: {}}} for text in texts], "none": [], "mixed": [{"a": "\x7f"}, 1]}
-    said |= tomllib.loads("day = 2026-11-23\nat = 07:32:00.5\nboth = 1979-05-27T07:32:00.25Z\n")
-    assert tomllib.loads(to_toml(said)) == said
+    tables = {text: [text, 1e-300, -0.0, True, 10**30, [[], [1.5, "x"]], math.inf] for text in texts}
+    tables |= {"table": {text: text for text in texts}, "list": [{"a": text, "b": {text: {}}} for text in texts], "none": [], "mixed": [{"a": "\x7f"}, 1]}
+    tables |= tomllib.loads("day = 2026-11-23\nat = 07:32:00.5\nboth = 1979-05-27T07:32:00.25Z\n")
+    assert tomllib.loads(to_toml(tables)) == tables
 
 
 def test_values_of_numpy_are_written_as_numbers():

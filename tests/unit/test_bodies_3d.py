@@ -52,7 +52,7 @@ def test_distances_from_slender_triangles():
     turn, count = math.tau / 64, 64
     ring = [np.column_stack([np.cos(turn * np.arange(count)), np.sin(turn * np.arange(count)), np.full(count, z)]) for z in (-50, 50)]
     faces = [(low[k], low[k - 1], high[k - 1]) for low, high in (ring, ring[::-1]) for k in range(count)]
-    ends = [(one[0], one[k], one[k + 1]) for one in ring for k in range(1, count - 1)]
+    ends = [(polygon[0], polygon[k], polygon[k + 1]) for polygon in ring for k in range(1, count - 1)]
     angle, z = turn * (np.arange(count) + 0.5), np.linspace(-49, 49, count)
     beside = (math.cos(turn / 2) + 0.2) * np.column_stack([np.cos(angle), np.sin(angle), z / (math.cos(turn / 2) + 0.2)])
     assert solids.distances_from(np.array(faces + ends))(beside) == pytest.approx(np.full(count, 0.2))

@@ -14,8 +14,8 @@ PEER = {"mass_upper": 1000.0, "mass_lower": 20000.0, "velocity_upper": 2.0, "vel
 
 def theirs(monkeypatch, *changes: dict) -> pd.DataFrame:
     """NGSolve's table of the case, with these changes at its refinements."""
-    found = iter([(PEER | change, "") for change in (*changes, *[{}] * (2 - len(changes)))])
-    monkeypatch.setattr(peers, "two_bodies", lambda *_, **__: next(found))
+    answers = iter([(PEER | change, "") for change in (*changes, *[{}] * (2 - len(changes)))])
+    monkeypatch.setattr(peers, "two_bodies", lambda *_, **__: next(answers))
     return block.ask_peer([CASE])[0]
 
 
@@ -29,12 +29,12 @@ def test_answers_are_the_shares_of_the_energy(monkeypatch, tmp_path):
 def test_reference_has_smaller_elements_and_steps(monkeypatch, tmp_path):
     """The reference has the sizes of the most accurate run over FINER, the accuracy of the step
     over FINER squared, and the same law and stiffness."""
-    asked = []
+    requests = []
     tables(monkeypatch, tmp_path)
     simulated = study.study
-    monkeypatch.setattr(study, "study", lambda points, *more: asked.extend(points) or simulated(points, *more))
+    monkeypatch.setattr(study, "study", lambda points, *more: requests.extend(points) or simulated(points, *more))
     block.compare([CASE], block.ACCURACIES, tmp_path)
-    fine = asked[-1]
+    fine = requests[-1]
     assert (fine["contact_mesh_size"], fine["accuracy"]) == pytest.approx((0.02 / block.FINER, 0.005 / block.FINER**2))
     assert all(fine[name] == value for name, value in CASE.items())
 
@@ -54,10 +54,10 @@ def test_disagreement_needs_more_than_both_bars(monkeypatch, tmp_path):
     table = tables(monkeypatch, tmp_path, {}, {"rebound_vy_1": 2.01})
     for coarse, apart in ((2.08, True), (2.10, False)):
         others = theirs(monkeypatch, {"velocity_upper": coarse}, {"velocity_upper": 2.05})
-        said = block.disagreements(block.with_bars(table), block.peer_with_bars(others))
-        assert any("v disc m/s: ours 2.000 ± 0.010, NGSolve 2.05" in sentence for sentence in said) == apart
+        sentences = block.disagreements(block.with_bars(table), block.peer_with_bars(others))
+        assert any("v disc m/s: ours 2.000 ± 0.010, NGSolve 2.05" in sentence for sentence in sentences) == apart
         text = block.report(table, others, "")
-        assert all(f"- {sentence}" in text for sentence in said) and ("Further apart than both" in text) == bool(said) and f"refine {block.REFINEMENTS[0]:g}" in text
+        assert all(f"- {sentence}" in text for sentence in sentences) and ("Further apart than both" in text) == bool(sentences) and f"refine {block.REFINEMENTS[0]:g}" in text
 
 
 def test_peer_that_fails_is_said(monkeypatch):

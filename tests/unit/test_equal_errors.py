@@ -34,8 +34,8 @@ def test_luck_is_no_accuracy():
 def test_errors_are_relative_to_what_the_page_says():
     """The impulse is relative to itself, velocities to the impact speed, the spin to this speed at
     the rim. The error is the largest."""
-    found = equal.errors(CASE, {"impulse": 206.0, "vy": 7.4}, {"impulse": 200.0, "vy": 7.0})
-    assert found == pytest.approx({"impulse %": 3.0, "vy %": 5.0, "error": 5.0})
+    errors = equal.errors(CASE, {"impulse": 206.0, "vy": 7.4}, {"impulse": 200.0, "vy": 7.0})
+    assert errors == pytest.approx({"impulse %": 3.0, "vy %": 5.0, "error": 5.0})
     oblique = equal.CASES["oblique"]
     still = dict.fromkeys(oblique.answers, 1.0)
     rim = math.pi * 1722 * 0.05**4 / 2 / 0.05 * 12.0
@@ -74,6 +74,6 @@ def test_verdict_says_who_is_quicker():
     table = pd.concat([rows(equal.OURS, (0.9, 1.0), (0.4, 2.0)), rows(equal.TUNED, (0.8, 0.5), (0.4, 6.0), (0.05, 9.0))], ignore_index=True)
     ratios = equal.beside(table)
     assert ratios[1.0] == pytest.approx((0.5, 0.5)) and ratios[0.5] == pytest.approx((3.0, 3.0)) and all(map(math.isnan, ratios[0.1]))
-    said = equal.verdict({"normal": True, "ball": False}, {"normal": ratios})
-    assert "agree within their bars in 1 of 2 cases (not: ball)" in said and "time integration is the quickest in 1 of 2 comparisons, our whole process in 1" in said
-    assert "1 %: 0.5 / 0.5, 0.5 %: 3.0 / 3.0, 0.1 %: -" in said
+    text = equal.verdict({"normal": True, "ball": False}, {"normal": ratios})
+    assert "agree within their bars in 1 of 2 cases (not: ball)" in text and "time integration is the quickest in 1 of 2 comparisons, our whole process in 1" in text
+    assert "1 %: 0.5 / 0.5, 0.5 %: 3.0 / 3.0, 0.1 %: -" in text

@@ -22,19 +22,19 @@ START = {"mesh_size": 0.016, "contact_mesh_size": 0.003, "dt": 0.0}
 
 # ---- differences of two runs
 
-@pytest.mark.parametrize("change, found", [
+@pytest.mark.parametrize("change, expected", [
     ({"impulse": 2.1}, {"impulse": 0.05}), ({"rebound_vx": 1.3, "rebound_vy": 2.6}, {"rebound": 0.05}), ({"rebound_spin": -10.0}, {"rebound_spin": 0.1}),
     ({"energy_final": 4.25}, {"energy": 0.05}), ({"vibration_energy": 1.5}, {"energy": 0.1}),
     ({"friction_work": 0.75}, {"friction_work": 0.05, estimate.OF_ITSELF: 0.5}), ({"contact_time": 5e-3}, {"contact_time": 0.25}),
     ({"thresholded_contact_time": 3.51e-3}, {"thresholded_contact_time": 0.1}), ({"peak_force": 7.7e4}, {"peak_force": 0.1}), ({}, {})])
-def test_each_answer_differs_over_its_scale(change, found):
+def test_each_answer_differs_over_its_scale(change, expected):
     """Velocities are relative to 10 m/s, spin times a radius of 0.5 m to the same, energies to the
     initial energy, others to themselves.
 
     No other difference changes.
     """
     apart = estimate.difference(ANSWERS, ANSWERS | change, 10.0, 0.5)
-    assert apart == pytest.approx(dict.fromkeys(apart, 0.0) | found) and set(found) <= set(apart)
+    assert apart == pytest.approx(dict.fromkeys(apart, 0.0) | expected) and set(expected) <= set(apart)
 
 
 def test_answers_that_are_not_there_do_not_differ():
@@ -54,12 +54,12 @@ def on_its_way(impulse: float = 0.0, speed: float = 0.0, spin: float = 0.0, elas
     return Answers(ANSWERS | {"largest_energy": 5.0}, {"radius": 0.5}, 10.0, history)
 
 
-@pytest.mark.parametrize("off, found", [
+@pytest.mark.parametrize("off, expected", [
     ({"impulse": 0.1}, {"impulse": 0.1, "rebound": 0.02, "energy": 0.02} | dict.fromkeys(estimate.COURSE, 0.1)), ({"speed": 0.2}, {"rebound": 0.2}),
     ({"spin": -0.3}, {"rebound_spin": 0.3}), ({"elastic": 0.4}, {"energy": 0.4}), ({}, {}),
     ({"work": 0.05}, {"friction_work": 0.05 / ROOT2, estimate.OF_ITSELF: 0.5 / ROOT2, "rebound": 0.1, "energy": 0.1}),
     ({"work": 0.05, "spin": 0.3}, {"friction_work": 0.05 / ROOT2, estimate.OF_ITSELF: 0.5 / ROOT2, "rebound": 0.1, "energy": 0.1, "rebound_spin": 0.4})])
-def test_two_runs_that_end_alike_are_apart_on_their_way(off, found):
+def test_two_runs_that_end_alike_are_apart_on_their_way(off, expected):
     """The largest differences of impulse, velocity, spin and elastic energy during contact, over
     their scales, cannot be small by chance.
 
@@ -67,7 +67,7 @@ def test_two_runs_that_end_alike_are_apart_on_their_way(off, found):
     (rms of the hump). Its difference counts in speed, energy and spin.
     """
     apart = estimate.course(on_its_way(**off), on_its_way())
-    assert apart == pytest.approx(dict.fromkeys([*estimate.USUAL, estimate.OF_ITSELF], 0.0) | found, rel=5e-3, abs=1e-12)
+    assert apart == pytest.approx(dict.fromkeys([*estimate.USUAL, estimate.OF_ITSELF], 0.0) | expected, rel=5e-3, abs=1e-12)
     assert estimate.course(on_its_way(**off), on_its_way(steps=81)) == pytest.approx(apart, rel=0.01, abs=2e-3)
 
 
@@ -81,13 +81,13 @@ STEPS = 1e-3  # 32 steps while the force is high, squared
 def test_an_estimate_is_no_less_than_the_difference_nor_fooled_by_chance():
     """If the differences of impulse, rebound and energy are all small by chance, the time histories
     give the estimate. Without any difference there is no error."""
-    way = usual(0.1)
+    course = usual(0.1)
     by_chance = usual(1e-3) | {name: 1e-9 for name in ("impulse", "rebound", "energy")}
-    found = estimate.errors(by_chance, way, STEPS)
-    assert all(found[name] > 0.002 * estimate.USUAL[name] for name in ("impulse", "rebound", "energy"))
-    assert all(value >= by_chance[name] for name, value in found.items())
-    assert estimate.errors(usual(1.0), way, STEPS)["impulse"] == estimate.USUAL["impulse"]
-    none = dict.fromkeys(way, 0.0)
+    errors = estimate.errors(by_chance, course, STEPS)
+    assert all(errors[name] > 0.002 * estimate.USUAL[name] for name in ("impulse", "rebound", "energy"))
+    assert all(value >= by_chance[name] for name, value in errors.items())
+    assert estimate.errors(usual(1.0), course, STEPS)["impulse"] == estimate.USUAL["impulse"]
+    none = dict.fromkeys(course, 0.0)
     assert estimate.errors(none, none, STEPS) == none
 
 
@@ -101,12 +101,12 @@ def test_an_estimate_is_the_geometric_mean_of_three_measures(others, own, steps,
     only the time histories count. All three times eight give eight times the error.
     """
     # The spin is small, as its share in the rebound has another test.
-    small, way = usual(1e-6), usual(1.0) | {"rebound_spin": 1e-4}
+    small, course = usual(1e-6), usual(1.0) | {"rebound_spin": 1e-4}
     times = ("thresholded_contact_time", "contact_time")
-    found, before = estimate.errors(usual(others * 1e-6), way, steps * STEPS), estimate.errors(small, way, STEPS)
+    errors, before = estimate.errors(usual(others * 1e-6), course, steps * STEPS), estimate.errors(small, course, STEPS)
     for name in estimate.BOUND:
-        assert found[name] / before[name] == pytest.approx(8**0.25 if name in times else 2 if name in raised else 1), name
-    all_three = estimate.errors(usual(8e-6), {name: 8 * value for name, value in way.items()}, 8 * STEPS)
+        assert errors[name] / before[name] == pytest.approx(8**0.25 if name in times else 2 if name in raised else 1), name
+    all_three = estimate.errors(usual(8e-6), {name: 8 * value for name, value in course.items()}, 8 * STEPS)
     for name in estimate.BOUND:
         assert all_three[name] / before[name] == pytest.approx(8**0.75 if name in times else 8), name
 
@@ -118,10 +118,10 @@ def test_what_friction_ties_together_is_stated_together():
     and raises that of the impulse by at most a quarter of it, that of the rebound by half of it.
     Without friction it does not count.
     """
-    small, way = usual(1e-6), usual(1e-3)
-    turns = estimate.errors(small, way | {"rebound_spin": 1.0}, STEPS)
+    small, course = usual(1e-6), usual(1e-3)
+    turns = estimate.errors(small, course | {"rebound_spin": 1.0}, STEPS)
     assert turns["rebound"] == pytest.approx(estimate.LEVER * turns["rebound_spin"])
-    still = way | {"rebound_spin": 0.0, "friction_work": 1.0}
+    still = course | {"rebound_spin": 0.0, "friction_work": 1.0}
     rubs = estimate.errors(small, still, STEPS)
     work = estimate.errors(small, still | {"rebound_spin": 1e-9}, STEPS)["friction_work"]
     assert rubs["friction_work"] == pytest.approx(estimate.STILL * work)
@@ -173,23 +173,23 @@ def test_what_does_not_show_is_stated():
 
     A pair with different steps keeps its estimate. Half hidden lies between.
     """
-    small, way = usual(1e-3), usual(1e-3)
-    stated = [estimate.errors(small, way, 1e-2, hidden) for hidden in (0.0, 0.5, 1.0)]
-    assert stated[0] == estimate.errors(small, way, 1e-2)
+    small, course = usual(1e-3), usual(1e-3)
+    stated = [estimate.errors(small, course, 1e-2, hidden) for hidden in (0.0, 0.5, 1.0)]
+    assert stated[0] == estimate.errors(small, course, 1e-2)
     for name in estimate.BOUND:
-        none, half, whole = (found[name] for found in stated)
+        none, half, whole = (errors[name] for errors in stated)
         assert none < half < whole and whole > 2 * none, name
-    none = dict.fromkeys(way, 0.0)
+    none = dict.fromkeys(course, 0.0)
     assert estimate.errors(none, none, 1e-2, 1.0) == none
     # Without friction the mesh causes spin. Steps affect its estimate through other results only.
-    smooth = way | {"friction_work": 0.0}
+    smooth = course | {"friction_work": 0.0}
     assert estimate.errors(small, smooth, 1e-2, 1.0)["rebound_spin"] < 0.3 * stated[2]["rebound_spin"]
 
 
 def test_friction_work_of_itself_is_stated_as_friction_work_is():
     """Both are one error on two scales."""
-    found = estimate.errors(usual(1.0), usual(1.0) | {"friction_work": 0.01, estimate.OF_ITSELF: 0.03}, STEPS)
-    assert found[estimate.OF_ITSELF] == pytest.approx(3 * found["friction_work"]) and found["friction_work"] > 0
+    errors = estimate.errors(usual(1.0), usual(1.0) | {"friction_work": 0.01, estimate.OF_ITSELF: 0.03}, STEPS)
+    assert errors[estimate.OF_ITSELF] == pytest.approx(3 * errors["friction_work"]) and errors["friction_work"] > 0
 
 
 @pytest.mark.parametrize("name, times, also, named", [
@@ -206,7 +206,7 @@ def test_answers_above_what_is_asked_are_named(name, times, also, named):
 
 # ---- the runs
 
-def told(folder: Path) -> Answers:
+def answers_of(folder: Path) -> Answers:
     """The results of the fake disc in a folder. Its time history has no deviation."""
     summary, used, speed = json.loads((folder / "result.json").read_text())
     return Answers(summary | {"largest_energy": 5.0}, used | {"radius": 0.5}, speed, on_its_way().history)
@@ -223,9 +223,9 @@ class Disc:
     The time history has no deviation. A run fails with `code` at the factors `fails` of the sizes.
     """
 
-    def __init__(self, stage: Path, error: float, fails=(), code: int = 11, lost: float | None = None, **given):
+    def __init__(self, stage: Path, error: float, fails=(), code: int = 11, lost: float | None = None, **values):
         self.error, self.fails, self.code, self.lost, self.asked = error, fails, code, lost, []
-        self.values = parameters.defaults() | REQUESTS | {"accuracy": 0.01} | given
+        self.values = parameters.defaults() | REQUESTS | {"accuracy": 0.01} | values
         self.stage = stage
         self.solve(self.values, stage)
         (stage / "checkpoint.json").write_text("what the run was asked for")
@@ -235,7 +235,7 @@ class Disc:
         used = values | {name: values[name] or START[name] for name in START} | {"penalty": 1e10, "slip_velocity": 0.1, "friction_dynamic": 0.0}
         # With a mesh file only the step changes.
         factor = (values["accuracy"] / self.values["accuracy"])**0.5
-        if any(factor == pytest.approx(each) for each in self.fails):
+        if any(factor == pytest.approx(failing_factor) for failing_factor in self.fails):
             raise Failure(f"no step at {factor:.2f}", code=self.code)
         folder.mkdir(exist_ok=True)
         summary = ANSWERS | {"impulse": 2 * (1 + self.error * factor**2), "cpu_seconds": 1.0, "ellipticity_lost_time": self.lost}
@@ -243,7 +243,7 @@ class Disc:
         (folder / f"of {factor:.2f}").touch()
 
     def settle(self, own_mesh: bool = True) -> dict:
-        return estimate.settle(self.stage, self.values, own_mesh, self.solve, told)
+        return estimate.settle(self.stage, self.values, own_mesh, self.solve, answers_of)
 
     def factors(self) -> list[float]:
         """The sizes of the runs over START."""
@@ -254,31 +254,33 @@ def test_an_estimate_below_the_accuracy_is_one_coarser_run(tmp_path):
     """Elements and steps are 1.4 times larger and the error doubles, so that the difference is the
     error. No other files stay in the folder."""
     disc = Disc(tmp_path, 0.006)
-    found = disc.settle()
+    summary = disc.settle()
     assert disc.factors() == pytest.approx([1, ROOT2]) and disc.asked[1]["fields"] == 0
-    assert found["estimated_error"]["impulse"] == pytest.approx(0.006, rel=0.02) and found["refinements"] == 0 and found["warnings"] == []
-    assert found["estimate_cpu_seconds"] == 1 and {path.name for path in tmp_path.iterdir()} == {"result.json", "of 1.00", "checkpoint.json"}
+    assert summary["estimated_error"]["impulse"] == pytest.approx(0.006, rel=0.02)
+    assert summary["refinements"] == 0 and summary["warnings"] == []
+    assert summary["estimate_cpu_seconds"] == 1 and {path.name for path in tmp_path.iterdir()} == {"result.json", "of 1.00", "checkpoint.json"}
 
 
 def test_finer_runs_follow_until_it_is(tmp_path):
     """3.6 % is halved twice. The finest run becomes the result; each former run is the coarser one
     of the next pair."""
     disc = Disc(tmp_path, 0.036)
-    found = disc.settle()
+    summary = disc.settle()
     assert disc.factors() == pytest.approx([1, ROOT2, 1 / ROOT2, 1 / 2])
-    assert found["estimated_error"]["impulse"] == pytest.approx(0.009, rel=0.02) and found["refinements"] == 2 and found["warnings"] == []
-    assert found["estimate_cpu_seconds"] == 3
+    assert summary["estimated_error"]["impulse"] == pytest.approx(0.009, rel=0.02)
+    assert summary["refinements"] == 2 and summary["warnings"] == []
+    assert summary["estimate_cpu_seconds"] == 3
     assert {path.name for path in tmp_path.iterdir()} == {"result.json", "of 0.50", "checkpoint.json"}
     assert (tmp_path / "checkpoint.json").read_text() == "what the run was asked for"
 
 
-@pytest.mark.parametrize("name, asked", [("fields", [5, 0, 5, 5]), ("modes", [4, 0, 4, 4]), ("checkpoint_every", [7] * 4)])
-def test_what_was_asked_for_is_asked_of_every_run_that_may_stay(tmp_path, name, asked):
+@pytest.mark.parametrize("name, expected", [("fields", [5, 0, 5, 5]), ("modes", [4, 0, 4, 4]), ("checkpoint_every", [7] * 4)])
+def test_what_was_asked_for_is_asked_of_every_run_that_may_stay(tmp_path, name, expected):
     """A finer run replaces the first one and has all its requests. The coarser run writes no
     output."""
     disc = Disc(tmp_path, 0.036)
     disc.settle()
-    assert [values[name] for values in disc.asked] == asked
+    assert [values[name] for values in disc.asked] == expected
 
 
 def test_what_asks_for_output_is_off_by_default():
@@ -297,10 +299,11 @@ def test_scatter_is_a_reason_for_no_more_than_one_finer_run(tmp_path, off, runs)
     disc = Disc(tmp_path, 1e-9)
     def read(folder):
         longer = 1 + off if folder == tmp_path / "coarser" else 1
-        return told(folder)._replace(summary=told(folder).summary | {"thresholded_contact_time": 4e-3 * longer})
-    found = estimate.settle(tmp_path, disc.values, True, disc.solve, read)
-    assert found["estimated_error"]["thresholded_contact_time"] == pytest.approx(off) and len(disc.asked) == runs
-    assert any(f"thresholded contact time {100 * off:.2g} %" in note for note in found["notes"]) == (off > 0.01) and found["warnings"] == []
+        return answers_of(folder)._replace(summary=answers_of(folder).summary | {"thresholded_contact_time": 4e-3 * longer})
+    summary = estimate.settle(tmp_path, disc.values, True, disc.solve, read)
+    assert summary["estimated_error"]["thresholded_contact_time"] == pytest.approx(off) and len(disc.asked) == runs
+    assert any(f"thresholded contact time {100 * off:.2g} %" in note for note in summary["notes"]) == (off > 0.01)
+    assert summary["warnings"] == []
 
 
 @pytest.mark.parametrize("offs, runs", [((0.035, 0.021, 0.0126), 4), ((0.03, 0.025, 0.02), 3),
@@ -311,33 +314,33 @@ def test_a_second_finer_run_follows_where_it_brings_the_contact_time_there(tmp_p
     disc = Disc(tmp_path, 1e-9)
     def read(folder):
         longer = 1 + offs[len(disc.asked) - 2] if folder == tmp_path / "coarser" else 1
-        return told(folder)._replace(summary=told(folder).summary | {"thresholded_contact_time": 4e-3 * longer})
+        return answers_of(folder)._replace(summary=answers_of(folder).summary | {"thresholded_contact_time": 4e-3 * longer})
     estimate.settle(tmp_path, disc.values, True, disc.solve, read)
     assert len(disc.asked) == runs
 
 
-@pytest.mark.parametrize("given", [{"mesh_size": 0.016}, {"contact_mesh_size": 0.003}, {"dt": 1e-5}, {"mesh": "own"}, {"lost": 1e-3}, {"error": 3.0}])
-def test_what_stays_above_is_said(tmp_path, given):
+@pytest.mark.parametrize("values", [{"mesh_size": 0.016}, {"contact_mesh_size": 0.003}, {"dt": 1e-5}, {"mesh": "own"}, {"lost": 1e-3}, {"error": 3.0}])
+def test_what_stays_above_is_said(tmp_path, values):
     """Prescribed sizes or steps, a mesh file or lost ellipticity prevent refinement. There are at
     most MOST refinements."""
-    own_mesh = not given.pop("mesh", None)
-    disc = Disc(tmp_path, given.pop("error", 0.03), **given)
-    found = disc.settle(own_mesh)
-    assert found["refinements"] == (estimate.MOST if disc.error > 1 else 0) == len(disc.asked) - 2
-    warned, = found["warnings"]
+    own_mesh = not values.pop("mesh", None)
+    disc = Disc(tmp_path, values.pop("error", 0.03), **values)
+    summary = disc.settle(own_mesh)
+    assert summary["refinements"] == (estimate.MOST if disc.error > 1 else 0) == len(disc.asked) - 2
+    warned, = summary["warnings"]
     assert re.fullmatch(r"estimated errors: \S.* %, requested 1 %: all above it: impulse \S+ %.*: ask .*", warned)
     # Which is not varied.
-    assert [notes.name(each) for each in found["notes"]] == ([] if own_mesh else ["mesh of the file"])
-    assert found["estimated_error"]["impulse"] > 0.01
-    assert found["estimated_error_excludes"] == ["penalty", "slip_velocity", *([] if own_mesh else ["mesh"])]
+    assert [notes.name(note) for note in summary["notes"]] == ([] if own_mesh else ["mesh of the file"])
+    assert summary["estimated_error"]["impulse"] > 0.01
+    assert summary["estimated_error_excludes"] == ["penalty", "slip_velocity", *([] if own_mesh else ["mesh"])]
 
 
 @pytest.mark.parametrize("code", [11, 12])
 def test_a_coarser_run_that_fails_is_no_estimate(tmp_path, code):
     """The result stays without an error estimate, and a sentence has the reason. Other failures are
     failures of the run."""
-    found = Disc(tmp_path / "a", 0.03, fails=[ROOT2], code=code).settle()
-    assert found["estimated_error"] is None and found["refinements"] == 0 and "no step at 1.41" in found["warnings"][0]
+    summary = Disc(tmp_path / "a", 0.03, fails=[ROOT2], code=code).settle()
+    assert summary["estimated_error"] is None and summary["refinements"] == 0 and "no step at 1.41" in summary["warnings"][0]
     with pytest.raises(Failure, match="no step"):
         Disc(tmp_path / "b", 0.03, fails=[ROOT2], code=14).settle()
 
@@ -345,9 +348,9 @@ def test_a_coarser_run_that_fails_is_no_estimate(tmp_path, code):
 def test_a_finer_run_that_fails_leaves_the_run(tmp_path):
     """The existing result stays with its estimate. Sentences report that it exceeds the accuracy,
     and why the finer run failed."""
-    found = Disc(tmp_path, 0.036, fails=[1 / 2]).settle()
-    assert found["refinements"] == 1 and found["estimated_error"]["impulse"] == pytest.approx(0.018, rel=0.02)
-    assert len(found["warnings"]) == 2 and "impulse 1.8 %" in found["warnings"][0] and "no step at 0.50" in found["warnings"][1]
+    summary = Disc(tmp_path, 0.036, fails=[1 / 2]).settle()
+    assert summary["refinements"] == 1 and summary["estimated_error"]["impulse"] == pytest.approx(0.018, rel=0.02)
+    assert len(summary["warnings"]) == 2 and "impulse 1.8 %" in summary["warnings"][0] and "no step at 0.50" in summary["warnings"][1]
     assert {path.name for path in tmp_path.iterdir()} == {"result.json", "of 0.71", "checkpoint.json"}
 
 
@@ -372,9 +375,9 @@ def test_the_same_steps_are_no_estimate(tmp_path):
     estimate."""
     disc = Disc(tmp_path, 0.03)
     def read(folder):
-        return told(folder)._replace(summary=told(folder).summary | {"dofs": 260, "steps": 4})
-    found = estimate.settle(tmp_path, disc.values, True, disc.solve, read)
-    assert found["estimated_error"] is None and "a second run took the same ones" in found["warnings"][0]
+        return answers_of(folder)._replace(summary=answers_of(folder).summary | {"dofs": 260, "steps": 4})
+    summary = estimate.settle(tmp_path, disc.values, True, disc.solve, read)
+    assert summary["estimated_error"] is None and "a second run took the same ones" in summary["warnings"][0]
 
 
 @pytest.mark.parametrize("name, times, kind", [
@@ -385,10 +388,10 @@ def test_a_promised_answer_far_above_the_accuracy_is_a_warning(tmp_path, monkeyp
     are not promised above twice the accuracy, it is a note."""
     disc = Disc(tmp_path, 1e-9, mesh_size=0.016)  # prescribed sizes prevent finer runs
     monkeypatch.setattr(estimate, "errors", lambda *_: dict.fromkeys([*estimate.BOUND, estimate.OF_ITSELF], 0.0) | {name: 0.01 * times})
-    found = disc.settle()
-    for each in ("warnings", "notes"):
-        assert [notes.name(one) for one in found[each]] == (["estimated errors"] if each == kind else [])
-        assert all(f"{name.replace('_', ' ')} {times:.2g} %, requested 1 %" in one for one in found[each])
+    summary = disc.settle()
+    for key in ("warnings", "notes"):
+        assert [notes.name(sentence) for sentence in summary[key]] == (["estimated errors"] if key == kind else [])
+        assert all(f"{name.replace('_', ' ')} {times:.2g} %, requested 1 %" in sentence for sentence in summary[key])
 
 
 @pytest.mark.parametrize("transit, kind", [(None, "notes"), (1e-5, "warnings")])
@@ -397,15 +400,15 @@ def test_a_contact_time_that_is_far_off_is_a_note_only_where_it_scatters(tmp_pat
     round impact it scatters, after a flat strike it is late."""
     disc, far = Disc(tmp_path, 1e-9), {"thresholded_contact_time": 0.03}
     monkeypatch.setattr(estimate, "error_estimates", lambda *_: dict.fromkeys([*estimate.BOUND, estimate.OF_ITSELF], 0.0) | far)
-    found = estimate.settle(tmp_path, disc.values, True, disc.solve, lambda folder: told(folder)._replace(summary=told(folder).summary | {"front_transit": transit}))
-    assert {each: [notes.name(one) for one in found[each]] for each in ("warnings", "notes")} == {"warnings": [], "notes": []} | {kind: ["estimated errors"]}
+    summary = estimate.settle(tmp_path, disc.values, True, disc.solve, lambda folder: answers_of(folder)._replace(summary=answers_of(folder).summary | {"front_transit": transit}))
+    assert {key: [notes.name(sentence) for sentence in summary[key]] for key in ("warnings", "notes")} == {"warnings": [], "notes": []} | {kind: ["estimated errors"]}
 
 
 def test_runs_that_saw_different_touches_say_so():
     """If the runs of a pair have different numbers of contact intervals, a warning reports both
     numbers; else there is none."""
-    told, = estimate.touches({"contact_intervals": 3}, {"contact_intervals": 2})
-    assert told.startswith("touches: contact intervals 3, with 1.4 times larger elements and steps 2: ")
+    sentence, = estimate.touches({"contact_intervals": 3}, {"contact_intervals": 2})
+    assert sentence.startswith("touches: contact intervals 3, with 1.4 times larger elements and steps 2: ")
     assert not estimate.touches({"contact_intervals": 3}, {"contact_intervals": 3})
 
 
@@ -431,9 +434,9 @@ def test_errors_of_a_flat_strike_fall_with_their_measures():
 def test_errors_of_several_impacts_fall_no_faster_than_second_order():
     """If runs agree at the end by chance, the estimate contains the difference of their histories
     and half of the former estimate."""
-    small, way = {name: 1e-6 for name in estimate.BOUND}, {name: 1e-3 for name in estimate.BOUND}
-    assert estimate.strikes_again(small, way, None)["rebound"] == 1e-3
-    again = estimate.strikes_again(small, way, {name: 1e-2 for name in estimate.BOUND})
+    small, course = {name: 1e-6 for name in estimate.BOUND}, {name: 1e-3 for name in estimate.BOUND}
+    assert estimate.strikes_again(small, course, None)["rebound"] == 1e-3
+    again = estimate.strikes_again(small, course, {name: 1e-2 for name in estimate.BOUND})
     assert again["rebound"] == pytest.approx(5e-3) and again["peak_force"] == 1e-6
 
 

@@ -37,8 +37,8 @@ def test_fifty_bodies_and_no_force(recwarn):
     there is no legend and no warning."""
     t = np.linspace(0, 1e-2, 5)
     many, scene = {f"body{k}": f"_{k}" for k in range(1, 51)}, {"script": "bodies", "body": [{"name": f"body{k}"} for k in range(1, 51)]}
-    history = dict(t=t, dt=0 * t + t[1], normal_force=0 * t, friction_force=0 * t) | {f"{name}{of}": (name == "vx") + 0 * t
-                                                                     for of in many.values() for name in ("vx", "vy", "spin", "force_x", "force_y")}
+    history = dict(t=t, dt=0 * t + t[1], normal_force=0 * t, friction_force=0 * t) | {f"{name}{suffix}": (name == "vx") + 0 * t
+                                                                     for suffix in many.values() for name in ("vx", "vy", "spin", "force_x", "force_y")}
     speeds, pushes = bodies.velocities(history, scene), bodies.forces(history, scene)
     named = [text.get_text() for text in speeds.axes[0].get_legend().get_texts()]
     assert named == [f"body{k}" for k in (*range(1, 7), *range(45, 51))] and pushes.axes[0].get_legend() is None and not recwarn.list

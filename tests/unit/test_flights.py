@@ -22,7 +22,7 @@ def test_what_misses_never_touches(case):
     """Bodies that miss each other, be it by a millimetre, have no contact at any time."""
     """Bodies that pass each other by a millimetre are said to miss, those alone."""
     # Pairs are skipped if their bounding spheres stay apart.
-    assert all(one.never for one in approach.meetings(MISSES[case]))
+    assert all(pair.never for pair in approach.meetings(MISSES[case]))
 
 
 def test_a_body_set_down_is_refused_at_once():
@@ -30,9 +30,9 @@ def test_a_body_set_down_is_refused_at_once():
     refused before the computation."""
     square = {"shape": "rectangle", "width": 0.1, "height": 0.1, "position": [0, 0.05]}
     for more in ((), ({"kind": "plane", "point": [0, 0.1], "normal": [0, -1]},)):
-        given = read(square, obstacles=(FLOOR, *more), gravity=9.81)
+        scene = read(square, obstacles=(FLOOR, *more), gravity=9.81)
         with pytest.raises(BadInput, match="end_time: 0 .* 'body1' is set down on 'obstacle1'"):
-            approach.refuse_nothing(given, approach.meetings(given))
+            approach.refuse_nothing(scene, approach.meetings(scene))
 
 
 def test_corners_that_follow_are_fine():
@@ -41,5 +41,5 @@ def test_corners_that_follow_are_fine():
     square = {"shape": "rectangle", "width": 0.1, "height": 0.1, "position": [0, 0.08], "angle": 20, "velocity": [0, -2]}
     first, second = approach.meetings(read(square, obstacles=(FLOOR,)))
     assert first.time < math.inf and second.closing < first.closing
-    x = [one.outlines[0].points[one.outlines[0].points[:, 1].argmin(), 0] for one in (first, second)]
+    x = [pair.outlines[0].points[pair.outlines[0].points[:, 1].argmin(), 0] for pair in (first, second)]
     assert x[0] < -0.02 and x[1] > 0.02

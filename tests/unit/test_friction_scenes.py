@@ -13,9 +13,9 @@ from ffimpact.scenes.scene import RUN
 def test_built_in_scenes_load(name):
     """Every built-in scene has a title, a script of its kind and every parameter."""
     loaded = scene.load(name)
-    known = parameters.names(loaded.script)
-    wanted = set(RUN) & set(known) if loaded.bodies else known
-    assert loaded.title != name and set(loaded.values) == set(wanted)
+    names = parameters.names(loaded.script)
+    expected = set(RUN) & set(names) if loaded.bodies else names
+    assert loaded.title != name and set(loaded.values) == set(expected)
 
 
 def test_scenes_of_the_paper():

@@ -9,7 +9,7 @@ import pytest
 from ffimpact import scene
 from ffimpact.scenes import front
 from ffimpact.scenes.approach import meetings
-from tests.support.front import BLOCK, given
+from tests.support.front import BLOCK, scene_of
 
 BARS = """
 accuracy = 0.02
@@ -32,17 +32,17 @@ position = [0.1, 0]
 C = math.sqrt(1e6 / 1e3)
 
 
-def fronts(wanted: scene.Scene) -> list[front.Front]:
-    return front.fronts(wanted, meetings(wanted))
+def fronts(problem: scene.Scene) -> list[front.Front]:
+    return front.fronts(problem, meetings(problem))
 
 
 def test_a_face_on_a_plane_is_a_flat_strike(tmp_path):
     """Its element size is measured along the normal, and the rise time of the front is the transit
     time of an element."""
-    one, = fronts(given(BLOCK, tmp_path))
-    assert one.crossed == (0,) and one.sizes[0] == pytest.approx(front.PER_ACCURACY * 0.02 * 0.1)
-    assert one.tau == pytest.approx(one.sizes[0] / C) and one.transit == pytest.approx(0.1 / C)
-    assert fronts(given(BLOCK, tmp_path, accuracy=0.01))[0].tau == pytest.approx(one.tau / 2)
+    strike, = fronts(scene_of(BLOCK, tmp_path))
+    assert strike.crossed == (0,) and strike.sizes[0] == pytest.approx(front.PER_ACCURACY * 0.02 * 0.1)
+    assert strike.tau == pytest.approx(strike.sizes[0] / C) and strike.transit == pytest.approx(0.1 / C)
+    assert fronts(scene_of(BLOCK, tmp_path, accuracy=0.01))[0].tau == pytest.approx(strike.tau / 2)
 
 
 @pytest.mark.parametrize("entries", [dict(body__1__angle=1.0, body__1__position=[0, 0.0518]), dict(end_time=1.0), dict(body__1__velocity=[0.3, 0], gravity=9.81,
@@ -50,29 +50,29 @@ def test_a_face_on_a_plane_is_a_flat_strike(tmp_path):
 def test_what_is_no_flat_strike(entries, tmp_path):
     """A face that lands on a corner first, a body that is set down, and a run that continues long
     after the strike."""
-    assert fronts(given(BLOCK, tmp_path, **entries)) == []
+    assert fronts(scene_of(BLOCK, tmp_path, **entries)) == []
 
 
 def test_a_tilt_that_closes_before_the_front_has_passed_an_element_is_flat(tmp_path):
     """At a hundred times the speed the late corner lands while the front is in the first element.
     """
     tilted = dict(body__1__angle=1.0, body__1__position=[0, 0.0518])
-    assert fronts(given(BLOCK, tmp_path, body__1__velocity=[0, -0.5 * C], **tilted))
+    assert fronts(scene_of(BLOCK, tmp_path, body__1__velocity=[0, -0.5 * C], **tilted))
 
 
 @pytest.mark.parametrize("name", ["disc-normal", "disc-oblique", "two-discs", "three-in-a-row", "disc-corner", "block-corner", "balls-3d", "ball-cylinder"])
 def test_round_bodies_strike_no_face(name):
     """No built-in scene of round bodies or corners has a front."""
-    wanted = scene.load(name)
-    if wanted.bodies:
-        assert fronts(wanted) == []
+    problem = scene.load(name)
+    if problem.bodies:
+        assert fronts(problem) == []
 
 
 def test_two_bars_have_one_front(tmp_path):
     """The shorter bar determines the elements of both."""
-    one, = fronts(given(BARS, tmp_path))
-    assert one.crossed == (0, 1) and one.sizes[0] == one.sizes[1] == pytest.approx(front.PER_ACCURACY * 0.02 * 0.1)
-    stiff, = fronts(given(BARS, tmp_path, body__2__young=1e8))
+    strike, = fronts(scene_of(BARS, tmp_path))
+    assert strike.crossed == (0, 1) and strike.sizes[0] == strike.sizes[1] == pytest.approx(front.PER_ACCURACY * 0.02 * 0.1)
+    stiff, = fronts(scene_of(BARS, tmp_path, body__2__young=1e8))
     # In equal times waves travel ten times as far.
     assert stiff.sizes[1] == pytest.approx(10 * stiff.sizes[0])
 
@@ -81,18 +81,18 @@ def test_two_bars_have_one_front(tmp_path):
 def test_the_penalty_lets_the_front_rise_in_its_time(exponent, tmp_path):
     """At the pressure rho c v of the strike the penetration is v times the rise time. Two bodies
     share it."""
-    wall, = fronts(given(BLOCK, tmp_path))
-    bodies = given(BLOCK, tmp_path).bodies
+    wall, = fronts(scene_of(BLOCK, tmp_path))
+    bodies = scene_of(BLOCK, tmp_path).bodies
     assert wall.penalty(bodies, exponent) * (0.3 * wall.rise)**exponent == pytest.approx(1e3 * C * 0.3)
     assert wall.rise_on(wall.penalty(bodies, exponent), bodies, exponent) == pytest.approx(wall.rise)
-    bars, both = fronts(given(BARS, tmp_path))[0], given(BARS, tmp_path).bodies
+    bars, both = fronts(scene_of(BARS, tmp_path))[0], scene_of(BARS, tmp_path).bodies
     assert bars.penalty(both, exponent) * (0.1 * bars.rise)**exponent == pytest.approx(1e3 * C * 0.1 / 2)
 
 
 def test_the_unknowns_of_a_front_are_limited(tmp_path):
     """The number of elements of a thin plate is bounded."""
-    plate = given(BLOCK, tmp_path, body__1__width=2.0, body__1__height=0.02, body__1__position=[0, 0.01], accuracy=0.001)
-    one, = fronts(plate)
-    assert 9.5 * 2.0 * 0.02 / one.sizes[0]**2 == pytest.approx(front.MOST_UNKNOWNS[2])
+    plate = scene_of(BLOCK, tmp_path, body__1__width=2.0, body__1__height=0.02, body__1__position=[0, 0.01], accuracy=0.001)
+    strike, = fronts(plate)
+    assert 9.5 * 2.0 * 0.02 / strike.sizes[0]**2 == pytest.approx(front.MOST_UNKNOWNS[2])
     body = replace(plate.bodies[0], nu=0.4999)
     assert np.isfinite(front.wave_speed(body)) and front.wave_speed(body) == front.wave_speed(replace(body, nu=0.45))

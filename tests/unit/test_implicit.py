@@ -21,8 +21,8 @@ def settled(text, centre=(0.0, 0.05), half=0.1):
 def test_a_program_is_its_expression(text, value):
     """Value and gradient; the gradient agrees with central differences."""
     code = implicit.program("obstacle.1.distance", text, "xy")
-    found, slope = implicit.run(code, POINTS)
-    assert found == pytest.approx(value(*POINTS.T), rel=1e-13, abs=1e-15)
+    values, slope = implicit.run(code, POINTS)
+    assert values == pytest.approx(value(*POINTS.T), rel=1e-13, abs=1e-15)
     for axis, step in enumerate(1e-6 * np.eye(2)):
         assert slope[:, axis] == pytest.approx((value(*(POINTS + step).T) - value(*(POINTS - step).T)) / 2e-6, rel=1e-6, abs=1e-7)
 
@@ -54,10 +54,10 @@ def test_the_gap_is_the_distance(text):
     The limit is a third of the radius of curvature.
     """
     numbers = settled(text)
-    found, exact = implicit.gap(POINTS, numbers), np.linalg.norm(POINTS, axis=1) - 0.1
+    gaps, exact = implicit.gap(POINTS, numbers), np.linalg.norm(POINTS, axis=1) - 0.1
     near = abs(exact) < 0.02
     assert numbers[1] == pytest.approx(0.1 / 3, rel=1e-3) and near.any()
-    assert found[near] == pytest.approx(exact[near], abs=1e-15) and (abs(found) <= abs(exact) + 1e-15).all() and (found * exact >= 0).all()
+    assert gaps[near] == pytest.approx(exact[near], abs=1e-15) and (abs(gaps) <= abs(exact) + 1e-15).all() and (gaps * exact >= 0).all()
     assert implicit.radius_at(np.array([0.0, 0.11]), numbers) == pytest.approx(0.1, rel=1e-5)
     assert implicit.radius_at(np.array([0.0, 0.09]), settled("0.01 - x*x - y*y", (0.0, 0.0), 0.05)) == np.inf
 
@@ -81,5 +81,5 @@ def test_an_expression_that_is_no_distance_far_away():
     the distance and positive."""
     numbers = settled("exp(y/0.02) - 1")
     heights = np.array([1e-3, 0.09, 0.5, 3.0, 30.0, 1e5])
-    found = implicit.gap(np.column_stack([0 * heights, heights]), numbers)
-    assert found[:2] == pytest.approx(heights[:2]) and (0 < found).all() and (found <= heights + 1e-15).all()
+    gaps = implicit.gap(np.column_stack([0 * heights, heights]), numbers)
+    assert gaps[:2] == pytest.approx(heights[:2]) and (0 < gaps).all() and (gaps <= heights + 1e-15).all()

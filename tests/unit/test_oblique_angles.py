@@ -38,15 +38,15 @@ def test_a_failed_run_is_no_agreement():
     assert "failed, exit 11: disc, stiff, 20 degrees: step: no convergence" in angles.report(table) and "FAILS" in angles.report(table)
 
 
-@pytest.mark.parametrize("words, said", [
+@pytest.mark.parametrize("words, message", [
     (["--angles", "20,ninety"], "--angles: 'ninety' is not accepted (accepted: numbers from 5 to 85"), (["--angles", "20,90"], "'90' is not accepted"),
     (["--angles", "20,,40"], "--angles: '' is not accepted"), (["--angles", "20,20"], "'20' is given twice"), (["--angles", "nan"], "'nan' is not accepted"),
     (["--friction", "0"], "--friction: '0' is not accepted (accepted: numbers from 0.01 to 10"), (["--friction", "0.2,0.3"], "accepted: one number"),
     (["--friction", "smooth"], "'smooth' is not accepted"), (["--bodies", "disc,cube"], "--bodies: 'cube' is not known (accepted: disc, ball"),
     (["--kinds", "soft"], "--kinds: 'soft' is not known (accepted: stiff, paper, slow")])
-def test_bad_input(tmp_path, capsys, words, said):
+def test_bad_input(tmp_path, capsys, words, message):
     """Exit code 10, one line with the option, the value and what is accepted. Nothing runs and no
     folder is made."""
     assert guarded(measurements.main, ["oblique-angles", *words, "--out", str(tmp_path / "out")]) == 10
     error = capsys.readouterr().err
-    assert error.count("\n") == 1 and said in error and not (tmp_path / "out").exists()
+    assert error.count("\n") == 1 and message in error and not (tmp_path / "out").exists()

@@ -22,7 +22,7 @@ def test_the_lock_is_within_the_ranges():
         return tuple(map(int, version.split(".")))
     pins = dict(re.findall(r"^([\w-]+)==([\d.]+)", (ROOT / "requirements.lock").read_text(), re.MULTILINE))
     extras = PROJECT["project"]["optional-dependencies"]
-    for wanted in PROJECT["project"]["dependencies"] + extras["test"] + extras["check"]:
-        name, low, high = re.fullmatch(r"([\w-]+)>=([\d.]+)(?:,<(\d+))?", wanted).groups()
+    for requirement in PROJECT["project"]["dependencies"] + extras["test"] + extras["check"]:
+        name, low, high = re.fullmatch(r"([\w-]+)>=([\d.]+)(?:,<(\d+))?", requirement).groups()
         pin = numbers(pins[name])
         assert numbers(low) <= pin and (not high or pin < numbers(high))

@@ -28,23 +28,23 @@ def test_known_rows():
     assert "mesh" not in parameters.names()
 
 
-@pytest.mark.parametrize("given, value", [("8", 8.0), ("+8.5", 8.5), (".5", 0.5), ("1e-3", 1e-3), (8, 8.0)])
-def test_numbers_that_are_accepted(given, value):
+@pytest.mark.parametrize("entry, value", [("8", 8.0), ("+8.5", 8.5), (".5", 0.5), ("1e-3", 1e-3), (8, 8.0)])
+def test_numbers_that_are_accepted(entry, value):
     """Text and TOML values give the same number."""
-    assert parameters.check({"speed": given}) == {"speed": value}
+    assert parameters.check({"speed": entry}) == {"speed": value}
 
 
-@pytest.mark.parametrize("name, given, message", [
+@pytest.mark.parametrize("name, entry, message", [
     ("speed", "8x", "speed: '8x' is not a number (accepted: 0 to 1e+09)"),
     ("speed", float("nan"), "speed: nan is out of range (accepted: 0 to 1e+09)"),
     ("speed", True, "speed: 'true' is not a number (accepted: 0 to 1e+09)"),
     ("fields", "2.5", "fields: '2.5' is not a whole number (accepted: 0 to 10000)"),
     ("law", "hooke", "law: 'hooke' is not known; did you mean neohookean? (accepted: " + "|".join(parameters.PARAMETERS["law"].words) + ")"),
 ])
-def test_bad_values_are_named_with_what_is_accepted(name, given, message):
+def test_bad_values_are_named_with_what_is_accepted(name, entry, message):
     """The message has the parameter, the value and the range or the words, as in the scripts."""
     with pytest.raises(BadInput) as error:
-        parameters.check({name: given})
+        parameters.check({name: entry})
     assert str(error.value) == message and error.value.code == 10
 
 
@@ -79,12 +79,12 @@ def test_bad_scene_files_are_named(tmp_path, text, words):
         scene.load(str(tmp_path / "bad.toml"))
 
 
-@pytest.mark.parametrize("text, said", [("", "says nothing .accepted: a scene"), ('[[obstacle]]\nkind = "plane"\n', "body: is missing .accepted: one table"),
-                                        ("[contact]\nfriction_static = 0.3\n", "body: is missing")])
-def test_a_file_without_bodies_is_no_scene(tmp_path, text, said):
+@pytest.mark.parametrize("text, message", [("", "says nothing .accepted: a scene"), ('[[obstacle]]\nkind = "plane"\n', "body: is missing .accepted: one table"),
+                                           ("[contact]\nfriction_static = 0.3\n", "body: is missing")])
+def test_a_file_without_bodies_is_no_scene(tmp_path, text, message):
     """An empty file is not a run with defaults. Obstacles or contact without bodies are reported as
     incomplete."""
     path = tmp_path / "mine.toml"
     path.write_text(text)
-    with pytest.raises(BadInput, match=said):
+    with pytest.raises(BadInput, match=message):
         scene.load(str(path))

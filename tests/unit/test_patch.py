@@ -19,9 +19,9 @@ def cloud(bodies: int, turn: float) -> np.recarray:
     radius, angle = np.sqrt(rng.uniform(0, 1, 400)), rng.uniform(0, 2 * np.pi, 400)
     across, up = 1e-3 * radius * np.cos(angle), 1e-3 * radius * np.sin(angle)
     x, y = across * np.cos(turn), across * np.sin(turn)
-    one = pd.DataFrame({"s": 1e-3 * radius, "X": x, "Y": y, "Z": up, "x": x, "y": y, "z": up, "weight": np.pi * 1e-6 / 400, "pressure": 1e6 * np.sqrt(1 - radius**2),
-                        "projected_pressure": 1e6 * np.sqrt(1 - radius**2), "shear": 1.0, "shear_z": 0.0, "slip_velocity": 0.1, "slip_velocity_z": 0.0, "slides": (radius > 0.7).astype(int), "partner": -1})
-    return pd.concat([one.assign(t=t, body=body) for t in (1e-3, 2e-3) for body in range(1, bodies + 1)]).to_records(index=False)
+    points = pd.DataFrame({"s": 1e-3 * radius, "X": x, "Y": y, "Z": up, "x": x, "y": y, "z": up, "weight": np.pi * 1e-6 / 400, "pressure": 1e6 * np.sqrt(1 - radius**2),
+                           "projected_pressure": 1e6 * np.sqrt(1 - radius**2), "shear": 1.0, "shear_z": 0.0, "slip_velocity": 0.1, "slip_velocity_z": 0.0, "slides": (radius > 0.7).astype(int), "partner": -1})
+    return pd.concat([points.assign(t=t, body=body) for t in (1e-3, 2e-3) for body in range(1, bodies + 1)]).to_records(index=False)
 
 
 def test_rings_are_means_over_the_surface():

@@ -20,7 +20,7 @@ def test_coarse_scenes_are_discs_and_balls_at_each_accuracy():
     """Each kind is equally frequent at each accuracy, a fifth is nearly incompressible, equal seeds
     give equal scenes. All are accepted."""
     drawn = draws.coarse(3, 120)
-    assert drawn == draws.coarse(3, 120) and drawn[:7] == draws.coarse(3, 7) and not any(one in drawn for one in draws.coarse(4, 120))
+    assert drawn == draws.coarse(3, 120) and drawn[:7] == draws.coarse(3, 7) and not any(entry in drawn for entry in draws.coarse(4, 120))
     kinds = [(name, point["accuracy"]) for name, point in drawn]
     assert {kinds.count(kind) for kind in kinds} == {20} and len(set(kinds)) == 2 * len(draws.COARSE)
     assert 12 < sum(point["nu"] >= 0.48 for _, point in drawn) < 40
@@ -68,14 +68,15 @@ def test_each_promised_answer_is_to_be_covered():
     assert not promise.covered(table)
 
 
-@pytest.mark.parametrize("note, told", [
+@pytest.mark.parametrize("note, expected", [
     ("thresholded contact time: known to 3 %", True), ("peak force: moves", False), ("contact time: grazing", False), ("estimated errors: impulse 2 %", False),
     ("estimated errors: thresholded contact time 2 %", True)])
-def test_a_note_counts_where_it_is_about_an_answer_that_is_off(note, told):
+def test_a_note_counts_where_it_is_about_an_answer_that_is_off(note, expected):
     """The note has the name of the result, or the error estimate of the result exceeds the
     accuracy, too."""
-    row = dict.fromkeys(estimate.PROMISED, 0.5) | {"thresholded_contact_time": 2.0, "thresholded_contact_time stated": 3.0 if told else 0.9}
-    assert promise.is_about(note, row) == told and not promise.is_about(note, row | {"thresholded_contact_time": 0.9})
+    row = dict.fromkeys(estimate.PROMISED, 0.5) | {
+        "thresholded_contact_time": 2.0, "thresholded_contact_time stated": 3.0 if expected else 0.9}
+    assert promise.is_about(note, row) == expected and not promise.is_about(note, row | {"thresholded_contact_time": 0.9})
 
 
 def test_silent_are_those_above_without_a_warning():
@@ -108,5 +109,5 @@ def test_stated_errors_at_coarse_accuracies_are_to_hold_of_each_answer_and_accur
         return table
     monkeypatch.setattr(promise, "compare", compared)
     assert promise.main(["--coarse", "--scenes", "30", "--out", str(tmp_path)]) == code
-    said = capsys.readouterr().out
-    assert ("DO NOT HOLD" in said) == bool(code) and "promised, accuracy 0.03" in said and f"{1 - missed / 30:.1%}" in said
+    output = capsys.readouterr().out
+    assert ("DO NOT HOLD" in output) == bool(code) and "promised, accuracy 0.03" in output and f"{1 - missed / 30:.1%}" in output

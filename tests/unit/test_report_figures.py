@@ -108,7 +108,7 @@ def block(low: float, high: float, count: int) -> vtu.Solid:
     """
     axis = np.linspace(-1, 1, count + 1)
     corners = np.array([(x, y, low + (high - low) * (z + 1) / 2) for x, y, z in itertools.product(axis, axis, axis)])
-    number = {each: k for k, each in enumerate(itertools.product(range(count + 1), repeat=3))}
+    number = {index: k for k, index in enumerate(itertools.product(range(count + 1), repeat=3))}
     cells = []
     for cell in itertools.product(range(count), repeat=3):
         # Along the edges of the cube from corner to corner.

@@ -14,8 +14,8 @@ def test_wrong_entries(tmp_path, capsys, entries, named):
     file = tmp_path / "scene.toml"
     file.write_text(DISC + "position = [0, 0.06]\nvelocity = [0, -1]\n" + entries + "\n" + FLOOR)
     assert main(["run", str(file), "--out", str(tmp_path / "out")]) == 10
-    said = capsys.readouterr().err
-    assert named in said and said.count("\n") == 1
+    message = capsys.readouterr().err
+    assert named in message and message.count("\n") == 1
 
 
 def test_all_rigid_needs_a_penalty(tmp_path, capsys):
@@ -36,5 +36,5 @@ def test_wrong_motions(tmp_path, capsys, entries, named):
     file = tmp_path / "scene.toml"
     file.write_text(ROLLER.format(entries))
     assert main(["run", str(file), "--out", str(tmp_path / "out")]) == 10
-    said = capsys.readouterr().err
-    assert named in said and said.count("\n") == 1
+    message = capsys.readouterr().err
+    assert named in message and message.count("\n") == 1

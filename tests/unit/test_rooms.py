@@ -28,16 +28,16 @@ def outermost(text: str) -> str:
 def names(text: str) -> set[str]:
     """All names that the declarations in `text` declare, without values and sizes."""
     # Also parameters.
-    found = set(re.findall(rf"{TYPE}(?:\s*\[[^\]]*\])*\s*&?\s*([A-Za-z]\w*)", text))
+    identifiers = set(re.findall(rf"{TYPE}(?:\s*\[[^\]]*\])*\s*&?\s*([A-Za-z]\w*)", text))
     for kind, rest in DECLARED.findall(text):
         if kind.startswith(("func", "macro", "varf", "fespace")):
             rest = re.sub(rf"^{TYPE}(?:\s*\[[^\]]*\])*\s*", "", rest)
-            found.update(re.findall(r"^\s*(\w+)", rest))
+            identifiers.update(re.findall(r"^\s*(\w+)", rest))
             continue
         while re.search(r"\([^()]*\)|\[[^\[\]]*\]", rest.lstrip()[1:]):
             rest = rest[:1] + re.sub(r"\([^()]*\)|\[[^\[\]]*\]", "", rest[1:])
-        found.update(re.findall(r"(?:^|,)\s*\[?\s*&?(\w+)", re.sub(r"=[^,]*", "", rest)))
-    return {name for name in found if not re.fullmatch(TYPE, name)}
+        identifiers.update(re.findall(r"(?:^|,)\s*\[?\s*&?(\w+)", re.sub(r"=[^,]*", "", rest)))
+    return {name for name in identifiers if not re.fullmatch(TYPE, name)}
 
 
 def leaving() -> dict[str, set[str]]:
@@ -53,10 +53,10 @@ def leaving() -> dict[str, set[str]]:
 
 def test_names_that_leave_their_room_do_not_become_more():
     """The number of names that other folders of edp/core use can only fall."""
-    found = leaving()
+    names_of_rooms = leaving()
     # Two folders provide some of the names, of which a script uses one.
-    count = len(set().union(*found.values()))
-    print(count, {room: len(found[room]) for room in sorted(found)})
-    assert count <= MOST, {room: sorted(found[room]) for room in sorted(found)}
+    count = len(set().union(*names_of_rooms.values()))
+    print(count, {room: len(names_of_rooms[room]) for room in sorted(names_of_rooms)})
+    assert count <= MOST, {room: sorted(names_of_rooms[room]) for room in sorted(names_of_rooms)}
     # The search detects lists, macros and functions.
-    assert {"ndof", "gradient", "tensorComponent", "mass"} <= found["discrete"] and {"u", "solveStep"} <= found["step"]
+    assert {"ndof", "gradient", "tensorComponent", "mass"} <= names_of_rooms["discrete"] and {"u", "solveStep"} <= names_of_rooms["step"]

@@ -13,8 +13,8 @@ from ffimpact.scene import read as read_scene
 def test_an_entry_that_no_body_takes_is_refused():
     """An entry at the top applies to bodies without their own value. If all bodies have one, it
     would change nothing, also in a sweep."""
-    given = scene.load("disc-bowl").content
-    own = read_scene(given | {"body": [given["body"][0] | {"young": 7e6}]}, Path("."), "own")
+    tables = scene.load("disc-bowl").content
+    own = read_scene(tables | {"body": [tables["body"][0] | {"young": 7e6}]}, Path("."), "own")
     with pytest.raises(BadInput, match=r"young: changes nothing, as every body has its own \(accepted: body.1.young and so on\)"):
         own.override({"young": 1e6})
     assert scene.load("disc-bowl").override({"young": 1e6}).bodies[0].young == 1e6

@@ -27,4 +27,4 @@ def test_hertz_pressure_bears_its_force():
 def test_what_is_missing_is_the_extra():
     """The installation message contains the packages of the extra in pyproject.toml."""
     extra = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]["solid"]
-    assert solid.INSTALL.endswith(f"pip install {' '.join(re.split('[<>=]', each)[0] for each in extra)}")
+    assert solid.INSTALL.endswith(f"pip install {' '.join(re.split('[<>=]', requirement)[0] for requirement in extra)}")

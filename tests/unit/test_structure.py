@@ -17,14 +17,15 @@ MODULES = {path.relative_to(PACKAGE).with_suffix("").parts: path for path in sor
 
 def imported(module: tuple[str, ...]) -> set[tuple[str, ...]]:
     """The modules of the package that a module imports anywhere, without imports for types only."""
-    found, tree = set(), ast.parse(MODULES[module].read_text())
-    for node in [one for one in ast.walk(tree) if isinstance(one, ast.If) and getattr(one.test, "id", "") == "TYPE_CHECKING"]:
+    imports, tree = set(), ast.parse(MODULES[module].read_text())
+    for node in [statement for statement in ast.walk(tree)
+                 if isinstance(statement, ast.If) and getattr(statement.test, "id", "") == "TYPE_CHECKING"]:
         node.body = [ast.Pass()]
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom) and node.level:
             place = module[:len(module) - node.level] + tuple((node.module or "").split(".") if node.module else ())
-            found |= {place + (name.name,) for name in node.names if place + (name.name,) in MODULES} or ({place} & set(MODULES)) or {place + ("__init__",)}
-    return found
+            imports |= {place + (name.name,) for name in node.names if place + (name.name,) in MODULES} or ({place} & set(MODULES)) or {place + ("__init__",)}
+    return imports
 
 
 def test_no_import_circle():
@@ -53,7 +54,7 @@ def test_lines_fit_a_screen():
     more than 100."""
     scripts = [path for path in (ROOT / "edp").rglob("*") if path.suffix in (".edp", ".idp", ".hpp", ".cpp")]
     files = [(path, LINE) for path in MODULES.values()] + [(path, LINE_OF_SCRIPTS) for path in scripts]
-    assert not [f"{path.relative_to(ROOT)}:{k}" for path, most in files for k, line in enumerate(path.read_text().splitlines(), 1) if len(line) > most]
+    assert not [f"{path.relative_to(ROOT)}:{k}" for path, limit in files for k, line in enumerate(path.read_text().splitlines(), 1) if len(line) > limit]
 
 
 def test_headers_are_short():
@@ -65,14 +66,14 @@ def test_headers_are_short():
             assert header <= 8, f"{path.relative_to(ROOT)}: {header}"
 
 
-@pytest.mark.parametrize("module", [one for one in MODULES if one[-1] != "__init__"], ids="/".join)
+@pytest.mark.parametrize("module", [module for module in MODULES if module[-1] != "__init__"], ids="/".join)
 def test_a_module_says_what_it_gives(module):
     """The public names of a module are in __all__ and exist. Names that other modules use are among
     them."""
     tree = ast.parse(MODULES[module].read_text())
-    given = next(ast.literal_eval(node.value) for node in tree.body if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == "__all__")
+    exports = next(ast.literal_eval(node.value) for node in tree.body if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == "__all__")
     made = {getattr(node, "name", "") for node in tree.body}
-    assert not {name for name in made if name and not name.startswith("_")} - set(given)
+    assert not {name for name in made if name and not name.startswith("_")} - set(exports)
 
 
 @pytest.mark.parametrize("module", MODULES, ids="/".join)
@@ -90,5 +91,5 @@ UNTYPED = 44
 
 def test_modules_without_checked_types_do_not_become_more():
     """The number of modules that mypy does not pass can only fall, and each of them exists."""
-    (untyped,) = [one["module"] for one in tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["mypy"]["overrides"] if one.get("ignore_errors")]
+    (untyped,) = [override["module"] for override in tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["mypy"]["overrides"] if override.get("ignore_errors")]
     assert len(untyped) <= UNTYPED and {tuple(name.split(".")[1:]) for name in untyped} <= set(MODULES)

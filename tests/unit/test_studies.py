@@ -29,14 +29,14 @@ def test_table_is_markdown():
 
 def test_stress_has_every_combination_once(fake, tmp_path, monkeypatch):
     """There are 891 different sets. A sample of them is always the same."""
-    asked = []
-    monkeypatch.setattr(study, "study", lambda points, *rest: asked.append(points) or pd.DataFrame(
+    requests = []
+    monkeypatch.setattr(study, "study", lambda points, *rest: requests.append(points) or pd.DataFrame(
         [point | {"exit": 0, "message": "", "energy_drift": 1e-12} for point in points]))
     monkeypatch.setattr(stress, "report", lambda *_: "")
     for quick in ([], ["--quick", "5"], ["--quick", "5"]):
         assert stress.main([*quick, "--out", str(tmp_path)]) == 0
-    assert len(asked[0]) == len({tuple(point.values()) for point in asked[0]}) == 891
-    assert asked[1] == asked[2] and len(asked[1]) == 5
+    assert len(requests[0]) == len({tuple(point.values()) for point in requests[0]}) == 891
+    assert requests[1] == requests[2] and len(requests[1]) == 5
 
 
 @pytest.mark.parametrize("row, kind, good", [

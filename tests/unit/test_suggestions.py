@@ -34,7 +34,7 @@ MESSAGES = [
 ]
 
 
-@pytest.mark.parametrize("arguments, entry, value, hint", MESSAGES, ids=lambda each: " ".join(each) if isinstance(each, tuple) else None)
+@pytest.mark.parametrize("arguments, entry, value, hint", MESSAGES, ids=lambda value: " ".join(value) if isinstance(value, tuple) else None)
 def test_a_wrong_word_names_the_nearest_and_a_unit_the_number(capsys, tmp_path, monkeypatch, arguments, entry, value, hint):
     """One line, exit code 10, and what is accepted."""
     monkeypatch.chdir(tmp_path)
@@ -61,24 +61,24 @@ def test_other_text_has_no_unit(text):
         parameters.check({"speed": text})
 
 
-@pytest.mark.parametrize("line, said", [
+@pytest.mark.parametrize("line, message", [
     ("speed = 4m/s   # fast", "speed: '4m/s' has a unit; give the number in m/s: 4 (accepted: 0 to 1e+09)"),
     ("young = 7MPa", "young: '7MPa' has a unit; give the number in Pa: 7000000 (accepted: "), ("speed = ", "cannot be read: ")])
-def test_a_unit_in_a_scene_file_is_named(tmp_path, line, said):
+def test_a_unit_in_a_scene_file_is_named(tmp_path, line, message):
     """TOML does not accept such a line. The message mentions the unit if it is the reason."""
     path = tmp_path / "own.toml"
     path.write_text(f'script = "disc-plane"\n{line}\n')
-    with pytest.raises(BadInput, match=re.escape(f"{path}: {said}")) as error:
+    with pytest.raises(BadInput, match=re.escape(f"{path}: {message}")) as error:
         scene.load(path)
     assert error.value.code == 10
 
 
-@pytest.mark.parametrize("top, said", [({"smooth": True}, "body.1.smooth: no such entry, set to 'true' (accepted: shape, radius, "),
-                                       ({"radius": True}, "body.1.radius: 'true' is not a number (accepted: "),
-                                       ({"shape": True}, "body.1.shape: 'true' is not known (accepted: disc|"),
-                                       ({"law": False}, "body.1.law: 'false' is not known (accepted: svk|")])
-def test_a_boolean_is_written_as_in_the_file(top, said):
+@pytest.mark.parametrize("top, message", [({"smooth": True}, "body.1.smooth: no such entry, set to 'true' (accepted: shape, radius, "),
+                                          ({"radius": True}, "body.1.radius: 'true' is not a number (accepted: "),
+                                          ({"shape": True}, "body.1.shape: 'true' is not known (accepted: disc|"),
+                                          ({"law": False}, "body.1.law: 'false' is not known (accepted: svk|")])
+def test_a_boolean_is_written_as_in_the_file(top, message):
     """For a number, a word or a missing entry the message has true, not Python's True."""
     body = {"shape": "disc", "radius": 0.05, "position": [0, 0.1]} | top
-    with pytest.raises(BadInput, match="^" + re.escape(said)):
+    with pytest.raises(BadInput, match="^" + re.escape(message)):
         scene.read({"body": [body], "obstacle": [{"kind": "plane", "point": [0, 0], "normal": [0, 1]}]}, scene.SCENES, "own")

@@ -16,8 +16,8 @@ def rows_over_speed(values, error=0.01) -> pd.DataFrame:
 
 def test_trend_counts_rises_beyond_the_error_bar():
     """A rise counts if it exceeds the root of the sum of squares of the error bars at both ends."""
-    said = sweep_figures.trend(rows_over_speed([5.0, 4.8, 4.81, 4.7, 4.9, 4.6]), "speed", "contact_time", "")
-    assert "falls from 5 to 4.6 ms; of 5 steps 2 rise, 1 of them by more than their error bar" in said and "largest by 0.2 ms" in said
+    text = sweep_figures.trend(rows_over_speed([5.0, 4.8, 4.81, 4.7, 4.9, 4.6]), "speed", "contact_time", "")
+    assert "falls from 5 to 4.6 ms; of 5 steps 2 rise, 1 of them by more than their error bar" in text and "largest by 0.2 ms" in text
     assert "0 of them by more" in sweep_figures.trend(rows_over_speed([5, 4.8, 4.9, 4.7, 4.6], 0.1), "speed", "contact_time", "")
     assert "0 rise" in sweep_figures.trend(rows_over_speed([5, 4.9, 4.8]), "speed", "contact_time", "")
     failed = rows_over_speed([5, 4.9, 4.8]).assign(exit=[0, 0, 12])
@@ -37,13 +37,13 @@ def test_a_trend_is_the_course_of_the_curve(values, error, course):
     """
     there, opposite = rows_over_speed(values, error), {sweep_figures.FALLS: sweep_figures.RISES,
                                                        sweep_figures.MINIMUM: sweep_figures.MAXIMUM}
-    found = sweep_figures.steps_against(there, "speed", "contact_time")
-    assert found.course == course and found.falls == (course == sweep_figures.FALLS)
-    said = sweep_figures.trend(there, "speed", "contact_time", "")
-    assert f"contact time over speed: {course}" in said
-    assert ("4.3 at speed = 3 m/s" in said) == (course == sweep_figures.MINIMUM)
+    steps = sweep_figures.steps_against(there, "speed", "contact_time")
+    assert steps.course == course and steps.falls == (course == sweep_figures.FALLS)
+    text = sweep_figures.trend(there, "speed", "contact_time", "")
+    assert f"contact time over speed: {course}" in text
+    assert ("4.3 at speed = 3 m/s" in text) == (course == sweep_figures.MINIMUM)
     turned = sweep_figures.steps_against(rows_over_speed([10 - value for value in values], error), "speed", "contact_time")
-    assert turned.course == (opposite | {other: one for one, other in opposite.items()}).get(course, course)
+    assert turned.course == (opposite | {other: kind for kind, other in opposite.items()}).get(course, course)
 
 
 def test_trend_does_not_trust_one_small_difference():

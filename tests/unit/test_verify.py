@@ -11,9 +11,9 @@ from verification import verify
 from verification.case import Row
 
 
-def passes(rows, **given) -> bool:
-    wanted = case(rows, **given)
-    return bool(verify.judged(verify.judge(wanted, list(wanted.rows(None))))["pass"].all())
+def passes(rows, **entries) -> bool:
+    tested_case = case(rows, **entries)
+    return bool(verify.judged(verify.judge(tested_case, list(tested_case.rows(None))))["pass"].all())
 
 
 # The first two: only the finest size counts. The next two: the finest must be more accurate than
@@ -56,6 +56,6 @@ def test_no_cores_are_refused(tmp_path, capsys):
 
 def test_tolerances_are_the_documented_ones():
     """They were fixed before the cases were run."""
-    assert {each.name: each.tolerance for each in verify.CASES} == {
+    assert {entry.name: entry.tolerance for entry in verify.CASES} == {
         "V1 space": 0.15, "V1 time": 0.15, "V4": 0.01, "V5": 0.01, "V6": 0.02, "V7": 0.02, "V8": 0.01, "V9": 0.01, "V10": 0.03, "V11": 0.01, "V12": 0.005, "V13": 0.01, "V14": 0.01, "V16": 0.01, "V17": 0.05,
         "V18": 0.05, "V19": 0.01, "V24": 0.01, "annulus": 0.02}

@@ -11,8 +11,8 @@ def test_what_stands_behind_a_warning_is_a_note():
     """A warning that the results are invalid turns the warnings that it explains into notes. No
     sentence is lost."""
     warnings = ["ellipticity: a", "breakdown: b", "penalty: c", "locking: d", "penetration: e", "estimated errors: f"]
-    told = notes.settled(warnings, ["peak force: g"])
-    assert told["warnings"] == ["breakdown: b", "penetration: e"] and sorted(told["warnings"] + told["notes"]) == sorted([*warnings, "peak force: g"])
+    sentences = notes.settled(warnings, ["peak force: g"])
+    assert sentences["warnings"] == ["breakdown: b", "penetration: e"] and sorted(sentences["warnings"] + sentences["notes"]) == sorted([*warnings, "peak force: g"])
     assert notes.settled(["touches: a", "penalty: b"], []) == {"warnings": ["touches: a"], "notes": ["penalty: b"]}
     assert notes.settled(["estimated errors: a", "steps: b", "penalty: c"], []) == {"warnings": ["estimated errors: a", "penalty: c"], "notes": ["steps: b"]}
     assert notes.settled(["penalty: a", "contact points: b"], ["peak force: c"]) == {"warnings": ["penalty: a", "contact points: b"], "notes": ["peak force: c"]}

@@ -20,8 +20,8 @@ def test_a_page_has_a_picture_and_no_private_term(path):
     """Terms are those of textbooks, or defined in the glossary."""
     text = path.read_text()
     assert "![" in text
-    found = words.count(words.lines(path), words.TERMS)
-    assert not found, found
+    counts = words.count(words.lines(path), words.TERMS)
+    assert not counts, counts
 
 
 def test_every_figure_is_small_and_shown():
