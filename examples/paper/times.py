@@ -139,14 +139,14 @@ def at_once(results: Results) -> tuple[str, str]:
     kept; partly if some does with ellipticity lost; else it does not agree.
     """
     whole, sound = ({angle: _joint(results, angle, kept) for angle in (ANGLE, OTHER)} for kept in (False, True))
-    met, kept = ({angle: _meeting(maps) for angle, maps in maps_by_angle.items()} for maps_by_angle in (whole, sound))
+    met, kept = ({angle: _onset(maps) for angle, maps in maps_by_angle.items()} for maps_by_angle in (whole, sound))
     words = []
     for angle, maps in whole.items():
         nearest = min(maps, key=lambda entry: entry.miss, default=None)
         words.append(f"oblique at {angle:g}°: " + (f"all three for {_each(met[angle])}" if met[angle] else "no ν and k for all three") + (
             f"; nearest ν = {nearest.nu:g}, k = {nearest.k:.2g} Pa/m: {', '.join(nearest.times)}, off by up to {100 * nearest.miss:.1f} %"
             if nearest else ""))
-    by_number = {name: _meeting(_joint(results, ANGLE, False, [name])) for name in MAPS}
+    by_number = {name: _onset(_joint(results, ANGLE, False, [name])) for name in MAPS}
     alone = ". ".join(f"{name}: {_each(intervals) or 'nowhere'}" for name, intervals in by_number.items())
     both = {pair: {nu: shared for nu in by_number[pair[0]] if (shared := _shared(*(by_number[name].get(nu, []) for name in pair)))}
             for pair in combinations(MAPS, 2)}
@@ -183,7 +183,7 @@ def _joint(results: Results, angle: float, kept: bool, names: Iterable[str] = MA
     return entries
 
 
-def _meeting(maps: list[Together]) -> dict[float, Ranges]:
+def _onset(maps: list[Together]) -> dict[float, Ranges]:
     """The ranges of k for each ν that gives all times."""
     return {entry.nu: entry.met for entry in maps if entry.met}
 

@@ -14,7 +14,6 @@ from tests.support.self_contact import (
     DISC,
     FLOOR,
     HIGH,
-    PIN,
     PINCHED,
     RING,
     SCENE,

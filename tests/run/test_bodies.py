@@ -165,7 +165,7 @@ def test_a_spinning_body_is_fine_where_it_will_touch():
     fall = 1.0
     square = {"shape": "rectangle", "width": 1, "height": 1, "position": [0, math.sqrt(0.5) + fall], "velocity": [0, -1], "spin": math.pi / 4}
     scene = read(SCENE | {"body": [square | {"mesh_size": 0.25, "contact_mesh_size": 0.02}], "obstacle": [FLOOR | {"point": [0, 0]}]})
-    met, = approach.meetings(scene)
+    met, = approach.onsets_of(scene)
     assert met.outlines[0].points[:, 1].min() == pytest.approx(0, abs=1e-3)
     m = assembly.assemble(scene).mesh
     middle, length = m.points[m.edges].mean(axis=1), np.linalg.norm(m.points[m.edges[:, 1]] - m.points[m.edges[:, 0]], axis=1)

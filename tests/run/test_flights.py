@@ -36,7 +36,7 @@ def test_the_first_touch_is_that_of_the_closed_form(case):
     """The end of a flight of any duration is exact to 1e-9 of it; for corners that pass within
     round-off, to the root of that."""
     problem, expected = TOUCHES[case]
-    first = approach.meetings(problem)[0]
+    first = approach.onsets_of(problem)[0]
     assert first.time == pytest.approx(expected, rel=1e-4 if "turns" in case else 1e-9) and not first.never
 
 

@@ -84,7 +84,7 @@ def test_moments_of_inertia():
 def test_balls_meet_where_geometry_says():
     """Two balls off centre: closing speed along the line of centres at contact, sliding speed
     across it, and the smaller radius."""
-    met, = approach.meetings(read(BALL | {"position": [-0.2, 0, 0], "velocity": [3, 0, 0]}, BALL | {"name": "other", "radius": 0.08, "position": [0.2, 0.03, 0.04], "velocity": [-1, 0, 0]},
+    met, = approach.onsets_of(read(BALL | {"position": [-0.2, 0, 0], "velocity": [3, 0, 0]}, BALL | {"name": "other", "radius": 0.08, "position": [0.2, 0.03, 0.04], "velocity": [-1, 0, 0]},
                                   obstacles=()))
     sine = 0.05 / 0.13
     assert met.closing == pytest.approx(4 * math.sqrt(1 - sine**2), rel=1e-3) and met.sliding == pytest.approx(4 * sine, rel=1e-3) and met.radius == 0.05

@@ -8,7 +8,7 @@ import pytest
 
 from ffimpact import scene
 from ffimpact.scenes import front
-from ffimpact.scenes.approach import meetings
+from ffimpact.scenes.approach import onsets_of
 from tests.support.front import BLOCK, scene_of
 
 BARS = """
@@ -33,7 +33,7 @@ C = math.sqrt(1e6 / 1e3)
 
 
 def fronts(problem: scene.Scene) -> list[front.Front]:
-    return front.fronts(problem, meetings(problem))
+    return front.fronts(problem, onsets_of(problem))
 
 
 def test_a_face_on_a_plane_is_a_flat_strike(tmp_path):

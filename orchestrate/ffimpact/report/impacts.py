@@ -66,11 +66,11 @@ def several(table: np.recarray) -> list[np.recarray]:
     impact. Intervals with an impulse below LIGHTEST times the largest impulse of the pair do not
     count.
     """
-    meetings = [
+    onsets_of = [
         table[(table.body == body) & (table.partner == partner)]
         for body, partner in np.unique(np.stack([table.body, table.partner], axis=1), axis=0)
     ]
-    impacts = [rows[rows.impulse >= LIGHTEST * rows.impulse.max()] for rows in meetings]
+    impacts = [rows[rows.impulse >= LIGHTEST * rows.impulse.max()] for rows in onsets_of]
     return impacts if any(len(rows) > 1 for rows in impacts) else []
 
 

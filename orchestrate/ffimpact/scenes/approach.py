@@ -23,7 +23,7 @@ from .conditions import WHOLE
 from .obstacles import Obstacle
 from .scene import Scene, gap_between
 
-__all__ = ["Meeting", "loaded_pull", "meetings", "refuse_nothing", "refuse_sinking", "turned"]
+__all__ = ["Onset", "loaded_pull", "onsets_of", "refuse_nothing", "refuse_sinking", "turned"]
 
 STEPS = 2000  # steps of conservative advancement, after which the onset of contact is unknown
 # Gap over the smaller half thickness at which the search ends. It matters for implicit obstacles
@@ -39,7 +39,7 @@ MET, CLOSED = 1e-3, 1e-9
 
 
 @dataclass(frozen=True)
-class Meeting:
+class Onset:
     """The onset of contact of one contact pair: body `first` and the body or obstacle `second`
     (body k, or -1 - k for obstacle k).
 
@@ -76,7 +76,7 @@ class Meeting:
         return other.gap_for_sizes(points) if isinstance(other, Obstacle) else other.gap(points)
 
 
-def meetings(scene: Scene) -> list[Meeting]:
+def onsets_of(scene: Scene) -> list[Onset]:
     """Returns the onsets of contact of a scene: one for each body with each obstacle and for each
     two bodies that may come near each other, and those that follow because an impact turns the
     bodies.
@@ -88,7 +88,7 @@ def meetings(scene: Scene) -> list[Meeting]:
     )
     obstacles = [-1 - k for k in range(len(scene.obstacles))]
     pairs = [(i, j) for i, others in enumerate(_near(scene)) for j in [*others, *obstacles]]
-    return [meeting for pair in pairs for meeting in _in_turn(scene, _meeting(scene, *pair))]
+    return [onset for pair in pairs for onset in _in_turn(scene, _onset(scene, *pair))]
 
 
 def _near(scene: Scene) -> list[list[int]]:
@@ -123,38 +123,36 @@ def _fall(scene: Scene) -> np.ndarray:
     return fall
 
 
-def _in_turn(scene: Scene, meeting: Meeting) -> list[Meeting]:
+def _in_turn(scene: Scene, onset: Onset) -> list[Onset]:
     """Returns an onset of contact and, in the plane, those of the same pair that follow: the impact
     turns the rigid bodies, without friction, and other corners strike.
     """
-    onsets = [meeting]
-    while scene.dimension is PLANE_STRAIN and len(onsets) <= MORE and math.isfinite(meeting.time):
-        scene = _rebound(scene, meeting)
+    onsets = [onset]
+    while scene.dimension is PLANE_STRAIN and len(onsets) <= MORE and math.isfinite(onset.time):
+        scene = _rebound(scene, onset)
         if scene is None:
             break
-        meeting = _meeting(scene, meeting.first, meeting.second)
-        onsets += [meeting] if math.isfinite(meeting.time) else []
+        onset = _onset(scene, onset.first, onset.second)
+        onsets += [onset] if math.isfinite(onset.time) else []
     return onsets
 
 
-def _rebound(scene: Scene, meeting: Meeting) -> Scene | None:
+def _rebound(scene: Scene, onset: Onset) -> Scene | None:
     """Returns the scene a little after an onset of contact, when the bodies have separated, without
     gravity and body forces. None if the impact does not turn the bodies.
     """
-    n = meeting.normal
-    point = _middle(meeting)
-    fall = _fall(scene) * meeting.time
+    n = onset.normal
+    point = _middle(onset)
+    fall = _fall(scene) * onset.time
     # Velocity of the obstacle. Its position stays, so the body moves relative to it.
-    moves = (
-        scene.obstacles[-1 - meeting.second].velocity if meeting.second < 0 else np.zeros(len(n))
-    )
+    moves = scene.obstacles[-1 - onset.second].velocity if onset.second < 0 else np.zeros(len(n))
     hit, yields, closing = [], 0.0, 0.0
-    for sign, k in ((1, meeting.first), (-1, meeting.second)):
+    for sign, k in ((1, onset.first), (-1, onset.second)):
         if k < 0:
             closing += scene.obstacles[-1 - k].velocity @ n
             continue
         body = scene.bodies[k]
-        shape = meeting.outlines[0 if k == meeting.first else 1]
+        shape = onset.outlines[0 if k == onset.first else 1]
         lever, mass = _lever(shape, point, n), body.density * shape.area
         yields += (1 + lever**2 / shape.gyration) / mass
         closing -= sign * ((body.velocity + fall) @ n + body.spin * lever)
@@ -162,14 +160,14 @@ def _rebound(scene: Scene, meeting: Meeting) -> Scene | None:
     turning = max(abs(lever) / shape.reach for _, _, shape, lever, _ in hit)
     if closing <= 0 or turning < ECCENTRIC:
         return None
-    soon, bodies = 4 * MET * meeting.radius / (RESTITUTION * closing), list(scene.bodies)
+    soon, bodies = 4 * MET * onset.radius / (RESTITUTION * closing), list(scene.bodies)
     for sign, k, shape, lever, mass in hit:
         body, push = bodies[k], sign * (1 + RESTITUTION) * closing / yields / mass
         velocity, spin = body.velocity + fall + push * n, body.spin + push * lever / shape.gyration
         bodies[k] = replace(
             body,
             position=shape.area_centre + (velocity - moves) * soon,
-            angle=body.angle + body.spin * meeting.time + spin * soon,
+            angle=body.angle + body.spin * onset.time + spin * soon,
             velocity=velocity,
             spin=spin,
         )
@@ -179,18 +177,18 @@ def _rebound(scene: Scene, meeting: Meeting) -> Scene | None:
     return replace(scene, bodies=bodies, values=scene.values | still)
 
 
-def _middle(meeting: Meeting) -> np.ndarray:
+def _middle(onset: Onset) -> np.ndarray:
     """Returns the point of contact at an onset. For a face on another face it is the middle, so
     that a body set down flat does not turn.
     """
-    points = np.vstack([shape.points for shape in meeting.outlines if isinstance(shape, Outline)])
-    off = np.max([abs(shape.gap(points)) for shape in meeting.outlines], axis=0)
-    along = (points - points[off.argmin()]) @ meeting.normal
-    on = points[(off <= off.min() + MET * meeting.radius) & (abs(along) <= MET * meeting.radius)]
+    points = np.vstack([shape.points for shape in onset.outlines if isinstance(shape, Outline)])
+    off = np.max([abs(shape.gap(points)) for shape in onset.outlines], axis=0)
+    along = (points - points[off.argmin()]) @ onset.normal
+    on = points[(off <= off.min() + MET * onset.radius) & (abs(along) <= MET * onset.radius)]
     return (on.min(axis=0) + on.max(axis=0)) / 2
 
 
-def _meeting(scene: Scene, first: int, second: int) -> Meeting:
+def _onset(scene: Scene, first: int, second: int) -> Onset:
     body = scene.bodies[first]
     other = scene.bodies[second] if second >= 0 else scene.obstacles[-1 - second]
     # Two bodies without supports fall alike, so that gravity does not change their relative
@@ -214,7 +212,7 @@ def _meeting(scene: Scene, first: int, second: int) -> Meeting:
     normal = outlines[0].normal_from(outlines[1])
     if not met:  # a later contact may have any normal: all of the velocity counts as closing
         driven = body.driven or other.driven
-        return Meeting(
+        return Onset(
             first,
             second,
             outlines,
@@ -228,7 +226,7 @@ def _meeting(scene: Scene, first: int, second: int) -> Meeting:
             never and not driven,
         )
     along, across = _parts(pull, normal)
-    meeting = Meeting(
+    onset = Onset(
         first,
         second,
         outlines,
@@ -239,21 +237,21 @@ def _meeting(scene: Scene, first: int, second: int) -> Meeting:
         t,
         normal,
     )
-    meeting = replace(meeting, pressed=_pressed(scene, meeting))
+    onset = replace(onset, pressed=_pressed(scene, onset))
     if isinstance(other, Obstacle) and other.drive:  # the surface of a turning obstacle slides
         away = np.linalg.norm(outlines[0].points - other.drive.pivot, axis=1).min()
-        meeting = replace(meeting, sliding=meeting.sliding + other.drive.fastest_turn * float(away))
+        onset = replace(onset, sliding=onset.sliding + other.drive.fastest_turn * float(away))
     if scene.dimension is not PLANE_STRAIN:
-        return meeting
+        return onset
     # `spun` [m/s] is the closing velocity of the points in contact, with that by spin.
-    point, spun = _middle(meeting), velocity @ normal
+    point, spun = _middle(onset), velocity @ normal
     for sign, struck, shape in zip((1, -1), (body, other), outlines):
         if (
             isinstance(struck, Body)
             and abs(lever := _lever(shape, point, normal)) > ECCENTRIC * shape.reach
         ):
             spun += sign * struck.spin * lever
-    return replace(meeting, closing=float(abs(spun)))
+    return replace(onset, closing=float(abs(spun)))
 
 
 def loaded_pull(body: Body) -> float:
@@ -272,18 +270,16 @@ def loaded_pull(body: Body) -> float:
     return sum(stress) * width / (body.density * content)
 
 
-def _pressed(scene: Scene, meeting: Meeting) -> float:
+def _pressed(scene: Scene, onset: Onset) -> float:
     """Returns the closing speed [m/s] of an impact with as wide a contact as the motion of a
     support makes. The support moves on by a depth [m] after the onset of contact.
 
     Half-widths b of discs: b^2 = 0.8 R depth under a support (R/10 deep), b^2 = 2 R^2 v/c in an
     impact (edp/core/input/sizes.idp). Of balls: b^2 = R depth and b = 1.31 R (v/c)^0.4.
     """
-    bodies = [scene.bodies[k] for k in (meeting.first, meeting.second) if k >= 0]
+    bodies = [scene.bodies[k] for k in (onset.first, onset.second) if k >= 0]
     ends = [support.path()[1] for body in bodies for support in body.supports if support.moves]
-    share = min(
-        0.5, meeting.closing * max([0.0, *(end - meeting.time for end in ends)]) / meeting.radius
-    )
+    share = min(0.5, onset.closing * max([0.0, *(end - onset.time for end in ends)]) / onset.radius)
     bar_speed = min(math.sqrt(body.young / body.density) for body in bodies)
     return bar_speed * (0.4 * share if scene.dimension is PLANE_STRAIN else 0.5 * share**1.25)
 
@@ -302,14 +298,14 @@ def turned(scene: Scene) -> Scene:
     """
     if scene.dimension is not PLANE_STRAIN:
         return scene
-    met = meetings(scene)
+    onsets = onsets_of(scene)
     bodies = list(scene.bodies)
     for k, body in enumerate(scene.bodies):
-        mine = [meeting for meeting in met if k in (meeting.first, meeting.second)]
+        mine = [onset for onset in onsets if k in (onset.first, onset.second)]
         if body.mesh or not body.outline.disc or not mine:
             continue
-        soonest = min(meeting.time for meeting in mine)
-        first = next(meeting for meeting in mine if meeting.time <= soonest * (1 + 1e-9))
+        soonest = min(onset.time for onset in mine)
+        first = next(onset for onset in mine if onset.time <= soonest * (1 + 1e-9))
         outward = -first.normal if k == first.first else first.normal
         bodies[k] = replace(
             body,
@@ -320,7 +316,7 @@ def turned(scene: Scene) -> Scene:
     return replace(scene, bodies=bodies)
 
 
-def refuse_nothing(scene: Scene, met: list[Meeting]) -> None:
+def refuse_nothing(scene: Scene, onsets: list[Onset]) -> None:
     """Raises BadInput if nothing ever moves, or if a run whose end is automatic would have none: a
     body is driven, no bodies ever come into contact, or a body set down on an obstacle does not
     leave it.
@@ -353,35 +349,37 @@ def refuse_nothing(scene: Scene, met: list[Meeting]) -> None:
         )
     if (
         scene.values["end_time"] == 0
-        and all(onset.never for onset in met)
+        and all(onset.never for onset in onsets)
         and len(scene.bodies) + len(scene.obstacles) > 1
     ):
         raise BadInput(
             "end_time: 0 is the end of the contact, but no bodies ever come into contact: they miss each other and every obstacle "
             "(accepted: an end_time > 0, or velocities and positions that lead them together)"
         )
-    for meeting in met if scene.values["end_time"] == 0 and scene.values["until"] != "rest" else []:
-        body = scene.bodies[meeting.first]
+    for onset in (
+        onsets if scene.values["end_time"] == 0 and scene.values["until"] != "rest" else []
+    ):
+        body = scene.bodies[onset.first]
         if (
-            meeting.second < 0
-            and meeting.time == 0
-            and meeting.closing == 0
+            onset.second < 0
+            and onset.time == 0
+            and onset.closing == 0
             and not np.any(body.spin)
-            and _fall(scene) @ meeting.normal < 0
+            and _fall(scene) @ onset.normal < 0
         ):
             raise BadInput(
                 f"end_time: 0 is the end of the contact, but '{body.name}' is set down on "
-                f"'{scene.obstacles[-1 - meeting.second].name}' and does not leave it (accepted: an end_time > 0)"
+                f"'{scene.obstacles[-1 - onset.second].name}' and does not leave it (accepted: an end_time > 0)"
             )
 
 
-def refuse_sinking(scene: Scene, met: list[Meeting]) -> None:
+def refuse_sinking(scene: Scene, onsets: list[Onset]) -> None:
     """Raises BadInput if the first contact of a body with a plane or another body is at a part of
     its boundary that is no contact boundary. It would pass through.
     """
     for k, body in enumerate(scene.bodies):
-        mine = [meeting for meeting in met if k in (meeting.first, meeting.second)]
-        first = min(mine, key=lambda meeting: meeting.time, default=None)
+        mine = [onset for onset in onsets if k in (onset.first, onset.second)]
+        first = min(mine, key=lambda onset: onset.time, default=None)
         if not first or not math.isfinite(first.time) or not body.sides:
             continue
         if 0 < scene.values["end_time"] < first.time:

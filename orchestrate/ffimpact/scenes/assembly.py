@@ -26,7 +26,7 @@ from ..input.parameters import Value
 from ..input.toml_text import to_toml
 from ..mesh import mesh, revolution, solid_mesh, solids
 from ..mesh.mesh import AXIS, FREE, Curve, Sizes, mesh_body, nearest
-from .approach import Meeting, loaded_pull, meetings, refuse_nothing, refuse_sinking, turned
+from .approach import Onset, loaded_pull, onsets_of, refuse_nothing, refuse_sinking, turned
 from .bodies import DAMPING, STIFF, Body
 from .front import Front, fronts
 from .mirror import COPIES, FOLDED, copies
@@ -115,10 +115,10 @@ def prepare(
                 "obstacle: is missing, and a second body too (accepted: one table [[obstacle]] or more, or several [[body]])"
             )
         scene = turned(scene)
-        met = meetings(scene)
-        refuse_nothing(scene, met)
-        refuse_sinking(scene, met)
-        built = assemble(scene, met=met)
+        onsets = onsets_of(scene)
+        refuse_nothing(scene, onsets)
+        refuse_sinking(scene, onsets)
+        built = assemble(scene, onsets=onsets)
         built.write(where)
         text = to_toml(scene.with_files_in(where, built.used))
         return (
@@ -140,15 +140,15 @@ def prepare(
     return scene.values | {"mesh": file}, description["used"], ""
 
 
-def assemble(scene: Scene, rule: Rule | None = None, met: list[Meeting] | None = None) -> Assembly:
+def assemble(scene: Scene, rule: Rule | None = None, onsets: list[Onset] | None = None) -> Assembly:
     """Meshes the bodies of a scene and collects the data of a run.
 
     `rule` gives automatic values for a disc (ball) of the pair's radius that hits a plane; describe
-    by default. `met` holds the onsets of contact if they are known already.
+    by default. `onsets` holds the onsets of contact if they are known already.
     """
     ask = Asker(
         scene,
-        meetings(scene) if met is None else met,
+        onsets_of(scene) if onsets is None else onsets,
         rule or partial(describe, script=scene.dimension.like),
     )
     values = scene.values | contact_values(scene.bodies, scene.contact, ask, "contact")
@@ -255,7 +255,7 @@ class Asker:
     """
 
     scene: Scene
-    met: list[Meeting]
+    onsets: list[Onset]
     rule: Rule
 
     @cached_property
@@ -263,8 +263,8 @@ class Asker:
         """The flat strikes by contact pair. If a pair has several, the one with the smallest
         elements.
         """
-        strikes = sorted(fronts(self.scene, self.met), key=lambda front: -front.tau)
-        return {(front.meeting.first, front.meeting.second): front for front in strikes}
+        strikes = sorted(fronts(self.scene, self.onsets), key=lambda front: -front.tau)
+        return {(front.onset.first, front.onset.second): front for front in strikes}
 
     def open_front(self, pair: Pair) -> Front | None:
         """Returns the front of a pair that strikes flat and whose penalty is automatic, else
@@ -290,22 +290,20 @@ class Asker:
         """Returns the radius [m] of an obstacle at the first contact with a body, 0 at a sharp
         corner. It is infinite if the radius is not below half the radius of the pair.
         """
-        meeting = self.first_met.get((first, second))
-        if second >= 0 or meeting is None:
+        onset = self.first_onsets.get((first, second))
+        if second >= 0 or onset is None:
             return math.inf
-        body, obstacle = meeting.outlines
+        body, obstacle = onset.outlines
         radius = obstacle.radius_at(
-            body.points[obstacle.gap(body.points).argmin()], ASIDE * meeting.radius
+            body.points[obstacle.gap(body.points).argmin()], ASIDE * onset.radius
         )
-        return radius if radius < meeting.radius / 2 else math.inf
+        return radius if radius < onset.radius / 2 else math.inf
 
     @cached_property
-    def first_met(self) -> dict[tuple[int, int], Meeting]:
+    def first_onsets(self) -> dict[tuple[int, int], Onset]:
         """The first onset of contact of each pair that may come into contact."""
         return {
-            (meeting.first, meeting.second): meeting
-            for meeting in reversed(self.met)
-            if not meeting.never
+            (onset.first, onset.second): onset for onset in reversed(self.onsets) if not onset.never
         }
 
     @cached_property
@@ -314,14 +312,14 @@ class Asker:
         across the normal [m/s2]. Round-off is removed, because a mesh changes with every digit.
         """
         return tuple(
-            float(f"{max((getattr(meeting, name) for meeting in self.met), default=0.0):.6g}")
+            float(f"{max((getattr(onset, name) for onset in self.onsets), default=0.0):.6g}")
             for name in ("closing", "sliding", "pressing", "pulling")
         )
 
     @cached_property
     def pressed(self) -> float:
         """The closing speed [m/s] of impacts with as wide a contact as moving supports make."""
-        return float(f"{max((meeting.pressed for meeting in self.met), default=0.0):.6g}")
+        return float(f"{max((onset.pressed for onset in self.onsets), default=0.0):.6g}")
 
     def disc(
         self, bodies: list[Body], radius: float, slides: bool, presses: bool = True
@@ -334,7 +332,7 @@ class Asker:
         """
         along, across, pressing, pulling = self.largest
         along = max(along, self.pressed) if presses else along
-        pressing = pressing if self.met else max(loaded_pull(body) for body in self.scene.bodies)
+        pressing = pressing if self.onsets else max(loaded_pull(body) for body in self.scene.bodies)
         soft = min(bodies, key=lambda body: body.young)
         request = {
             name: self.scene.values[name]
@@ -416,9 +414,9 @@ def with_open_penalties(scene: Scene, ask: "Asker") -> list[Pair]:
     """
     listed = {(pair.first, pair.second) for pair in scene.pairs}
     small = [
-        (meeting.first, meeting.second)
-        for meeting in ask.met
-        if 0 < ask.small(meeting.first, meeting.second) < math.inf
+        (onset.first, onset.second)
+        for onset in ask.onsets
+        if 0 < ask.small(onset.first, onset.second) < math.inf
     ]
     differ = dict.fromkeys([*small, *ask.fronts]) if scene.contact["penalty"] == "auto" else {}
     pairs = scene.pairs + [
@@ -500,9 +498,7 @@ def element_sizes(k: int, ask: Asker) -> Sizes:
         if value
     }
     bulk = float(_of_body(k, ask, **sizes)["mesh_size"])
-    hits = [
-        _hit(body, k, meeting, ask) for meeting in ask.met if k in (meeting.first, meeting.second)
-    ]
+    hits = [_hit(body, k, onset, ask) for onset in ask.onsets if k in (onset.first, onset.second)]
     mine = [front for front in ask.fronts.values() if k in front.sizes]
     if body.rigid and not body.mesh_size:
         # A rigid body does not deform. This size only keeps its outline round.
@@ -516,43 +512,41 @@ def element_sizes(k: int, ask: Asker) -> Sizes:
     return Sizes(bulk, min(bulk, contact), near, max([0.0, *(slack for *_, slack in hits)]))
 
 
-def _hit(body: Body, k: int, meeting: Meeting, ask: Asker) -> tuple[float, np.ndarray, float]:
+def _hit(body: Body, k: int, onset: Onset, ask: Asker) -> tuple[float, np.ndarray, float]:
     """Returns, for an onset of contact of body k, the element size [m] at the contact, points (n,
     axes) of its outline there, and half their distance [m].
     """
-    bodies = [ask.scene.bodies[j] for j in (meeting.first, meeting.second) if j >= 0]
-    straight = ask.answer(bodies, meeting.radius)
+    bodies = [ask.scene.bodies[j] for j in (onset.first, onset.second) if j >= 0]
+    straight = ask.answer(bodies, onset.radius)
     arc, size = straight["touch_arc"], float(straight["used"]["contact_mesh_size"])
     depth, small = (
-        meeting.radius * (1 - math.cos(min(arc, math.pi / 2))),
-        ask.small(meeting.first, meeting.second),
+        onset.radius * (1 - math.cos(min(arc, math.pi / 2))),
+        ask.small(onset.first, onset.second),
     )
     points, spacing = body.outline.samples(size)
-    near = _near(body, k, meeting, depth, points)
+    near = _near(body, k, onset, depth, points)
     # Width near contact over that of a disc: above 1 for flat faces, below 1 for corners and pegs.
-    wider = body.outline.width(near, spacing) / (2 * arc * meeting.radius)
+    wider = body.outline.width(near, spacing) / (2 * arc * onset.radius)
     if small > 0:  # a sharp corner has radius 0, and no element size resolves it
         wider = min(
-            max(1.0, wider), wider / NARROW, POINTED * small / (2 / math.pi * arc * meeting.radius)
+            max(1.0, wider), wider / NARROW, POINTED * small / (2 / math.pi * arc * onset.radius)
         )
     if small > 0 and wider < 1:
-        size = max(SMALLEST * meeting.radius / wider, size)
+        size = max(SMALLEST * onset.radius / wider, size)
         points, spacing = body.outline.samples(size * wider)
-        near = _near(body, k, meeting, min(depth, small), points)
-    slide = (ask.answer(bodies, meeting.radius, slides=True)["touch_arc"] - arc) * meeting.radius
+        near = _near(body, k, onset, min(depth, small), points)
+    slide = (ask.answer(bodies, onset.radius, slides=True)["touch_arc"] - arc) * onset.radius
     if slide > 0:
         near = points[nearest(points, near) <= slide]
     return size * (wider if small > 0 else max(1.0, wider)), near, spacing / 2
 
 
-def _near(body: Body, k: int, meeting: Meeting, depth: float, points: np.ndarray) -> np.ndarray:
+def _near(body: Body, k: int, onset: Onset, depth: float, points: np.ndarray) -> np.ndarray:
     """Returns those of the `points` of body k whose gap at the onset of contact exceeds the
     smallest gap by `depth` [m] at most. For a disc on a plane `depth` is the gap at touch_arc from
     its lowest point.
     """
-    gaps = meeting.gaps(
-        k, body.outline.carried(meeting.outlines[0 if k == meeting.first else 1], points)
-    )
+    gaps = onset.gaps(k, body.outline.carried(onset.outlines[0 if k == onset.first else 1], points))
     return points[gaps <= gaps.min() + depth]
 
 

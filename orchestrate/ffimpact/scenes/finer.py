@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from ..input.parameters import Value
 from ..output import estimate
-from .approach import meetings
+from .approach import onsets_of
 from .front import fronts
 from .scene import Scene
 
@@ -45,13 +45,13 @@ def _pairs(scene: Scene, used: list[dict], factor: float) -> list[dict]:
     fixed_pairs = {(pair.first, pair.second) for pair in scene.pairs if "penalty" in pair.values}
     if scene.contact["penalty"] != "auto" or len(used) == len(fixed_pairs):
         return used
-    onsets = [front.meeting for front in fronts(scene, meetings(scene))]
+    onsets = [front.onset for front in fronts(scene, onsets_of(scene))]
     # The index -1 is obstacle 0.
     others = [surface.name for surface in [*scene.bodies, *reversed(scene.obstacles)]]
     flat = [
-        [others[meeting.first], others[meeting.second]]
-        for meeting in onsets
-        if (meeting.first, meeting.second) not in fixed_pairs
+        [others[onset.first], others[onset.second]]
+        for onset in onsets
+        if (onset.first, onset.second) not in fixed_pairs
     ]
     softer = factor ** scene.contact["exponent"]
     return [

@@ -17,7 +17,7 @@ import numpy as np
 
 from ..geometry.outlines import Shape, TubeOutline
 from ..input.dimension import SOLID
-from .approach import Meeting
+from .approach import Onset
 from .bodies import Body
 from .scene import Scene
 
@@ -41,13 +41,13 @@ STIFFEST = 0.45
 class Front:
     """The wave front of one flat strike.
 
-    `meeting` is the onset of contact, `tau` [s] the time in which the front passes an element,
+    `onset` is the onset of contact, `tau` [s] the time in which the front passes an element,
     `transit` [s] the shortest time in which it crosses a body. `sizes` are the element sizes [m] by
     the number of the body, `crossed` the numbers of the bodies that a plane front crosses as a
     whole.
     """
 
-    meeting: Meeting
+    onset: Onset
     tau: float
     transit: float
     sizes: dict[int, float]
@@ -62,28 +62,28 @@ class Front:
         """Returns the penalty k [Pa/m^m] for which the front has the time `rise`: t_N = k p^m is
         the pressure rho c v at the penetration p = v rise.
         """
-        return self._pressure(bodies) / (self.meeting.closing * self.rise) ** exponent
+        return self._pressure(bodies) / (self.onset.closing * self.rise) ** exponent
 
     def rise_on(self, penalty: float, bodies: list[Body], exponent: float) -> float:
         """Returns the rise time [s] of the front on a penalty [Pa/m^m]."""
-        return (self._pressure(bodies) / penalty) ** (1 / exponent) / self.meeting.closing
+        return (self._pressure(bodies) / penalty) ** (1 / exponent) / self.onset.closing
 
     def _pressure(self, bodies: list[Body]) -> float:
         """Returns rho c v [Pa], with the impedances rho c of two bodies in series."""
         impedances = [bodies[k].density * wave_speed(bodies[k]) for k in self.sizes]
-        return self.meeting.closing / sum(1 / impedance for impedance in impedances)
+        return self.onset.closing / sum(1 / impedance for impedance in impedances)
 
 
-def fronts(scene: Scene, met: list[Meeting]) -> list[Front]:
-    """Returns the flat strikes among the onsets of contact `met`. A strike is left out if the run
+def fronts(scene: Scene, onsets: list[Onset]) -> list[Front]:
+    """Returns the flat strikes among the onsets of contact `onsets`. A strike is left out if the run
     continues for more than BRIEF transits after it.
     """
     if scene.values["until"] == "rest":
         return []
-    strikes = [meeting for meeting in met if math.isfinite(meeting.time) and meeting.closing > 0]
-    landings = [front for meeting in strikes if (front := _front(scene, meeting))]
+    strikes = [onset for onset in onsets if math.isfinite(onset.time) and onset.closing > 0]
+    landings = [front for onset in strikes if (front := _front(scene, onset))]
     end = scene.values["end_time"]
-    return [front for front in landings if end <= front.meeting.time + BRIEF * front.transit]
+    return [front for front in landings if end <= front.onset.time + BRIEF * front.transit]
 
 
 def wave_speed(body: Body) -> float:
@@ -92,24 +92,22 @@ def wave_speed(body: Body) -> float:
     return math.sqrt(body.young * (1 - nu) / ((1 + nu) * (1 - 2 * nu) * body.density))
 
 
-def _front(scene: Scene, meeting: Meeting) -> Front | None:
+def _front(scene: Scene, onset: Onset) -> Front | None:
     """Returns the front at an onset of contact, None if no body lands flat."""
-    bodies = {k: scene.bodies[k] for k in (meeting.first, meeting.second) if k >= 0}
-    sizes = {k: body.mesh_size or _size(scene, meeting, k) for k, body in bodies.items()}  # [m]
+    bodies = {k: scene.bodies[k] for k in (onset.first, onset.second) if k >= 0}
+    sizes = {k: body.mesh_size or _size(scene, onset, k) for k, body in bodies.items()}  # [m]
     crossed = tuple(
-        k
-        for k, body in bodies.items()
-        if not body.rigid and _lands_flat(meeting, k, body, sizes[k])
+        k for k, body in bodies.items() if not body.rigid and _lands_flat(onset, k, body, sizes[k])
     )
     if not crossed:
         return None
     tau = min(sizes[k] / wave_speed(bodies[k]) for k in crossed)
-    transit = min(_length(meeting, k) / wave_speed(bodies[k]) for k in crossed)
+    transit = min(_length(onset, k) / wave_speed(bodies[k]) for k in crossed)
     alike = {k: tau * wave_speed(body) for k, body in bodies.items()}
-    return Front(meeting, tau, transit, alike, crossed)
+    return Front(onset, tau, transit, alike, crossed)
 
 
-def _size(scene: Scene, meeting: Meeting, k: int) -> float:
+def _size(scene: Scene, onset: Onset, k: int) -> float:
     """Returns the element size [m] of body k: that of the mesh file, or the size that the accuracy
     requires.
 
@@ -123,30 +121,30 @@ def _size(scene: Scene, meeting: Meeting, k: int) -> float:
         return (content / len(cells) / ELEMENT[axes]) ** (1 / axes)
     accuracy = scene.values["accuracy"] / (1 if scene.values["accuracy_of"] == "promised" else 2)
     least = (UNKNOWNS[axes] * content / MOST_UNKNOWNS[axes]) ** (1 / axes)
-    required = max(least, PER_ACCURACY * accuracy * _length(meeting, k))
+    required = max(least, PER_ACCURACY * accuracy * _length(onset, k))
     return min(body.outline.half_thickness / 2, required)
 
 
-def _shape(meeting: Meeting, k: int) -> Shape:
+def _shape(onset: Onset, k: int) -> Shape:
     """Returns the shape of body k at the onset of contact."""
-    return meeting.outlines[0 if k == meeting.first else 1]
+    return onset.outlines[0 if k == onset.first else 1]
 
 
-def _length(meeting: Meeting, k: int) -> float:
+def _length(onset: Onset, k: int) -> float:
     """Returns the length [m] of body k along the contact normal."""
-    return float(np.ptp(_shape(meeting, k).points @ meeting.normal))
+    return float(np.ptp(_shape(onset, k).points @ onset.normal))
 
 
-def _lands_flat(meeting: Meeting, k: int, body: Body, size: float) -> bool:
+def _lands_flat(onset: Onset, k: int, body: Body, size: float) -> bool:
     """Whether at least the share FLAT of the width of body k lands while the front passes an
     element of the given size [m].
     """
     points, spacing = body.outline.samples(min(size, body.outline.half_thickness / 2))
-    moved = body.outline.carried(_shape(meeting, k), points)
-    gaps = meeting.gaps(k, moved)
-    landing = moved[gaps <= gaps.min() + meeting.closing * size / wave_speed(body)]
+    moved = body.outline.carried(_shape(onset, k), points)
+    gaps = onset.gaps(k, moved)
+    landing = moved[gaps <= gaps.min() + onset.closing * size / wave_speed(body)]
     walls = moved[moved[:, 0] > 0] if isinstance(body.outline, TubeOutline) else moved
-    width = min(np.ptp(walls @ axis) for axis in _tangents(meeting.normal))
+    width = min(np.ptp(walls @ axis) for axis in _tangents(onset.normal))
     return len(landing) > 1 and bool(body.outline.width(landing, spacing) >= FLAT * width)
 
 

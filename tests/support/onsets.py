@@ -1,4 +1,4 @@
-"""Helpers that the modules test_meetings.py share."""
+"""Helpers that the modules test_onsets.py share."""
 
 from pathlib import Path
 
@@ -11,7 +11,7 @@ RUBBER = {"law": "neohookean", "young": 7e6, "nu": 0.3, "density": 1722, "accura
 
 def scene(body, obstacle, **more) -> Scene:
     tables = RUBBER | more | {"body": body if isinstance(body, list) else [body], "obstacle": obstacle if isinstance(obstacle, list) else [obstacle]}
-    return read_scene(tables, Path(), "meeting")
+    return read_scene(tables, Path(), "onset")
 
 
 def go(tmp_path, *tables, **more) -> run.Record:

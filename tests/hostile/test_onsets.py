@@ -12,7 +12,7 @@ import pytest
 from ffimpact.input.toml_text import to_toml
 from ffimpact.scene import read as read_scene
 from ffimpact.scenes import approach, assembly
-from tests.support.meetings import DISC, go, scene
+from tests.support.onsets_of import DISC, go, scene
 
 
 @pytest.mark.robustness
@@ -29,7 +29,7 @@ def test_an_obstacle_that_is_met_twice_has_one_table():
     """A disc that lands on two crests of a wave has one table of contact in the scene as used,
     which reads back as written."""
     tables = scene(DISC | {"position": [0, 0.0551]}, {"name": "waves", "kind": "implicit", "distance": "y - 0.002*sin(200*x)"})
-    assert [(pair.first, pair.second) for pair in approach.meetings(tables)] == [(0, -1), (0, -1)]
+    assert [(pair.first, pair.second) for pair in approach.onsets_of(tables)] == [(0, -1), (0, -1)]
     built = assembly.assemble(tables)
     assert [pair["bodies"] for pair in built.used["contact"]["pair"]] == [["disc", "waves"]]
     again = read_scene(tomllib.loads(to_toml(built.used)), Path(), "again")

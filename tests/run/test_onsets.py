@@ -13,7 +13,7 @@ from ffimpact.freefem.describe import describe
 from ffimpact.running import run
 from ffimpact.scene import Scene
 from ffimpact.scenes import approach, assembly
-from tests.support.meetings import DISC, go, scene
+from tests.support.onsets_of import DISC, go, scene
 
 MASS = 1722 * math.pi * 0.05**2  # kg/m
 FLAT = {"mesh_size": 0.0125, "contact_mesh_size": 0.0125}
@@ -63,7 +63,7 @@ def test_a_normal_impact_does_not_creep(tmp_path):
 def test_what_turns_strikes_by_its_spin(tmp_path):
     """A rod that spins towards a peg strikes it with the velocity of its contact point."""
     rod = {"name": "rod", "shape": "rectangle", "width": 0.4, "height": 0.02, "position": [0, 0], "spin": 50}
-    first, = [pair for pair in approach.meetings(scene(rod, {"name": "peg", "kind": "circle", "centre": [0.15, 0.06], "radius": 0.01})) if pair.time < 0.01][:1]
+    first, = [pair for pair in approach.onsets_of(scene(rod, {"name": "peg", "kind": "circle", "centre": [0.15, 0.06], "radius": 0.01})) if pair.time < 0.01][:1]
     assert 0.15 * 50 < first.closing < 0.17 * 50 and first.time == pytest.approx(0.0051, abs=3e-4)
 
 
@@ -157,7 +157,7 @@ def test_elements_follow_the_radius_of_an_obstacle(dimension, kind):
     sizes, penalties = [], []
     for radius in (0.005, 0.0005, 0.05, 50):
         tables = scene(body, peg(radius, kind, axes), dimension=dimension)
-        ask = assembly.Asker(tables, approach.meetings(tables), lambda values: describe(values, tables.dimension.like))
+        ask = assembly.Asker(tables, approach.onsets_of(tables), lambda values, script=tables.dimension.like: describe(values, script))
         values = assembly.contact_values(tables.bodies, tables.contact, ask, "contact")
         sizes.append(assembly.element_sizes(0, ask).contact)
         own = [assembly.pair_values(pair, ask, values) for pair in assembly.with_open_penalties(tables, ask)]
@@ -169,7 +169,7 @@ def test_elements_follow_the_radius_of_an_obstacle(dimension, kind):
 
 def contact_size(tables: Scene) -> float:
     """The element size of the first body of a scene near contact."""
-    return assembly.element_sizes(0, assembly.Asker(tables, approach.meetings(tables), lambda values: describe(values, tables.dimension.like))).contact
+    return assembly.element_sizes(0, assembly.Asker(tables, approach.onsets_of(tables), lambda values: describe(values, tables.dimension.like))).contact
 
 
 @pytest.mark.parametrize("distance", ["sqrt(x^2+(y+0.0401)^2)-0.02", "x^2+(y+0.0401)^2-0.0004"])
@@ -259,7 +259,7 @@ def test_a_face_that_comes_down_flat_on_a_slope_meets_it_at_its_middle(tilt, tur
     block = {"name": "block", "shape": "rectangle", "width": 0.1, "height": 0.05, "angle": 20,
              "position": [-0.0251 * math.sin(angle), 0.0251 * math.cos(angle) + 0.06 * tilt]}
     problem = scene(block, FLOOR | {"normal": up}, accuracy=0.02, gravity=9.81, until="rest", viscosity=500)
-    assert (len(approach.meetings(problem)) > 1) == turns
+    assert (len(approach.onsets_of(problem)) > 1) == turns
     if not turns:
         made = assembly.assemble(problem)
         assert made.used["body"][0]["contact_mesh_size"] > 0.005 and len(made.mesh.triangles) < 500
