@@ -12,7 +12,7 @@ import pytest
 from ffimpact.input.toml_text import to_toml
 from ffimpact.scene import read as read_scene
 from ffimpact.scenes import approach, assembly
-from tests.support.onsets_of import DISC, go, scene
+from tests.support.onsets import DISC, go, scene
 
 
 @pytest.mark.robustness

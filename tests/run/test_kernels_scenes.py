@@ -11,8 +11,8 @@ from ffimpact.running import run
 LEFT_OUT = {"ball-beam", "block-corner", "disc-bowl", "disc-oblique-svk"}
 # With a jump of the coefficient a step may have two solutions, and the path of the iterations selects one.
 JUMPS = {"ball-oblique", "disc-oblique", "disc-step", "disc-corner"}
-LONG = {"disc-rest", "disc-rolling"}
-NEED_KERNELS = {"hollow-ball", "roller", "drop-weight"}   # contact with itself, rigid bodies
+LONG = {"disc-rest", "disc-rolling", "roller"}
+NEED_KERNELS = {"hollow-ball", "drop-weight"}   # contact with itself, rigid bodies
 NAMES = sorted(set(scene.built_in()) - LEFT_OUT - LONG - NEED_KERNELS)
 
 

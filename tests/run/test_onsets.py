@@ -13,7 +13,7 @@ from ffimpact.freefem.describe import describe
 from ffimpact.running import run
 from ffimpact.scene import Scene
 from ffimpact.scenes import approach, assembly
-from tests.support.onsets_of import DISC, go, scene
+from tests.support.onsets import DISC, go, scene
 
 MASS = 1722 * math.pi * 0.05**2  # kg/m
 FLAT = {"mesh_size": 0.0125, "contact_mesh_size": 0.0125}

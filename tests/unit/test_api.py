@@ -145,7 +145,10 @@ def test_the_command_prints_the_schema(capsys):
 def test_help_lists_the_entries_with_their_units():
     """A notebook shows the entries of the constructor, their meaning, and which are required."""
     parameters = inspect.signature(ff.Disc).parameters
-    assert "[m]" in parameters["radius"].annotation and parameters["radius"].default is inspect.Parameter.empty
+    assert (
+        "[m]" in parameters["radius"].annotation
+        and parameters["radius"].default is inspect.Parameter.empty
+    )
     assert parameters["material"].default is None and "[m/s]" in parameters["velocity"].annotation
     assert "bodies" in inspect.signature(ff.Scene).parameters
 
