@@ -151,9 +151,8 @@ def staging(folder: Path) -> Iterator[tuple[Path, int]]:
     stage = folder.with_name(folder.name + ".part")
     with ExitStack() as leaving:
         # This is registered before the folders are created, as a signal may come at any moment.
-        leaving.callback(
-            _take_away, [made for made in (stage, *stage.parents) if not made.exists()]
-        )
+        # `stage` itself is removed below, under its lock: without it another run may have made it anew.
+        leaving.callback(_take_away, [parent for parent in stage.parents if not parent.exists()])
         leaving.callback(os.close, lock := _lock(stage, folder))
         # A run may have been killed between the two renames of replace().
         if not folder.exists() and _is_complete(stage):
