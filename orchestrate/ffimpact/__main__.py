@@ -16,7 +16,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from . import __version__
-from .failure import BadInput, Failure, NotInstalled, Unreadable, brief, unknown
+from .failure import BadInput, Failure, NotInstalled, Unreadable, brief, signals, unknown
 from .places import shown
 
 __all__ = ["execute", "guarded", "leave", "main", "start"]
@@ -288,6 +288,7 @@ def leave(number: int, _) -> None:
     """Signal handler: ends the program with exit code 128 + `number`. Every `finally` is executed
     as after Ctrl-C: FreeFem++ is ended and unfinished files are removed.
     """
+    signals.append(number)
     sys.exit(128 + number)
 
 

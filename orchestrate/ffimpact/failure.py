@@ -20,11 +20,16 @@ __all__ = [
     "gathered",
     "of_code",
     "shortened",
+    "signals",
     "suggestion",
     "unknown",
 ]
 
 T = TypeVar("T")
+
+# Numbers of the signals that ask the program to end. Python drops an exception of a signal handler
+# in some places, such as callbacks of imports; whoever waits for a process looks here, too.
+signals: list[int] = []
 
 MORE = " ..."  # appended to a text that is cut
 MOST = 200  # largest number of characters of a value that a message repeats

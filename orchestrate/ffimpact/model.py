@@ -127,12 +127,12 @@ class Scene(models.Top):
                 f"{name}: has no [[body]] (accepted: a scene of bodies; run('{name}') runs this one)"
             )
         try:
-            return cls.of(content, path.parent)
+            return cls.from_tables(content, path.parent)
         except BadInput as error:
             raise error.within(str(path)) from None
 
     @classmethod
-    def of(cls, content: dict[str, Any], folder: Path = Path(".")) -> Scene:
+    def from_tables(cls, content: dict[str, Any], folder: Path = Path(".")) -> Scene:
         """Makes a scene from the tables of a TOML file. Raises BadInput."""
         reading.read(content, folder, "scene")  # reports all errors by the names of the file
         top = {
@@ -151,7 +151,7 @@ class Scene(models.Top):
         BadInput.
         """
         overrides = plain(dict(values or {}) | entries)
-        return type(self).of(self.checked().override(overrides).content, self.folder)
+        return type(self).from_tables(self.checked().override(overrides).content, self.folder)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Scene) and self.table() == other.table()

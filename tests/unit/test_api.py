@@ -61,7 +61,7 @@ def test_all_that_is_wrong_with_a_scene_is_told_at_once():
     tables["contact"] |= {"pair": [{"penalti": 3}]}
     tables |= {"accuracy": 3, "foo": 1}
     with pytest.raises(ff.BadInput) as caught:
-        ff.Scene.of(tables)
+        ff.Scene.from_tables(tables)
     wrong = ("accuracy", "foo", "body.1.radius", "body.1.velocty", "body.1.position.2")
     wrong += ("obstacle.1.exponent", "contact.pair.1.penalti")
     assert {line.partition(": ")[0] for line in caught.value.messages} == set(wrong)

@@ -5,12 +5,17 @@ import errno
 import importlib
 import os
 import re
+import signal
 import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 
+from ffimpact import __main__ as command_line
 from ffimpact.__main__ import main
 from ffimpact.failure import Unreadable
+from ffimpact.freefem import freefem
 from ffimpact.input import parameters
 from ffimpact.running import run
 from tests.support.cli import ROOT
@@ -51,3 +56,16 @@ def test_a_loop_of_links_is_no_folder(tmp_path, module):
     with pytest.raises(Unreadable, match="cannot be made") as error:
         importlib.import_module(module).main(["--out", str(tmp_path / "loop/out")])
     assert error.value.code == 14
+
+
+def test_a_signal_whose_exception_is_lost_ends_the_program(monkeypatch):
+    """Python drops the exception of a signal handler in callbacks of imports. The next wait for a
+    process ends the program with the exit code of the signal."""
+    signals = []
+    monkeypatch.setattr(command_line, "signals", signals)
+    monkeypatch.setattr(freefem, "signals", signals)
+    with pytest.raises(SystemExit):
+        command_line.leave(signal.SIGTERM, None)
+    with pytest.raises(SystemExit) as end, subprocess.Popen(["sleep", "0"]) as child:
+        freefem.Process(child, Path(os.devnull), sys.stderr).end()
+    assert end.value.code == 143

@@ -93,3 +93,20 @@ def test_modules_without_checked_types_do_not_become_more():
     """The number of modules that mypy does not pass can only fall, and each of them exists."""
     (untyped,) = [override["module"] for override in tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["mypy"]["overrides"] if override.get("ignore_errors")]
     assert len(untyped) <= UNTYPED and {tuple(name.split(".")[1:]) for name in untyped} <= set(MODULES)
+
+
+VAGUE = {"one", "each", "given", "found", "known", "of", "most", "left", "way"}
+
+
+@pytest.mark.parametrize("module", MODULES, ids="/".join)
+def test_names_say_what_they_hold(module):
+    """No variable, argument or function has a name that would suit any quantity."""
+    names = set()
+    for node in ast.walk(ast.parse(MODULES[module].read_text())):
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+            names.add(node.id)
+        elif isinstance(node, ast.arg):
+            names.add(node.arg)
+        elif isinstance(node, (ast.FunctionDef, ast.ClassDef)):
+            names.add(node.name)
+    assert not names & VAGUE

@@ -10,6 +10,7 @@ import re
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 import threading
 import time
@@ -20,7 +21,7 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple, TextIO
 
-from ..failure import BadInput, NotInstalled, TooLong
+from ..failure import BadInput, NotInstalled, TooLong, signals
 from ..places import INSTALLED, ROOT
 from . import kernels
 from .compiled import QUIET, compiled
@@ -277,7 +278,11 @@ class _Limit(threading.local):
     seconds, end, stop = math.inf, math.inf, threading.Event()
 
     def check(self) -> None:
-        """Raises TooLong after the time `end`, and KeyboardInterrupt once `stop` is set."""
+        """Raises TooLong after the time `end`, KeyboardInterrupt once `stop` is set, and SystemExit
+        after a signal that asks the program to end.
+        """
+        if signals:
+            sys.exit(128 + signals[0])
         if self.stop.is_set():
             raise KeyboardInterrupt
         if time.monotonic() > self.end:
