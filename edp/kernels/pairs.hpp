@@ -6,10 +6,12 @@
 #pragma once
 #include <map>
 #include <memory>
+#include <numeric>
 #include <utility>
 #include <vector>
 #include "call.hpp"
 #include "tensors.hpp"
+#include <eigen3/unsupported/Eigen/BVH>
 
 namespace pairs {
 
@@ -216,12 +218,18 @@ public:
     std::vector<std::pair<long, int>> hits;   // candidate, facet
     boxes.clear();
     for (int c = 0; c < s.facets; c++) boxes.push_back(boxOf(x, c));
-    for (int c = 0; c < s.facets; c++) for (int e = c + 1; e < s.facets; e++)
-      if (boxes[c].intersects(boxes[e])
-          && (s.body[c] != s.body[e] || (s.selfContact[s.body[c]] && sightOf(c, e) > 0))) {
-        join(x, c, e, hits);
-        join(x, e, c, hits);
-      }
+    std::vector<int> all(s.facets);
+    std::iota(all.begin(), all.end(), 0);
+    const Eigen::KdBVH<double, A, int> tree(all.begin(), all.end(), boxes.begin(), boxes.end());
+    for (int c = 0; c < s.facets; c++) {
+      Overlap query{boxes, c, {}};
+      Eigen::BVIntersect(tree, query);
+      for (int e : query.facets)
+        if (s.body[c] != s.body[e] || (s.selfContact[s.body[c]] && sightOf(c, e) > 0)) {
+          join(x, c, e, hits);
+          join(x, e, c, hits);
+        }
+    }
     std::sort(hits.begin(), hits.end());
     hits.erase(std::unique(hits.begin(), hits.end()), hits.end());
     candidate.clear();  first.clear();  facet.clear();
@@ -335,6 +343,17 @@ private:
   double searchDistance = 0, roundOff = 0; // [m]; roundOff of the positions
   typedef Eigen::AlignedBox<double, A> Box;
   std::vector<Box> boxes;                  // (facets) enlarged by searchDistance / 2
+  // The facets after `own` whose boxes overlap that of `own`, found in a tree of boxes.
+  struct Overlap {
+    const std::vector<Box> &boxes;
+    int own;
+    std::vector<int> facets;
+    bool intersectVolume(const Box &box) const { return box.intersects(boxes[own]); }
+    bool intersectObject(int facet) {
+      if (facet > own && intersectVolume(boxes[facet])) facets.push_back(facet);
+      return false;                        // the search goes on
+    }
+  };
   std::vector<long> candidate;             // (n) numbers of the candidates
   std::vector<int> first, facet;            // candidate k has the facets facet[first[k]] to
                                            // facet[first[k + 1] - 1]

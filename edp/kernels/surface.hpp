@@ -11,6 +11,7 @@
 #include <numeric>
 #include <vector>
 #include "tensors.hpp"
+#include <eigen3/unsupported/Eigen/BVH>
 
 namespace surface {
 
@@ -40,108 +41,76 @@ class Surface {
           faceNormal[t];
       }
     }
-    order.resize(triangle.size());
-    std::iota(order.begin(), order.end(), 0);
-    nodes.clear();
-    build(0, int(order.size()));
+    std::vector<int> faces(triangle.size());
+    std::vector<Box> boxes(triangle.size());
+    std::iota(faces.begin(), faces.end(), 0);
+    for (int t : faces) for (int v : triangle[t]) boxes[t].extend(vertex[v]);
+    tree = Tree(faces.begin(), faces.end(), boxes.begin(), boxes.end());
   }
 
   double gap(const Point &p, Point &n) const {
     // Signed distance of p from the surface, negative inside [m]; n: its unit outward normal.
-    double best = 1e300;
-    Point closestPoint = Point::Zero(), normal = Point::UnitZ();
-    bool inside = false;
-    look(0, p, best, closestPoint, normal, inside);
-    const Point away = p - closestPoint;
-    const double distance = away.norm(), side = away.dot(normal) < 0 ? -1 : 1;
-    n = inside || distance == 0 ? normal.normalized() : Point(side / distance * away);
+    Closest closest{*this, p};
+    Eigen::BVMinimize(tree, closest);
+    const Point away = p - closest.point;
+    const double distance = away.norm(), side = away.dot(closest.normal) < 0 ? -1 : 1;
+    n = closest.inFace || distance == 0 ? closest.normal.normalized()
+      : Point(side / distance * away);
     return side * distance - rounding;   // (7): n.(x_B - x_R) = -v_N
   }
 
  private:
-  // A box of the tree with the triangles order[from] ... order[to - 1]; children, -1 in a leaf.
-  struct Node { Box box;  int from, to, left, right; };
+  typedef Eigen::KdBVH<double, 3, int> Tree;
   std::vector<Point> faceNormal, vertexNormal;
   std::map<std::pair<int, int>, Point> edgeNormal;
-  std::vector<int> order;
-  std::vector<Node> nodes;
+  Tree tree;                               // of the boxes of the triangles
 
   static std::pair<int, int> edge(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
-  double distance2(int at, const Point &p) const {   // of p from the box of a node, squared
-    return nodes[at].box.squaredExteriorDistance(p);
-  }
+  // The closest point of the surface to p among the triangles visited so far: its squared distance,
+  // the normal there (of any length), and whether it lies inside a face. BVMinimize() visits the
+  // tree of boxes, the nearest first.
+  struct Closest {
+    typedef double Scalar;
+    const Surface &surface;
+    const Point p;
+    double best = 1e300;
+    Point point = Point::Zero(), normal = Point::UnitZ();
+    bool inFace = false;
+    Closest(const Surface &its_surface, const Point &its_point)
+      : surface(its_surface), p(its_point) {}
 
-  int build(int from, int to) {
-    // Makes the node of these triangles and its children: they are halved at the median of the
-    // triangle centres along the axis of their largest extent. Returns its number.
-    const int at = int(nodes.size()), few = 4;
-    nodes.push_back({Box(), from, to, -1, -1});
-    Box box, middles;
-    auto middle = [&](int t) -> Point {
-      return (vertex[triangle[t][0]] + vertex[triangle[t][1]] + vertex[triangle[t][2]]) / 3;
-    };
-    for (int k = from; k < to; k++) {
-      for (int j : triangle[order[k]]) box.extend(vertex[j]);
-      middles.extend(middle(order[k]));
+    double minimumOnVolume(const Box &box) const { return box.squaredExteriorDistance(p); }
+    double minimumOnObject(int t) { project(t);  return best; }
+
+    void take(const Point &q, const Point &n, bool face) {
+      const double distance2 = (p - q).squaredNorm();
+      if (distance2 < best) { best = distance2;  point = q;  normal = n;  inFace = face; }
     }
-    nodes[at].box = box;
-    if (to - from <= few) return at;
-    const int half = (from + to) / 2;
-    int axis;
-    middles.sizes().maxCoeff(&axis);
-    std::nth_element(order.begin() + from, order.begin() + half, order.begin() + to,
-                     [&](int a, int b) { return middle(a)[axis] < middle(b)[axis]; });
-    const int left = build(from, half), right = build(half, to);
-    nodes[at].left = left;
-    nodes[at].right = right;
-    return at;
-  }
-
-  void look(int at, const Point &p, double &best, Point &closestPoint, Point &normal,
-            bool &inside) const {
-    // Searches the tree from node `at` on, the nearer box first; arguments as in closest().
-    const Node &node = nodes[at];
-    if (node.left < 0) {
-      for (int k = node.from; k < node.to; k++)
-        closest(order[k], p, best, closestPoint, normal, inside);
-      return;
+    void project(int t) {
+      // Closest-point projection onto triangle t (Ericson 2005, Real-Time Collision Detection,
+      // 5.1.5).
+      const Surface &s = surface;
+      const auto &v = s.triangle[t];
+      const Point a = s.vertex[v[0]], b = s.vertex[v[1]], c = s.vertex[v[2]], ab = b - a,
+        ac = c - a, ap = p - a, bp = p - b, cp = p - c;
+      const double d1 = ab.dot(ap), d2 = ac.dot(ap), d3 = ab.dot(bp), d4 = ac.dot(bp),
+        d5 = ab.dot(cp), d6 = ac.dot(cp);
+      const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
+      if (d1 <= 0 && d2 <= 0) return take(a, s.vertexNormal[v[0]], false);
+      if (d3 >= 0 && d4 <= d3) return take(b, s.vertexNormal[v[1]], false);
+      if (d6 >= 0 && d5 <= d6) return take(c, s.vertexNormal[v[2]], false);
+      if (vc <= 0 && d1 >= 0 && d3 <= 0)
+        return take(a + d1 / (d1 - d3) * ab, s.edgeNormal.at(edge(v[0], v[1])), false);
+      if (vb <= 0 && d2 >= 0 && d6 <= 0)
+        return take(a + d2 / (d2 - d6) * ac, s.edgeNormal.at(edge(v[0], v[2])), false);
+      if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
+        return take(b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b),
+                    s.edgeNormal.at(edge(v[1], v[2])), false);
+      const double sum = va + vb + vc;
+      take(a + vb / sum * ab + vc / sum * ac, s.faceNormal[t], true);
     }
-    int near = node.left, far = node.right;
-    if (distance2(far, p) < distance2(near, p)) std::swap(near, far);
-    for (int child : {near, far})
-      if (distance2(child, p) < best) look(child, p, best, closestPoint, normal, inside);
-  }
-
-  void closest(int t, const Point &p, double &best, Point &closestPoint, Point &normal,
-               bool &inside) const {
-    // Closest-point projection onto triangle t (Ericson 2005, Real-Time Collision Detection,
-    // 5.1.5). If its squared distance is below `best`, sets best, closestPoint, the normal
-    // there (of any length) and whether the point is inside the face.
-    const auto &v = triangle[t];
-    const Point a = vertex[v[0]], b = vertex[v[1]], c = vertex[v[2]], ab = b - a, ac = c - a,
-      ap = p - a, bp = p - b, cp = p - c;
-    const double d1 = ab.dot(ap), d2 = ac.dot(ap), d3 = ab.dot(bp), d4 = ac.dot(bp),
-      d5 = ab.dot(cp), d6 = ac.dot(cp);
-    const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
-    auto take = [&](const Point &q, const Point &n, bool face) {
-      const Point r = p - q;
-      const double d = r.dot(r);
-      if (d < best) { best = d;  closestPoint = q;  normal = n;  inside = face; }
-    };
-    if (d1 <= 0 && d2 <= 0) return take(a, vertexNormal[v[0]], false);
-    if (d3 >= 0 && d4 <= d3) return take(b, vertexNormal[v[1]], false);
-    if (d6 >= 0 && d5 <= d6) return take(c, vertexNormal[v[2]], false);
-    if (vc <= 0 && d1 >= 0 && d3 <= 0)
-      return take(a + (d1 / (d1 - d3)) * ab, edgeNormal.at(edge(v[0], v[1])), false);
-    if (vb <= 0 && d2 >= 0 && d6 <= 0)
-      return take(a + (d2 / (d2 - d6)) * ac, edgeNormal.at(edge(v[0], v[2])), false);
-    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
-      return take(b + ((d4 - d3) / ((d4 - d3) + (d5 - d6))) * (c - b),
-                  edgeNormal.at(edge(v[1], v[2])), false);
-    const double sum = va + vb + vc;
-    take(a + (vb / sum) * ab + (vc / sum) * ac, faceNormal[t], true);
-  }
+  };
 };
 
 static std::map<long, Surface> obstacles;  // by their numbers

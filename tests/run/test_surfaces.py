@@ -20,6 +20,7 @@ def test_a_slab_is_a_plane(tmp_path):
         assert summary[name] == pytest.approx(plane[name], rel=1e-6), name
     assert summary["energy_drift"] < 1e-9
     assert list((tmp_path / "scene" / "body-files").glob("*.stl"))
+    assert (tmp_path / "scene" / "figures" / "energies.png").exists()   # the last of all figures
 
 
 def test_a_fine_surface_is_read_whole(tmp_path):

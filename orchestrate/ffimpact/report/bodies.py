@@ -11,7 +11,7 @@ from matplotlib.transforms import AffineDeltaTransform
 from ..input import dimension, models
 from ..input.parameters import Value
 from ..output import vtu
-from ..output.results import body_names, mechanical_energy, suffixes
+from ..output.results import Contents, body_names, mechanical_energy, suffixes
 from ..scenes import obstacles
 from ..scenes.obstacles import Obstacle
 from .figures import (
@@ -364,7 +364,7 @@ def shapes(
 
 
 def obstacles_of(scene: dict[str, Value]) -> list[Obstacle]:
-    """Returns the rigid obstacles of a scene as used."""
+    """Returns the rigid obstacles of a scene as used. Their files are sought beside its scene.toml."""
     if not are_several(scene):
         return [PLANE]
     scene_dimension = dimension.of_scene(scene)
@@ -372,7 +372,7 @@ def obstacles_of(scene: dict[str, Value]) -> list[Obstacle]:
         models.tables(scene, "obstacle", scene_dimension),
         scene_dimension,
         scene.get("end_time") or 0.0,
-        Path(),
+        scene.path.parent if isinstance(scene, Contents) else Path(),
     )
 
 
