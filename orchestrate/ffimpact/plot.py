@@ -132,6 +132,13 @@ def _axes(ax: Axes | None) -> Axes:
 
 def _labelled(ax: Axes, label: str) -> Axes:
     ax.set(xlabel="time [ms]", ylabel=label)
-    above = {"loc": "lower left", "bbox_to_anchor": (0, 1), "frameon": False}  # covers no curve
-    ax.legend(**above, ncols=3, columnspacing=1.2, handlelength=1.3, fontsize="small")
+    ax.legend(  # above the axes, where it covers no curve
+        loc="lower left",
+        bbox_to_anchor=(0, 1),
+        ncols=3,
+        frameon=False,
+        columnspacing=1.2,
+        handlelength=1.3,
+        fontsize="small",
+    )
     return ax
