@@ -1,6 +1,6 @@
 // anderson.hpp: Anderson acceleration of iterations with a frozen matrix A (Anderson 1965; reuse
 // over several steps: Degroote et al. 2009). An iteration maps the trial state w to d = project(w),
-// and d to the new trial state d - A^-1 r(d). The frozen A leaves a few slow modes, where the body
+// and d to the new trial state w - A^-1 r(d). The frozen A leaves a few slow modes, where the body
 // strains fastest. They are found from the pairs (change of w, change of -A^-1 r) of earlier
 // iterations and steps, as long as A lasts. Mixing w instead of d keeps every iterate consistent
 // with the contact law. Exports Anderson.

@@ -26,11 +26,13 @@ class ExplicitContact {
     if (contact.jacobianFixed) contact.update(contact.script.q0.numbers(), distance);
   }
 
-  long take(Eigen::Map<Vector> increment, const Vector &kicked, double h, const Callback &gaps) {
-    // Replaces the increment h v- of a substep without contact forces by that with them; kicked:
-    // v-. Returns 0, or 1 without convergence. A B that changes with the increment is evaluated at
-    // the latest one, first with the forces of the last substep. Each pass reduces the error a
-    // thousandfold; the rest changes no momentum, and the energy by a thousandth of Verlet's error.
+  long take(Eigen::Map<Vector> increment, const Vector &halfStepVelocity, double h,
+            const Callback &gaps) {
+    // Replaces the increment h v- of a substep without contact forces by that with them; v- is
+    // halfStepVelocity. Returns 0, or 1 without convergence. A B that changes with the increment is
+    // evaluated at the latest one, first with the forces of the last substep. Each pass reduces the
+    // error a thousandfold; the rest changes no momentum, and the energy by a thousandth of
+    // Verlet's error.
     const Vector free = increment;
     const long ns = contact.ns();
     double change = 1;
@@ -50,7 +52,7 @@ class ExplicitContact {
       }
       contact.script.q1.numbers() = start.head(ns);
       if (!contact.touches()) return part(increment, free, start);
-      if (!solve(start, kicked, back)) return 1;
+      if (!solve(start, halfStepVelocity, back)) return 1;
       increment = free - back;
       contact.last = contact.script.candidateForces.numbers();
       change = contact.jacobianFixed ? 0 : (before - increment).lpNorm<Eigen::Infinity>();
@@ -71,7 +73,7 @@ class ExplicitContact {
     return 0;
   }
 
-  bool solve(const Vector &start, const Vector &kicked, Vector &back) {
+  bool solve(const Vector &start, const Vector &halfStepVelocity, Vector &back) {
     // Forces with the present B, from gap and slip `start` without them; back = A^-1 force. The
     // active set grows until no candidate outside it penetrates.
     const long ns = contact.ns();
@@ -83,7 +85,7 @@ class ExplicitContact {
     for (int pass = 0; pass < 20 && more; pass++) {
       Vector force;
       contact.update(q, 0);
-      if (contact.law.jumps) contact.chooseStatus(kicked);
+      if (contact.law.jumps) contact.chooseStatus(halfStepVelocity);
       Vector tau = contact.ofActive(contact.last),
         still = Vector::Zero(long(contact.unknowns.size()));
       contact.inversesOfStep = 0;

@@ -186,8 +186,9 @@ static void addStep() {
   add("kernelSubsteps", +[](Reals compliance, double distance) {
     substep.begin(Kept<double>{&compliance}.numbers(), distance);
   });
-  add("kernelSubstep", +[](Reals increment, Reals kicked, double h, Callback gaps) {
-    return substep.take(Kept<double>{&increment}.numbers(), Kept<double>{&kicked}.numbers(), h,
+  add("kernelSubstep", +[](Reals increment, Reals halfStepVelocity, double h, Callback gaps) {
+    return substep.take(Kept<double>{&increment}.numbers(),
+                        Kept<double>{&halfStepVelocity}.numbers(), h,
                         gaps);
   });
   add("kernelLaw", +[](double exponent, double slipVelocity, double bridge, double sticksBelow,

@@ -1,8 +1,9 @@
 // step.hpp: the increment d of an implicit step of (2), by Newton's method with a frozen
 // factorisation A of the tangent of the bodies, massScale M + stiffnessScale K. An iteration
 // computes the correction -A^-1 r of the residual r, applies it to the trial state w (the motion
-// without contact forces), and solves contact and friction exactly for d = w - A^-1 B^T t(d). A
-// line search limits the correction; a poor A is factorised anew. Exports ImplicitStep.
+// without contact forces; d itself if B changes), and solves contact and friction exactly for
+// d = w - A^-1 B^T t(d). A line search limits the correction; a poor A is factorised anew. Exports
+// ImplicitStep.
 #pragma once
 #include <ctime>
 #include "anderson.hpp"
@@ -65,7 +66,7 @@ class ImplicitStep {
   template<class Archive> void archive(Archive &archive) {
     // The state that lasts from step to step.
     archive(massScaleOfA);  archive(motion.stiffnessScale);  archive(FofA);  archive(SofA);
-    archive(pOfA);  archive(fewest);  archive(excess);
+    archive(pOfA);  archive(fewest);  archive(surplusIterations);
     history.archive(archive);
     contact.archive(archive);
   }
@@ -87,8 +88,8 @@ class ImplicitStep {
   // A: its massScale (-1: there is none), F, S and pressures at which it was assembled
   double massScaleOfA = -1;
   Vector FofA, SofA, pOfA;
-  // iterations: least of a step with this A; excess over it, summed over steps
-  long fewest = 1000, excess = 0;
+  // iterations: least of a step with this A; surplus over it, summed over steps
+  long fewest = 1000, surplusIterations = 0;
   // of this step; factorisations, and the iteration of the last one
   int iterations = 0, renewed = 0, renewedAt = 0;
   // trial belongs to d with this A, and correctionBefore to the previous trial state
@@ -96,7 +97,7 @@ class ImplicitStep {
   double residualNow = 0, residualBefore = 0, residualFirst = 0, convergence = 0,
     searchDistance = 0;
   // d; w; -A^-1 r, now and before; change of w; r of the bodies, with contact
-  Vector d, dBack, trial, correction, correctionBefore, trialMove, ofBodies, residual;
+  Vector d, dBack, trial, correction, correctionBefore, searchDirection, ofBodies, residual;
   // p* - p of the elements, its change in w, p at the last iterate (volume.idp)
   Vector missing, missingBefore, pressureMove, pressureBack;
 
@@ -117,9 +118,9 @@ class ImplicitStep {
 
   int iterate() {
     // Newton's iterations. An old matrix costs iterations, a new one about as much as `cost` of
-    // them. It is renewed when the excess over the best step since the last factorisation has
-    // reached this cost (ski rental).
-    if (massScaleOfA != motion.massScale || excess > cost() || settings.newMatrix)
+    // them. It is renewed when the surplus over the best step since the last factorisation has
+    // reached this cost.
+    if (massScaleOfA != motion.massScale || surplusIterations > cost() || settings.newMatrix)
       if (!factorise()) return bodies::diverged;
     residualNow = residualFirst = residual.norm();
     double rate = 0.1;
@@ -134,6 +135,7 @@ class ImplicitStep {
         if (scripts->search() == 0) return accept();
         if (!contact.jacobianFixed) contact.empty();
         evaluate();
+        if (ended != bodies::fine) return ended;
         chained = false;
         continue;
       }
@@ -234,13 +236,13 @@ class ImplicitStep {
     }
     else if (!contact.jacobianFixed) trial = d;
     if (inMean()) missing = script.pressureStar.numbers() - mapped(body.volume.now);
-    if (chained) history.learn(trialMove, correction - correctionBefore,
+    if (chained) history.learn(searchDirection, correction - correctionBefore,
                                pressureMove + missing - missingBefore);
-    correctionBefore = trialMove = correction;
+    correctionBefore = searchDirection = correction;
     missingBefore = pressureMove = missing;
-    history.apply(correction, trialMove, pressureMove);
+    history.apply(correction, searchDirection, pressureMove);
     // held unknowns have no residual; otherwise their round-off would grow
-    trialMove = trialMove.cwiseProduct(mapped(body.free));
+    searchDirection = searchDirection.cwiseProduct(mapped(body.free));
   }
   Vector solved(const Vector &force) {           // A^-1 force
     Vector increment(force.size());
@@ -249,7 +251,8 @@ class ImplicitStep {
   }
 
   void lineSearch() {
-    // Goes from dBack along trialMove, halved until the residual allows it. Sets d and chained.
+    // Goes from dBack along searchDirection, halved at most six times, until the residual has not
+    // grown by more than a fifth. Sets d and chained.
     double scale = 1;
     const bool fresh = renewed > 0 && iterations == renewedAt;   // A was factorised at dBack
     const Eigen::Matrix<long, Eigen::Dynamic, 1> sticks = contact.script.sticks.numbers(),
@@ -260,7 +263,7 @@ class ImplicitStep {
     for (int cut = 0; cut < 7 && !chained; cut++) {
       // B and forces of the iterate, not of the try
       if (cut > 0 && !contact.jacobianFixed) returnTo(dBack, pressureBack);
-      const Vector tried = trial + scale * trialMove;
+      const Vector tried = trial + scale * searchDirection;
       if (inMean()) {
         mapped(body.volume.carried) = pressureBack + scale * pressureMove;
         mapped(body.volume.dBase) = dBack;
@@ -283,7 +286,7 @@ class ImplicitStep {
     }
     if (!chained) return;
     if (iterations == 0) residualFirst = residualNow;   // residuals must not creep up
-    trialMove *= scale;
+    searchDirection *= scale;
     pressureMove *= scale;
   }
 
@@ -336,9 +339,9 @@ class ImplicitStep {
     return std::abs(residual.dot(d - motion.dt * script.frameMotion.numbers()));
   }
   void measure() {
-    // `convergence`, accepted at <= 1: from the work of the residual, linear in it, and
-    // the energy of the correction, quadratic. Both may vanish by chance, so the residual must not
-    // change the momentum of any body, either.
+    // `convergence`, accepted at <= 1: from the work of the residual, linear in it, and its work on
+    // the last correction, quadratic. Both may vanish by chance, so the residual must not change
+    // the momentum of any body, either. A residual that no longer halves is taken for round-off.
     const Vector moved = d - dBack;
     if (inMean()) residual += mapped(body.volume.lag);
     lastResidual = work() / motion.energyScale;
@@ -366,7 +369,7 @@ class ImplicitStep {
   }
   int accept() {
     fewest = std::min(fewest, long(iterations));
-    excess += iterations - fewest;
+    surplusIterations += iterations - fewest;
     return bodies::fine;
   }
 
@@ -415,7 +418,7 @@ class ImplicitStep {
       }
       history.forget(d.size(), inMean() ? script.pressureStart.size() : 0);
       fewest = 1000;
-      excess = 0;
+      surplusIterations = 0;
       return true;
     }
     massScaleOfA = -1;

@@ -378,17 +378,17 @@ def _refuse_nu(entry: str, nu: float, law: str, values: Mapping[str, Value]) -> 
     """Raises BadInput if the settings do not allow the nu of a body.
 
     nu = 0.5 (J = 1) needs quadratic elements with projected volume, integrator = energy-momentum
-    and any law but svk. Otherwise nu is at most 0.4999.
+    or auto, and any law but svk. Otherwise nu is at most 0.4999.
     """
     if nu == 0.5 or law == "incompressible":
         volume = values.get("volume", "auto")
         keeps_volume = values["degree"] == 2 and volume != "plain"
-        conserves = values["integrator"] == "energy-momentum"
+        conserves = values["integrator"] in ("energy-momentum", "auto")
         if not (nu == 0.5 and law != "svk" and keeps_volume and conserves):
             raise BadInput(
                 f"{entry}: {nu:g} (J = 1) of law = {law}, degree = {values['degree']}, "
                 f"volume = {volume}, integrator = {values['integrator']} (accepted: up to 0.4999, or 0.5 "
-                "with any law but svk, degree = 2, volume = auto or projected, integrator = energy-momentum)"
+                "with any law but svk, degree = 2, volume = auto or projected, integrator = energy-momentum or auto)"
             )
     elif nu > 0.4999:
         raise BadInput(f"{entry}: {nu:g} is out of range (accepted: 0 to 0.4999, or 0.5: J = 1)")
