@@ -150,13 +150,15 @@ static void addStep() {
                      damped, loads, fallbackCost};
   });
   add("kernelStep", +[](double dt, double massScale, double stiffnessScale, long stressInstant,
-                       long lawInstant, double reach, double energyScale, double momentumScale,
-                       double roundOff, long mostInverses, double &lastResidual, Callback gaps,
-                       Callback terms, Callback loads, Callback search) {
+                       long lawInstant, double searchDistance, double energyScale,
+                       double momentumScale, double roundOff, long mostInverses,
+                       double &lastResidual, Callback gaps, Callback terms, Callback loads,
+                       Callback search) {
     bodyNow();
     touching.mostInverses = mostInverses;
-    const long ended = step.take({dt, massScale, stiffnessScale, stressInstant, lawInstant, reach,
-      energyScale, momentumScale, roundOff}, {gaps, terms, loads, search}, deformation());
+    const long ended = step.take({dt, massScale, stiffnessScale, stressInstant, lawInstant,
+      searchDistance, energyScale, momentumScale, roundOff}, {gaps, terms, loads, search},
+      deformation());
     lastResidual = step.lastResidual;
     return ended;
   });

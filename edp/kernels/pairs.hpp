@@ -470,9 +470,9 @@ private:
     const int counterBody = s.obstacles + (s.body[other] == s.body[own] ? s.bodies - 1
       : s.body[other] - (s.body[other] > s.body[own] ? 1 : 0));
     const Vector<A> margin = Vector<A>::Constant(searchDistance / 2);
-    const Box reach(boxes[other].min() - margin, boxes[other].max() + margin);
+    const Box searchBox(boxes[other].min() - margin, boxes[other].max() + margin);
     for (int p = own * s.points; p < (own + 1) * s.points; p++) {
-      if (!reach.contains(pointPlace(x, p))) continue;
+      if (!searchBox.contains(pointPlace(x, p))) continue;
       hits.push_back({long(counterBody) * s.np + p, other});
       for (size_t k = 2 * other; A == 2 && k < size_t(2 * other + 2); k++)
         if (beside[k] >= 0 && (s.body[other] != s.body[own] || sightOf(own, beside[k]) > 0))

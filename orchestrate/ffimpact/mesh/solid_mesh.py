@@ -131,14 +131,14 @@ def mesh_shape(
     kind: str,
     lengths: np.ndarray,
     rotation: np.ndarray,
-    folded: tuple[int, ...],
+    mirror_axes: tuple[int, ...],
     sizes: Sizes,
     scale: float,
 ) -> SolidMesh:
     """The mesh of a ball, box or cylinder about the origin, turned by the matrix `rotation`.
 
     `lengths` [m] are the radius; width, height and depth; or radius and height, with the axis y.
-    `folded` contains the axes that are normal to planes of symmetry: only the part on the positive
+    `mirror_axes` contains the axes that are normal to planes of symmetry: only the part on the positive
     side of these planes is meshed. `scale` [m] is about the size of the body. Lengths are divided
     by it, because gmsh's tolerances are absolute.
     """
@@ -165,9 +165,9 @@ def mesh_shape(
             occ.affineTransform(
                 [(3, tag)], [*np.column_stack([rotation, np.zeros(3)]).ravel(), 0, 0, 0, 1]
             )
-        if folded:
+        if mirror_axes:
             far = 4 * np.linalg.norm(sides)
-            corner = [0 if axis in folded else -far for axis in range(3)]
+            corner = [0 if axis in mirror_axes else -far for axis in range(3)]
             half = occ.addBox(*corner, *(far - low for low in corner))
             occ.intersect([(3, tag)], [(3, half)])
         occ.synchronize()
@@ -176,7 +176,7 @@ def mesh_shape(
     points = points * scale
     faces = mesh.boundary(cells)
     labels = np.full(len(faces), FREE)
-    for axis in folded:
+    for axis in mirror_axes:
         on = (abs(points[faces][:, :, axis]) < 1e-7 * scale).all(axis=1)
         labels[on] = PLANES[axis]
         points[np.unique(faces[on]), axis] = 0

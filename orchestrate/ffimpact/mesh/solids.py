@@ -367,18 +367,18 @@ class Solid(outlines.Shape):
 # ---- meshes
 
 
-def mesh_of(body, sizes: Sizes | None, folded: tuple[int, ...], accuracy: float) -> SolidMesh:
+def mesh_of(body, sizes: Sizes | None, mirror_axes: tuple[int, ...], accuracy: float) -> SolidMesh:
     """The mesh of a body (bodies.Body) about its centre of volume, turned as at the start.
 
     The mesh is that of the body's file, or gmsh generates one with the element sizes `sizes`, which
-    refer to the body before its rotation. `folded` contains the axes that are normal to planes of
+    refer to the body before its rotation. `mirror_axes` contains the axes that are normal to planes of
     symmetry: only the part on the positive side of these planes is meshed. Raises BadInput if the
     mesh would have more than MOST_CELLS tetrahedra.
     """
     solid = body.at(0.0, np.zeros(3))
     if body.mesh:
         return _with_curves(replace(body.mesh, points=body.mesh.points @ solid.rotation.T))
-    expected = expected_cells(solid.volume, sizes) / 2 ** len(folded)
+    expected = expected_cells(solid.volume, sizes) / 2 ** len(mirror_axes)
     if expected > MOST_CELLS:
         raise BadInput(
             f"mesh_size: '{body.name}' would have about {expected:.2g} tetrahedra (accepted: up to {MOST_CELLS}; larger "
@@ -393,7 +393,7 @@ def mesh_of(body, sizes: Sizes | None, folded: tuple[int, ...], accuracy: float)
         solid.shape.kind,
         solid.shape.lengths,
         solid.rotation,
-        folded,
+        mirror_axes,
         replace(sizes, near=sizes.near @ solid.rotation.T),
         solid.half_thickness,
     )

@@ -29,7 +29,7 @@ from ..mesh.mesh import AXIS, FREE, Curve, Sizes, mesh_body, nearest
 from .approach import Onset, loaded_pull, onsets_of, refuse_nothing, refuse_sinking, turned
 from .bodies import DAMPING, STIFF, Body
 from .front import Front, fronts
-from .mirror import COPIES, FOLDED, copies
+from .mirror import COPIES, MIRROR_AXES, copies
 from .parts import sections
 from .scene import Pair, Scene
 
@@ -219,10 +219,10 @@ def _solids(
     """Returns the same in three dimensions: bodies turned as at the start, one above the other,
     reduced by symmetry; lines of spheres and cylinders.
     """
-    folded = FOLDED[copies(scene)]
+    mirror_axes = MIRROR_AXES[copies(scene)]
     accuracy = float(scene.values["accuracy"])
     meshes = [
-        solids.mesh_of(body, size, folded, accuracy) for body, size in zip(scene.bodies, sizes)
+        solids.mesh_of(body, size, mirror_axes, accuracy) for body, size in zip(scene.bodies, sizes)
     ]
     meshes = [_reached(scene, k, made) for k, made in enumerate(meshes)]
     count = sum(solid_mesh.unknowns(made.cells, scene.values["degree"]) for made in meshes)

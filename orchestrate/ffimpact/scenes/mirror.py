@@ -10,10 +10,10 @@ from ..input.dimension import SOLID
 from .bodies import Body
 from .obstacles import Obstacle
 
-__all__ = ["COPIES", "FOLDED", "copies"]
+__all__ = ["COPIES", "MIRROR_AXES", "copies"]
 
 COPIES = {"full": 1, "half": 2, "quarter": 4}
-FOLDED = {1: (), 2: (2,), 4: (0, 2)}  # normals of the planes of symmetry, by symmetry factor
+MIRROR_AXES = {1: (), 2: (2,), 4: (0, 2)}  # normals of the planes of symmetry, by symmetry factor
 AXES = "xyz"
 
 

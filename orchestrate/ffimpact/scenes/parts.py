@@ -15,7 +15,7 @@ from ..mesh.mesh import Mesh
 from ..mesh.solid_mesh import SolidMesh
 from .bodies import Body
 from .conditions import KINDS, ON_SIDE, SIDES, Part, Support
-from .mirror import FOLDED
+from .mirror import MIRROR_AXES
 
 __all__ = ["sections"]
 
@@ -148,7 +148,7 @@ class _Surface:
             corners = self.made.points[self.made.sides] + self.body.position
             folded = [
                 abs(corners[:, :, axis]).max(axis=1) > ON_SIDE * np.ptp(self.own)
-                for axis in FOLDED[self.copies]
+                for axis in MIRROR_AXES[self.copies]
             ]
             return np.all(folded, axis=0)
         return np.ones(len(self.made.sides), dtype=bool)
@@ -256,7 +256,7 @@ class _Surface:
         folded = (
             (0,)
             if self.dimension is AXISYMMETRIC
-            else FOLDED[self.copies]
+            else MIRROR_AXES[self.copies]
             if self.dimension is SOLID
             else ()
         )
