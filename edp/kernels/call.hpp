@@ -6,19 +6,22 @@
 #include <cstdio>
 #include <cstdlib>
 #include <new>
+#include <string>
 #include <utility>
 #include <vector>
 #include "tensors.hpp"
 #include "ff++.hpp"
 
-// Ends the program with exit code 14 and one line on stderr. For a library that has run out of
-// memory or has rejected its arguments.
-[[noreturn]] inline void giveUp(const char *what) {
-  std::fprintf(stderr,
-"ffimpact: memory: %s: take larger elements (mesh_size, contact_mesh_size) or a larger accuracy\n",
-    what);
+// Ends the program with one line on stderr, as fail() of parameters.idp.
+[[noreturn]] inline void giveUp(int code, const std::string &message) {
+  std::fprintf(stderr, "ffimpact: %s\n", message.c_str());
   std::fflush(nullptr);
-  std::_Exit(14);
+  std::_Exit(code);
+}
+// For a library that has run out of memory or has rejected its arguments.
+[[noreturn]] inline void giveUp(const std::string &what) {
+  giveUp(14, "memory: " + what
+    + ": take larger elements (mesh_size, contact_mesh_size) or a larger accuracy");
 }
 inline void check(bool good, const char *what) { if (!good) giveUp(what); }
 

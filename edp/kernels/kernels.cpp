@@ -10,8 +10,8 @@
 #include "factor.hpp"
 #include "explicit.hpp"
 #include "pairs.hpp"
+#include "shapes.hpp"
 #include "step.hpp"
-#include "surface.hpp"
 
 static bodies::Bodies body;
 static struct {
@@ -227,7 +227,7 @@ static void addKernels() {
   addFactor();
   addStep();
   pairs::addPairs();
-  surface::addSurface();
+  shapes::addShapes();
 }
 
 LOADFUNC(addKernels)

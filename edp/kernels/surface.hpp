@@ -2,7 +2,7 @@
 // The closest point is searched for in a tree of bounding boxes. It lies in a face, on an edge or
 // at a vertex. The sign is the side of the normal at that place: that of the face, the sum of the
 // normals of both faces, or the sum weighted with the angles at the vertex (Baerentzen & Aanaes
-// 2005, IEEE Trans. Vis. Comput. Graph. 11, 243). Exports addSurface().
+// 2005, IEEE Trans. Vis. Comput. Graph. 11, 243). Exports Surface.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -112,32 +112,5 @@ class Surface {
     }
   };
 };
-
-static std::map<long, Surface> obstacles;  // by their numbers
-
-inline void addSurface() {
-  ::add("kernelObstacle", +[](long k, Reals numbers) {
-    // Sets obstacle k. numbers: rounding, number of vertices, number of triangles, x y z of each
-    // vertex, the three vertices of each triangle.
-    Surface &obstacle = obstacles[k] = Surface();
-    const long points = long(numbers[1]), faces = long(numbers[2]);
-    obstacle.rounding = numbers[0];
-    for (long i = 0; i < points; i++)
-      obstacle.vertex.emplace_back(numbers[3 + 3 * i], numbers[4 + 3 * i], numbers[5 + 3 * i]);
-    for (long i = 0, at = 3 + 3 * points; i < faces; i++, at += 3)
-      obstacle.triangle.push_back({int(numbers[at]), int(numbers[at + 1]), int(numbers[at + 2])});
-    obstacle.finish();
-  });
-  ::add("kernelObstacleGaps", +[](long k, Reals X, Reals g, Reals n) {
-    // Gaps g (m) [m] and normals n (3 m) of the m points X (3 m) to obstacle k.
-    const Surface &obstacle = obstacles[k];
-    const long m = g.N();
-    for (long i = 0; i < m; i++) {
-      Point normal;
-      g[i] = obstacle.gap(Point(X[i], X[m + i], X[2 * m + i]), normal);
-      for (int c = 0; c < 3; c++) n[c * m + i] = normal[c];
-    }
-  });
-}
 
 }

@@ -1,8 +1,8 @@
 """Implicit obstacles: the surface D(x) = 0 of an expression D of x, y (and z) [m] (docs: scenes).
 
 D is positive outside the solid, smooth, and not constant on the surface. It need not be a distance.
-The expression is translated into a list of numbers, the program of a stack machine. FreeFEM runs
-this program; edp/core/contact/shapes.idp documents the numbers and the gap that follows from D.
+The expression is translated into a list of numbers, the program of a stack machine. The kernels run
+this program; edp/kernels/shapes.hpp documents the numbers and the gap that follows from D.
 `gap` computes the same gap in Python.
 """
 

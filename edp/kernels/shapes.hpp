@@ -1,0 +1,248 @@
+// shapes.hpp: rigid obstacles (7) whose closest point needs a search: a polyline and an implicit
+// surface D(x) = 0 here, a triangle mesh in surface.hpp. Each is a Shape, made from the numbers
+// that core/contact/shapes.idp describes. Planes, circles, spheres and bowls are there alone.
+// Exports addShapes(): the kernels kernelObstacle and kernelObstacleGaps.
+#pragma once
+#include <map>
+#include <memory>
+#include "call.hpp"
+#include "surface.hpp"
+
+namespace shapes {
+
+typedef Eigen::Vector3d Point;             // z = 0 in the plane
+
+// Where an obstacle is nearest to a point: signed gap [m] (positive outside), unit outward normal,
+// and the piece of the obstacle: flat ones are 1, 2, ..., round ones -1, -2, ..., others 0.
+struct Nearest { double gap;  Point normal;  long piece; };
+
+struct Shape {
+  virtual ~Shape() {}
+  virtual Nearest nearest(const Point &x) const = 0;
+};
+
+// A chain of straight sides in the plane; its free side is to the left. If open, it continues
+// straight beyond both ends. The surface is at the distance `rounding` from it.
+class Polyline : public Shape {
+ public:
+  Polyline(const double *numbers, long size) {
+    // numbers: closed (0 or 1), rounding [m], then x y of each vertex [m].
+    const bool closed = numbers[0] == 1;
+    rounding = numbers[1];
+    for (long i = 2; i < size; i += 2) vertex.emplace_back(numbers[i], numbers[i + 1], 0);
+    const size_t n = vertex.size(), count = closed ? n : n - 1;
+    for (size_t j = 0; j < count; j++) {
+      const Point edge = vertex[(j + 1) % n] - vertex[j];
+      const double length = edge.norm();
+      side.push_back({edge / length, Point(-edge[1], edge[0], 0) / length,
+                      !closed && j == 0 ? -1e30 : 0, !closed && j == count - 1 ? 1e30 : length});
+    }
+  }
+  Nearest nearest(const Point &x) const override {
+    // The nearest side or, beyond the ends of that, its vertex. There the sign is that of
+    // r.(normal before + normal after), r = x - vertex.
+    double best = 1e300, along = 0;
+    size_t j = 0;
+    for (size_t i = 0; i < side.size(); i++) {
+      const Point r = x - vertex[i];
+      const double t = side[i].along.dot(r), h = side[i].normal.dot(r),
+        beyond = std::max({0., side[i].low - t, t - side[i].high}),
+        distance2 = h * h + beyond * beyond;
+      if (distance2 < best) { best = distance2;  along = t;  j = i; }
+    }
+    const bool before = along < side[j].low, after = along > side[j].high;
+    if (!before && !after)
+      return {side[j].normal.dot(x - vertex[j]) - rounding, side[j].normal, long(j) + 1};
+    const size_t v = before ? j : (j + 1) % vertex.size();
+    const Point r = x - vertex[v],
+      both = side[v].normal + side[v > 0 ? v - 1 : side.size() - 1].normal;
+    const double h = (both.dot(r) < 0 ? -1 : 1) * std::max(1e-300, r.norm());
+    return {h - rounding, r / h, -long(v) - 1};
+  }
+
+ private:
+  struct Side { Point along, normal;  double low, high; };   // from vertex j to j + 1
+  std::vector<Point> vertex;
+  std::vector<Side> side;
+  double rounding;
+};
+
+// D(x) with its gradient, both exact (dual numbers). The program is for a stack: 0 and a number;
+// 1, 2, 3 for x, y, z; operations on the last entries:
+//   4 a + b   5 a - b   6 a b   7 a / b   8 a^b, b a number   9 min   10 max   11 -a
+//   12 sin   13 cos   14 sqrt   15 exp   16 |a|
+class Program {
+ public:
+  struct Dual { double value;  Point slope; };
+  typedef std::vector<char> Branches;      // those taken of min, max and |a|
+
+  Program(const double *numbers, long size) : code(numbers, numbers + size) {}
+
+  Dual at(const Point &x, Branches &branch, bool choose) const {
+    // If choose, the branches of min, max and |a| are chosen and stored; else the stored ones are
+    // taken, which continues the two sides of a corner beyond it.
+    std::vector<Dual> stack;
+    if (choose) branch.assign(code.size(), 0);
+    for (size_t e = 0; e < code.size(); e++) {
+      const int op = int(code[e]);
+      if (op == 0) { stack.push_back({code[++e], Point::Zero()});  continue; }
+      if (op < 4) { stack.push_back({x[op - 1], Point::Unit(op - 1)});  continue; }
+      Dual b = {0, Point::Zero()};
+      if (op < 11) { b = stack.back();  stack.pop_back(); }
+      Dual &a = stack.back();
+      if (choose) branch[e] = op == 9 ? a.value < b.value : op == 10 ? a.value > b.value
+        : a.value >= 0;
+      a = result(op, a, b, branch[e]);
+    }
+    return stack.back();
+  }
+
+ private:
+  std::vector<double> code;
+
+  static Dual result(int op, const Dual &a, const Dual &b, bool first) {
+    const double x = a.value, y = b.value;
+    switch (op) {
+      case 4: return {x + y, a.slope + b.slope};
+      case 5: return {x - y, a.slope - b.slope};
+      case 6: return {x * y, y * a.slope + x * b.slope};
+      case 7: return {x / y, (a.slope - x / y * b.slope) / y};
+      case 8: return {std::pow(x, y), y == 0 ? Point(Point::Zero())
+                                             : Point(y * std::pow(x, y - 1) * a.slope)};
+      case 9: case 10: return first ? a : b;
+      case 11: return {-x, -a.slope};
+      case 12: return {std::sin(x), std::cos(x) * a.slope};
+      case 13: return {std::cos(x), -std::sin(x) * a.slope};
+      case 14: return {std::sqrt(x), 0.5 / (std::sqrt(x) + 1e-300) * a.slope};
+      case 15: return {std::exp(x), std::exp(x) * a.slope};
+      default: return first ? a : Dual{-x, -a.slope};
+    }
+  }
+};
+
+// The surface D(x) = 0, free where D > 0.
+class Implicit : public Shape {
+ public:
+  Implicit(long itsNumber, long itsAxes, const double *numbers, long size)
+    : number(itsNumber), axes(itsAxes), steepest(numbers[0]), limit(numbers[1]),
+      distance(numbers + 2, size - 2) {}
+
+  Nearest nearest(const Point &x) const override {
+    // limit is a third of the smallest radius of curvature, steepest the largest |grad D| around
+    // bodies and surface. If |D| / |grad D| exceeds limit or the gap 2 limit, the gap is
+    // D / max(steepest, |grad D|), a lower bound.
+    Program::Branches branch;
+    const Program::Dual D = distance.at(x, branch, true);
+    const double size = D.slope.norm();
+    const bool finite = size < 1e150;      // else |grad D|^2 overflows: only the sign of D is used
+    const Nearest bound = {finite ? D.value / std::max(steepest, size)
+      : (D.value > 0 ? limit : -limit), D.slope / size, 0};
+    if (!(std::abs(D.value) < limit * std::min(size, 1e150))) return bound;
+    // From beside x or, if that hardly converges, from x itself: points farther than a radius of
+    // the surface may not converge from beside it.
+    Nearest closest, other;
+    double error = project(x, x + 1e-6 * limit * alongSurface(bound.normal), closest);
+    if (!(error < 1e-12 * limit)) {
+      const double otherError = project(x, x, other);
+      if (!(error < otherError)) { error = otherError;  closest = other; }
+    }
+    if (!(error <= 1e-9 * limit)) fail(x);
+    return std::abs(closest.gap) <= 2 * limit ? closest : bound;
+  }
+
+ private:
+  long number, axes;
+  double steepest, limit;
+  Program distance;
+
+  double project(const Point &x, Point y, Nearest &closest) const {
+    // Iterates the closest point y of the surface to x by projecting x onto the tangent plane of D
+    // at y, G = grad D:
+    //   y <- x - G s,   s = (D + G.(x - y)) / |G|^2,   finally gap = s |G|, n = G / |G|.
+    // Each iteration reduces the error by the factor gap / radius of curvature. The bottom of a
+    // hollow is another fixed point, but not the closest point if x is farther away than its
+    // radius. Then it repels, so that the iteration starts beside x. Returns the last change of y
+    // [m], 0 if it is round-off or the surface is too far to matter.
+    Program::Branches branch;
+    const double roundOff = 1e-15 * (x.norm() + limit);
+    double change = 1e300;
+    for (int turn = 0; turn < 60; turn++) {
+      const Program::Dual D = distance.at(y, branch, turn == 0);
+      const double size = D.slope.norm();
+      closest.piece = 0;
+      closest.normal = D.slope / size;
+      closest.gap = D.value / size + closest.normal.dot(x - y);
+      if (std::abs(closest.gap) > 2 * limit) return 0;
+      const Point next = x - closest.gap * closest.normal;
+      const double last = change;
+      change = (next - y).lpNorm<Eigen::Infinity>();
+      y = next;
+      const bool grows = change <= 1e-9 * limit && change >= last;
+      if (change <= roundOff || grows || !(change < 1e300)) break;
+    }
+    return change <= roundOff ? 0 : change;
+  }
+  Point alongSurface(const Point &n) const {
+    // A vector normal to n, in general along no axis: n x (0.36, 0.48, 0.8), in the plane n x e_z.
+    return axes == 2 ? Point(n[1], -n[0], 0) : Point(n.cross(Point(0.36, 0.48, 0.8)));
+  }
+  [[noreturn]] void fail(const Point &x) const {
+    char text[200];
+    std::snprintf(text, sizeof text, "distance: obstacle %ld has no closest point near %g, %g m "
+      "(accepted: an expression that is smooth, and not constant, next to its zeros)", number + 1,
+      x[0], x[1]);
+    giveUp(10, text);
+  }
+};
+
+// A closed triangle mesh in space.
+class Triangles : public Shape {
+ public:
+  explicit Triangles(const double *numbers) {
+    // numbers: rounding, number of vertices, number of triangles, x y z of each vertex, the three
+    // vertices of each triangle.
+    const long points = long(numbers[1]), faces = long(numbers[2]);
+    mesh.rounding = numbers[0];
+    for (long i = 0; i < points; i++)
+      mesh.vertex.emplace_back(numbers[3 + 3 * i], numbers[4 + 3 * i], numbers[5 + 3 * i]);
+    for (long i = 0, at = 3 + 3 * points; i < faces; i++, at += 3)
+      mesh.triangle.push_back({int(numbers[at]), int(numbers[at + 1]), int(numbers[at + 2])});
+    mesh.finish();
+  }
+  Nearest nearest(const Point &x) const override {
+    Nearest closest = {0, Point::Zero(), 0};
+    closest.gap = mesh.gap(x, closest.normal);
+    return closest;
+  }
+
+ private:
+  surface::Surface mesh;
+};
+
+static std::map<long, std::unique_ptr<Shape>> obstacles;   // by their numbers
+
+inline void addShapes() {
+  ::add("kernelObstacle", +[](long k, std::string &kind, long axes, Reals numbers) {
+    // Makes obstacle k from its numbers.
+    const long n = numbers.N();
+    obstacles[k].reset(kind == "polyline" ? static_cast<Shape *>(new Polyline(numbers, n))
+      : kind == "implicit" ? static_cast<Shape *>(new Implicit(k, axes, numbers, n))
+      : new Triangles(numbers));
+  });
+  ::add("kernelObstacleGaps", +[](long k, Reals X, Reals gap, Reals normal, Ints piece) {
+    // Gaps (m) [m], normals (axes m) and pieces (m) of obstacle k at m points X (axes m) in its
+    // frame.
+    const Shape &obstacle = *obstacles[k];
+    const long m = gap.N(), axes = m > 0 ? X.N() / m : 0;
+    for (long i = 0; i < m; i++) {
+      Point x = Point::Zero();
+      for (long c = 0; c < axes; c++) x[c] = X[c * m + i];
+      const Nearest closest = obstacle.nearest(x);
+      gap[i] = closest.gap;
+      piece[i] = closest.piece;
+      for (long c = 0; c < axes; c++) normal[c * m + i] = closest.normal[c];
+    }
+  });
+}
+
+}
