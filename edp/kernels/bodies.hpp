@@ -181,7 +181,7 @@ public:
       nodal[i] = step.massScale * nodal[i] - inertiaKnown[unknown[i]];
     dispatch([&](auto stored) { this->template inertia<stored.D>(); });
     for (int i = 0; i < nodes * D; i++)   // pull: P : Grad w + rho0 A, of unknown i
-      residual[unknown[i]] = pull[i] - bodyForce[unknown[i]];   // (1), (2): Div P + rho0 b = rho0 A
+      residual[unknown[i]] = pull[i] - bodyForce[unknown[i]];   // (1): Div P + rho0 b = rho0 A
     return fine;
   }
 
@@ -385,7 +385,7 @@ private:
   template<class T> void pulled(int q, int n, const double *N, const Tensor &F,
                                 const Symmetric &S, double *force) const {
     // force += G^T (w F S): forces on the n nodes, with shapes N, of the stress S at point q.
-    const Tensor P = weight[q] * F * laws::full(S);   // (3): P = F S
+    const Tensor P = weight[q] * F * laws::full(S);   // (2), (3): P = F S
     for (int a = 0; a < n; a++, N += T::derivatives) {
       for (int i = 0; i < T::D; i++)
         for (int J = 0; J < T::D; J++) force[a * T::D + i] += N[J] * P(i, J);

@@ -76,7 +76,7 @@ struct Law {
       mu = a.muDynamic + half * (1 + std::cos(pi * std::max(0., std::min(1., vOverEps - 1))));
       if (vOverEps > 1 && vOverEps < 2) dMu = -half * pi * std::sin(pi * (vOverEps - 1));
     }
-    muPhi = mu * phi;   // (11), (12): mu_f phi(v_T)
+    muPhi = mu * phi;
     slope = mu * dPhi + dMu * phi;
     if (jumps && regularization == linearPrinted) {
       // sticking: mu_e v/(2 eps), constant beyond eps; sliding: the same up to mu_d or to the ramp
@@ -121,7 +121,7 @@ struct Law {
     for (int i = 0; i < slips; i++) for (int j = 0; j < slips && linearisedAt; j++)
       muPhi[i] += slope[i][j] * (v[j] - lawInstant[j]);
     for (int i = 0; i < slips; i++) {
-      f.t[1 + i] = muPhi[i] * f.t[0];            // (12): -t_T = mu_f phi(v_T) abs(t_N)
+      f.t[1 + i] = muPhi[i] * f.t[0];   // (11), (12): -t_T = mu_f phi(v_T) |t_N|
       f.slope[1 + i][0] = muPhi[i] * f.slope[0][0];
       f.slope[0][1 + i] = 0;
       for (int j = 0; j < slips; j++) f.slope[1 + i][1 + j] = slope[i][j] * f.t[0] / dt;
