@@ -53,10 +53,10 @@ struct Step { double massScale, rate;  int lawInstant;  bool breaks, carries; };
 
 // Arrays of volume.idp over elements as numbered there: p* = star; the pressures p as they are
 // carried into an iteration and now. Over unknowns: the increment dBase from which they were
-// carried, and the part `lag` of the residual (miss()).
+// carried, and the part pressureRemainder of the residual (addPressureForces()).
 struct Volume {
   double *star = nullptr;
-  std::vector<double> carried, now, dBase, lag;
+  std::vector<double> carried, now, dBase, pressureRemainder;
 };
 
 class Bodies {
@@ -161,7 +161,7 @@ public:
     volume.carried.assign(elementsOfMesh, 0.);
     volume.now = volume.carried;
     volume.dBase.assign(ndof, 0.);
-    volume.lag = volume.dBase;
+    volume.pressureRemainder = volume.dBase;
     slope.assign(cell.size(), 0.);
     g0.assign(node.size() * D, 0.);
   }
@@ -176,7 +176,8 @@ public:
     for (int i = 0; i < nodes * D; i++) nodal[i] = d[unknown[i]];
     dispatch([&](auto stored) { ended = this->template innerForces<decltype(stored)>(step, at); });
     if (ended != fine) return ended;
-    if (step.carries) for (int i = 0; i < nodes * D; i++) volume.lag[unknown[i]] = lagging[i];
+    if (step.carries)
+      for (int i = 0; i < nodes * D; i++) volume.pressureRemainder[unknown[i]] = remainders[i];
     for (int i = 0; i < nodes * D; i++)
       nodal[i] = step.massScale * nodal[i] - inertiaKnown[unknown[i]];
     dispatch([&](auto stored) { this->template inertia<stored.D>(); });
@@ -279,9 +280,9 @@ private:
     return entry.first->second;
   }
 
-  // (node, component): displacements or accelerations, forces, d - dBase, lag of volume.idp
-  std::vector<double> nodal, pull, increment, lagging;
-  std::vector<double> own, ownLagging;     // contributions of each element to pull and lagging
+  // (node, component): displacements or accelerations, forces, d - dBase, pressureRemainder
+  std::vector<double> nodal, pull, increment, remainders;
+  std::vector<double> own, ownRemainders;  // contributions of each element to pull and remainders
 
   // Calls f(stored) with the Stored<...> of these bodies.
   template<class Function> void dispatch(Function f) const {
@@ -310,7 +311,7 @@ private:
   }
 
   template<class T> int innerForces(const Step &step, const Deformation &at) {
-    // pull = internal forces, and `lagging`. Element contributions are summed in the order of the
+    // pull = internal forces, and remainders. Element contributions are summed in the order of the
     // elements, so the result does not depend on the number of threads.
     const int elements = int(firstNode.size()) - 1;
     if (step.carries) {
@@ -318,7 +319,7 @@ private:
       for (int i = 0; i < nodes * D; i++) increment[i] = nodal[i] - volume.dBase[unknown[i]];
     }
     own.assign(node.size() * D, 0.);
-    if (step.carries) ownLagging.assign(node.size() * D, 0.);
+    if (step.carries) ownRemainders.assign(node.size() * D, 0.);
     #pragma omp parallel for
     for (int g = 0; g < elements; g++) {
       if (nodesOf(g) == 0) continue;       // points of rigid bodies that have no weight
@@ -329,7 +330,7 @@ private:
     if (smallest != smallest) return notANumber;
     if (smallest <= 0 && step.breaks) return inverted;
     sum(own, pull);
-    if (step.carries) sum(ownLagging, lagging);
+    if (step.carries) sum(ownRemainders, remainders);
     return fine;
   }
   void sum(const std::vector<double> &ofElements, std::vector<double> &all) const {
@@ -415,7 +416,7 @@ private:
       put<T>(S, q, at.Ss);
       pulled<T>(q, n, N, whole<T>(at.Fs, q), S, force);
     }
-    if (step.carries) miss<T>(g, at, pressed, force);
+    if (step.carries) addPressureForces<T>(g, at, pressed, force);
   }
 
   // Volume term of an element (volume.idp): pressure p, p* - p, and T = 2 dj/dC at its points.
@@ -459,10 +460,10 @@ private:
     return sum;
   }
 
-  template<class T> void miss(size_t g, const Deformation &at, const Pressed &pressed,
-                              double *force) {
-    // Forces of p* - p: force += g0 (p* - p), if g0 is known, else g (p* - p). The lag of the
-    // element is the remainder, (g - g0)(p* - p).
+  template<class T> void addPressureForces(size_t g, const Deformation &at, const Pressed &pressed,
+                                           double *force) {
+    // Forces of p* - p: force += g0 (p* - p), if g0 is known, else g (p* - p). The remainder of the
+    // element is (g - g0)(p* - p).
     const int n = nodesOf(g);
     const double *N = &shape[firstShape[g]];
     double all[mostNodes * T::D] = {};
@@ -471,7 +472,7 @@ private:
     for (int i = 0; i < n * D; i++) {
       const double along = slopeKnown ? pressed.rest * g0[size_t(firstNode[g]) * D + i] : all[i];
       force[i] += along;
-      ownLagging[size_t(firstNode[g]) * D + i] = all[i] - along;
+      ownRemainders[size_t(firstNode[g]) * D + i] = all[i] - along;
     }
   }
 

@@ -26,7 +26,8 @@ class Contact {
   Law &law = problem.law;
   bool jacobianFixed = false;                    // B never changes
   Vector diagonal;                               // explicit steps: A^-1 is diagonal, else empty
-  Indices candidates, unknowns, expected;        // of the active set; `expected`: ordered last in A
+  Indices candidates, unknowns;                  // of the active set
+  Indices orderedLast;                           // unknowns that A orders last
   Vector last;                                   // candidateForces of the last solve
   long inversesOfStep = 0, mostInverses = 1000000000;
 
@@ -93,8 +94,8 @@ class Contact {
     setsMade++;
   }
   void reset() {
-    // Empties the active set and C, for a new A. `expected`: the unknowns of the active candidates
-    // or, if rows change, all that were in the active set.
+    // Empties the active set and C, for a new A. orderedLast becomes the unknowns of the active
+    // candidates or, if rows change, all that were in the active set.
     computed = 0;
     if (jacobianFixed || diagonal.size() > 0) {
       index.assign(ndof, -1);
@@ -102,7 +103,7 @@ class Contact {
     }
     if (diagonal.size() == 0) {
       if (jacobianFixed && !candidates.empty()) takeUnknowns();
-      expected = unknowns;
+      orderedLast = unknowns;
     }
     empty();
   }
@@ -148,11 +149,13 @@ class Contact {
     return u;
   }
 
-  int solve(const Vector &start, const Vector &ahead, double enough, Vector &tau, Vector &force) {
-    // Solves the contact problem of the active set. start: gap and slip without contact (all rows);
-    // ahead: displacement of the active unknowns without contact, from the state in which the
-    // geometric terms exert no force. tau: forces of the active rows, in and out; force = B^T tau.
-    // `enough`: tolerance of the forces [N]. Returns the iterations, -1 if they do not converge.
+  int solve(const Vector &freeGapSlip, const Vector &freeDisplacement, double enough, Vector &tau,
+            Vector &force) {
+    // Solves the contact problem of the active set. Without contact forces gap and slip of all rows
+    // are freeGapSlip, and the active unknowns are displaced by freeDisplacement from the state in
+    // which the geometric terms exert no force. tau: forces of the active rows, in and out;
+    // force = B^T tau. `enough`: tolerance of the forces [N]. Returns the iterations, -1 if they do
+    // not converge.
     Problem &p = problem;
     const int n = int(candidates.size()), kinds = this->kinds();
     if (solvedSet < 0) p.newton.forget();
@@ -161,13 +164,13 @@ class Contact {
     p.enough = enough;
     p.point.clear();
     p.turned.clear();
-    p.B.pull(ahead, p.start);
+    p.B.pull(freeDisplacement, p.start);
     p.tau = Vector::Zero(p.start.size());
     for (int i = 0; i < n; i++) {
       p.point.push_back(point(candidates[i]));
       p.turned.push_back(int(script.statusChanges[candidates[i]]));
       for (int c = 0; c < kinds; c++) {
-        p.start[kinds * i + c] = start[c * ns() + candidates[i]];
+        p.start[kinds * i + c] = freeGapSlip[c * ns() + candidates[i]];
         p.tau[kinds * i + c] = tau[c * n + i];
       }
     }
@@ -199,7 +202,7 @@ class Contact {
   }
 
   template<class Archive> void archive(Archive &archive) {
-    archive(candidates);  archive(unknowns);  archive(expected);  archive(last);
+    archive(candidates);  archive(unknowns);  archive(orderedLast);  archive(last);
   }
   void restore() {
     // The active set from its candidates and unknowns.

@@ -66,13 +66,13 @@ class ImplicitStep {
   template<class Archive> void archive(Archive &archive) {
     // The state that lasts from step to step.
     archive(massScaleOfA);  archive(motion.stiffnessScale);  archive(FofA);  archive(SofA);
-    archive(pOfA);  archive(fewest);  archive(surplusIterations);
+    archive(pOfA);  archive(fewestIterations);  archive(surplusIterations);
     history.archive(archive);
     contact.archive(archive);
   }
   void restore() {                               // A of an archived state
     assemble();
-    factor.factorise(contact.expected);
+    factor.factorise(contact.orderedLast);
     contact.restore();
   }
 
@@ -89,17 +89,18 @@ class ImplicitStep {
   double massScaleOfA = -1;
   Vector FofA, SofA, pOfA;
   // iterations: least of a step with this A; surplus over it, summed over steps
-  long fewest = 1000, surplusIterations = 0;
+  long fewestIterations = 1000, surplusIterations = 0;
   // of this step; factorisations, and the iteration of the last one
   int iterations = 0, renewed = 0, renewedAt = 0;
-  // trial belongs to d with this A, and correctionBefore to the previous trial state
-  bool chained = false;
+  // this iterate follows the previous one with the same A: trial belongs to d, correctionBefore to
+  // the previous trial state
+  bool consecutive = false;
   double residualNow = 0, residualBefore = 0, residualFirst = 0, convergence = 0,
     searchDistance = 0;
   // d; w; -A^-1 r, now and before; change of w; r of the bodies, with contact
   Vector d, dBack, trial, correction, correctionBefore, searchDirection, ofBodies, residual;
   // p* - p of the elements, its change in w, p at the last iterate (volume.idp)
-  Vector missing, missingBefore, pressureMove, pressureBack;
+  Vector pressureResidual, pressureResidualBefore, pressureDirection, pressureBack;
 
   struct Timed {                                 // adds the processor time of a block
     double &sum;
@@ -123,24 +124,25 @@ class ImplicitStep {
     if (massScaleOfA != motion.massScale || surplusIterations > cost() || settings.newMatrix)
       if (!factorise()) return bodies::diverged;
     residualNow = residualFirst = residual.norm();
-    double rate = 0.1;
+    double contraction = 0.1;
     while (iterations < 120) {
       direct();
       dBack = d;
       lineSearch();
       iterations++;
       measure();
-      if (convergence <= 1 && chained) {
+      if (convergence <= 1 && consecutive) {
         if (collapses()) return bodies::inverted;
         if (scripts->search() == 0) return accept();
         if (!contact.jacobianFixed) contact.empty();
         evaluate();
         if (ended != bodies::fine) return ended;
-        chained = false;
+        consecutive = false;
         continue;
       }
-      rate = iterations - renewedAt < 2 ? 0.1 : std::sqrt(rate * residualNow / residualBefore);
-      if (wearsOut(rate)) {
+      contraction = iterations - renewedAt < 2
+        ? 0.1 : std::sqrt(contraction * residualNow / residualBefore);
+      if (wearsOut(contraction)) {
         const int failed = renew();
         if (failed != bodies::fine) return failed;
       }
@@ -160,8 +162,9 @@ class ImplicitStep {
     d = script.d.numbers();
     script.counts.numbers().setZero();
     iterations = renewed = renewedAt = 0;
-    chained = false;
-    if (!inMean()) missing = missingBefore = pressureMove = pressureBack = Vector();
+    consecutive = false;
+    if (!inMean())
+      pressureResidual = pressureResidualBefore = pressureDirection = pressureBack = Vector();
     // a changing B is set up in every iteration: few candidates
     searchDistance = contact.jacobianFixed
       ? motion.dt * script.v.numbers().lpNorm<Eigen::Infinity>()
@@ -207,10 +210,10 @@ class ImplicitStep {
     }
     if (script.heldResidual.size() > 0) {
       script.heldResidual.numbers() = ofBodies;
-      if (inMean()) script.heldResidual.numbers() += mapped(body.volume.lag);
+      if (inMean()) script.heldResidual.numbers() += mapped(body.volume.pressureRemainder);
     }
     ofBodies = ofBodies.cwiseProduct(mapped(body.free));
-    if (inMean()) mapped(body.volume.lag) = mapped(body.volume.lag).cwiseProduct(mapped(body.free));
+    if (inMean()) mapped(body.volume.pressureRemainder).array() *= mapped(body.free).array();
   }
   void evaluateContact() {
     const Timed timed(seconds(contacts));
@@ -229,18 +232,18 @@ class ImplicitStep {
     // The correction -A^-1 r at d and, with the history of iterations, the change of w.
     const Timed timed(seconds(solution));
     correction = -solved(residual);
-    if (!chained) {
+    if (!consecutive) {
       trial = d;                                 // w, with A^-1 B^T t if B is fixed
       if (contact.jacobianFixed && contact.script.force.numbers().lpNorm<Eigen::Infinity>() > 0)
         trial += solved(contact.script.force.numbers());
     }
     else if (!contact.jacobianFixed) trial = d;
-    if (inMean()) missing = script.pressureStar.numbers() - mapped(body.volume.now);
-    if (chained) history.learn(searchDirection, correction - correctionBefore,
-                               pressureMove + missing - missingBefore);
+    if (inMean()) pressureResidual = script.pressureStar.numbers() - mapped(body.volume.now);
+    if (consecutive) history.learn(searchDirection, correction - correctionBefore,
+                               pressureDirection + pressureResidual - pressureResidualBefore);
     correctionBefore = searchDirection = correction;
-    missingBefore = pressureMove = missing;
-    history.apply(correction, searchDirection, pressureMove);
+    pressureResidualBefore = pressureDirection = pressureResidual;
+    history.apply(correction, searchDirection, pressureDirection);
     // held unknowns have no residual; otherwise their round-off would grow
     searchDirection = searchDirection.cwiseProduct(mapped(body.free));
   }
@@ -252,29 +255,29 @@ class ImplicitStep {
 
   void lineSearch() {
     // Goes from dBack along searchDirection, halved at most six times, until the residual has not
-    // grown by more than a fifth. Sets d and chained.
+    // grown by more than a fifth. Sets d and consecutive.
     double scale = 1;
     const bool fresh = renewed > 0 && iterations == renewedAt;   // A was factorised at dBack
     const Eigen::Matrix<long, Eigen::Dynamic, 1> sticks = contact.script.sticks.numbers(),
       changes = contact.script.statusChanges.numbers();
     if (inMean()) pressureBack = mapped(body.volume.now);
-    chained = false;
+    consecutive = false;
     residualBefore = residualNow;
-    for (int cut = 0; cut < 7 && !chained; cut++) {
+    for (int cut = 0; cut < 7 && !consecutive; cut++) {
       // B and forces of the iterate, not of the try
       if (cut > 0 && !contact.jacobianFixed) returnTo(dBack, pressureBack);
       const Vector tried = trial + scale * searchDirection;
       if (inMean()) {
-        mapped(body.volume.carried) = pressureBack + scale * pressureMove;
+        mapped(body.volume.carried) = pressureBack + scale * pressureDirection;
         mapped(body.volume.dBase) = dBack;
       }
       project(tried);
       if (ended == bodies::fine) {
         evaluate();
         const bool falls = residualNow < 1.2 * std::min(residualBefore, residualFirst);
-        chained = ended == bodies::fine && (falls || (iterations == 0 && cut == 0));
+        consecutive = ended == bodies::fine && (falls || (iterations == 0 && cut == 0));
       }
-      if (chained) {
+      if (consecutive) {
         if (contact.jacobianFixed) trial = tried;
         break;
       }
@@ -284,10 +287,10 @@ class ImplicitStep {
       // an old matrix that inverts elements is replaced, not followed in small steps
       if (ended == bodies::inverted && cut > 0 && !fresh) break;
     }
-    if (!chained) return;
+    if (!consecutive) return;
     if (iterations == 0) residualFirst = residualNow;   // residuals must not creep up
     searchDirection *= scale;
-    pressureMove *= scale;
+    pressureDirection *= scale;
   }
 
   void project(const Vector &w) {
@@ -299,7 +302,7 @@ class ImplicitStep {
     const long ns = contact.ns();
     const Vector gapSlip = contact.gapSlip(w);
     Vector highest = contact.script.q0.numbers().cwiseMax(contact.script.q1.numbers()),
-      back = Vector::Zero(w.size());
+      contactDisplacement = Vector::Zero(w.size());
     if (highest.maxCoeff() <= 0) highest = gapSlip.head(ns);
     const bool last = work() < 1e3 * settings.tolerance * motion.energyScale;
     ended = bodies::fine;
@@ -308,29 +311,29 @@ class ImplicitStep {
       contact.update(highest, searchDistance / (contact.jacobianFixed ? 5 : 1));
       Vector force;
       if (!solveContact(w, gapSlip, last, force)) { ended = bodies::diverged;  return; }
-      factor.respond(contact.unknowns, force.data(), back.data());
-      highest = gapSlip.head(ns) - contact.move(back).head(ns);
+      factor.respond(contact.unknowns, force.data(), contactDisplacement.data());
+      highest = gapSlip.head(ns) - contact.move(contactDisplacement).head(ns);
       more = contact.penetrates(highest);
     }
     if (more) ended = bodies::diverged;
-    else setD(w - back);
+    else setD(w - contactDisplacement);
   }
   bool solveContact(const Vector &w, const Vector &gapSlip, bool last, Vector &force) {
     // Forces on the active unknowns for the trial state w; without those in w if B changes.
     const Vector acting = contact.script.force.numbers()(contact.unknowns);
-    Vector tau = contact.ofActive(contact.script.candidateForces.numbers()), start = gapSlip,
-      ahead = (w - d)(contact.unknowns);
+    Vector tau = contact.ofActive(contact.script.candidateForces.numbers()), freeGapSlip = gapSlip,
+      freeDisplacement = (w - d)(contact.unknowns);
     if (!contact.jacobianFixed) {                // w lacks the displacement A^-1 B^T t
       const Vector moved = contact.comply(acting);
-      ahead += moved;
-      start += contact.move(contact.onUnknowns(moved));
+      freeDisplacement += moved;
+      freeGapSlip += contact.move(contact.onUnknowns(moved));
     }
     const bool exact = tau.size() <= std::min(200L, 2L * long(contact.unknowns.size()) + 1);
     // the prediction's forces are less accurate
     if (contact.jacobianFixed && iterations == 0 && !exact) tau = contact.ofActive(contact.last);
     const double enough = exact ? 0
       : last ? 1e-10 * contact.script.force.numbers().norm() : 2e-3 * residual.norm();
-    if (contact.solve(start, ahead, enough, tau, force) < 0) return false;
+    if (contact.solve(freeGapSlip, freeDisplacement, enough, tau, force) < 0) return false;
     if (contact.jacobianFixed) contact.remember(tau); else force -= acting;
     return true;
   }
@@ -343,7 +346,7 @@ class ImplicitStep {
     // the last correction, quadratic. Both may vanish by chance, so the residual must not change
     // the momentum of any body, either. A residual that no longer halves is taken for round-off.
     const Vector moved = d - dBack;
-    if (inMean()) residual += mapped(body.volume.lag);
+    if (inMean()) residual += mapped(body.volume.pressureRemainder);
     lastResidual = work() / motion.energyScale;
     const double scale = 1e-2 * settings.tolerance * motion.energyScale;
     convergence = std::max(lastResidual / settings.tolerance,
@@ -352,7 +355,7 @@ class ImplicitStep {
     if (residualNow < residualBefore / 2 && off > motion.roundOff)
       convergence = std::max(convergence,
                              off * motion.dt / (settings.momentumShare * motion.momentumScale));
-    if (inMean()) residual -= mapped(body.volume.lag);
+    if (inMean()) residual -= mapped(body.volume.pressureRemainder);
   }
   double lostMomentum() const {                  // largest resultant of the residual on a body [N]
     Vector sum = Vector::Zero(translations.m);
@@ -368,34 +371,34 @@ class ImplicitStep {
     return false;
   }
   int accept() {
-    fewest = std::min(fewest, long(iterations));
-    surplusIterations += iterations - fewest;
+    fewestIterations = std::min(fewestIterations, long(iterations));
+    surplusIterations += iterations - fewestIterations;
     return bodies::fine;
   }
 
   long cost() const {                            // of a factorisation, in iterations
     return factor.renewalCost() > 0 ? factor.renewalCost() : settings.fallbackCost;
   }
-  bool wearsOut(double rate) const {
+  bool wearsOut(double contraction) const {
     // Whether to renew A, which then contracts to about a thirtieth.
     const int age = iterations - renewedAt;
-    const double saved = rate < 0.97
-      ? -std::log(convergence) * (1 / std::log(rate) + 1 / std::log(30.)) : 1000;
-    return !chained || settings.newMatrix || (saved > cost() && age >= (renewed > 0 ? 8 : 4))
+    const double saved = contraction < 0.97
+      ? -std::log(convergence) * (1 / std::log(contraction) + 1 / std::log(30.)) : 1000;
+    return !consecutive || settings.newMatrix || (saved > cost() && age >= (renewed > 0 ? 8 : 4))
       || age >= 40;
   }
   int renew() {
     // Factorises A anew, at the previous iterate if the line search failed. Returns fine, or why
     // the step fails.
     const int failed = std::max<int>(ended, bodies::diverged);
-    if (!chained) {
+    if (!consecutive) {
       returnTo(dBack, pressureBack);
       if (ended != bodies::fine || (iterations - renewedAt == 1 && renewed > 0)) return failed;
     }
     if ((renewed >= 12 && !settings.newMatrix) || !factorise()) return failed;
     renewed++;
     renewedAt = iterations;
-    chained = false;
+    consecutive = false;
     return bodies::fine;
   }
   bool factorise() {
@@ -411,13 +414,13 @@ class ImplicitStep {
       { const Timed timed(seconds(assembly));  assemble(); }
       const Timed timed(seconds(factorisation));
       script.counts[factorisations]++;
-      if (factor.factorise(contact.expected) != 0) continue;
-      if (inMean()) {                            // lag belonged to the previous A
-        residual += mapped(body.volume.lag);
-        mapped(body.volume.lag).setZero();
+      if (factor.factorise(contact.orderedLast) != 0) continue;
+      if (inMean()) {                            // pressureRemainder belonged to the previous A
+        residual += mapped(body.volume.pressureRemainder);
+        mapped(body.volume.pressureRemainder).setZero();
       }
       history.forget(d.size(), inMean() ? script.pressureStart.size() : 0);
-      fewest = 1000;
+      fewestIterations = 1000;
       surplusIterations = 0;
       return true;
     }
