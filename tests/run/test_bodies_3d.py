@@ -246,7 +246,7 @@ def test_three_numbers_of_obstacles():
     """Planes, spheres and hollow spheres with points and vectors [x, y, z], as in scene.dat."""
     scene = read(BALL, obstacles=[FLOOR | {"normal": [0, 2, 0], "velocity": [0, 1, 0]}, {"kind": "sphere", "centre": [0, -1, 0], "radius": 0.5}])
     lines = assembly.assemble(scene).data.splitlines()
-    assert "floor plane 6 0.0 -0.5 0.0 0.0 1.0 0.0 0.0 1.0 0.0" in lines and "obstacle2 sphere 4 0.0 -1.0 0.0 0.5 0.0 0.0 0.0" in lines
+    assert "floor plane 6 0.0 -0.5 0.0 0.0 1.0 0.0 0.0 1.0 0.0" in lines and "obstacle2 circle 4 0.0 -1.0 0.0 0.5 0.0 0.0 0.0" in lines
     with pytest.raises(BadInput, match=r"obstacle.1.kind: 'polyline' is not known.*accepted: plane.sphere.bowl"):
         read(BALL, obstacles=[{"kind": "polyline", "vertices": [[0, 0], [1, 1]]}])
 

@@ -13,7 +13,7 @@ from ..input.parameters import Value
 from ..output import vtu
 from ..output.results import Contents, body_names, mechanical_energy, suffixes
 from ..scenes import obstacles
-from ..scenes.obstacles import Obstacle
+from ..scenes.obstacles import Obstacle, Plane
 from .figures import (
     BAND,
     BLACK,
@@ -72,7 +72,7 @@ ACROSS = 3  # largest number of panels side by side
 # Of many bodies, titles and legends list this number of the first and of the last ones.
 NAMED = 6
 # The plane y = 0 of a scene with a single body.
-PLANE = Obstacle("plane", "plane", (0.0, 0.0, 0.0, 0.0, 1.0, 0.0), np.zeros(3))
+PLANE = Plane("plane", (0.0, 0.0, 0.0, 0.0, 1.0, 0.0), np.zeros(3))
 GRID = 200  # grid points along each side of a picture, at which the gap to obstacles is computed
 DOTS = (0, (1, 1.5))
 ABOVE = {

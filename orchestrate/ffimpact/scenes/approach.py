@@ -14,7 +14,6 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from ..failure import BadInput
-from ..geometry import polyline
 from ..geometry.outlines import Outline, Shape
 from ..input.dimension import PLANE_STRAIN
 from ..mesh import mesh
@@ -516,28 +515,8 @@ def _gates(
 
     if isinstance(other, Body):
         yield [(seen_from(other.position) ** 2).sum() - (reach + 1.01 * other.outline.reach) ** 2]
-    elif other.kind in ("implicit", "surface"):
-        yield []
-    elif other.kind == "polyline":
-        sides, reach = polyline.sides_of(other.numbers), reach + other.numbers[1]
-        for point, along, low, high in zip(sides.start, sides.along, sides.low, sides.high):
-            r = seen_from(point)
-            above, at = r @ np.array([-along[1], along[0]]), r @ along
-            yield [
-                above - reach,
-                -above - reach,
-                *([low - reach - at] if np.isfinite(low) else []),
-                *([at - high - reach] if np.isfinite(high) else []),
-            ]
     else:
-        axes = len(start)
-        r, more = seen_from(np.array(other.numbers[:axes])), other.numbers[axes:]
-        if other.kind == "plane":
-            yield [r @ np.array(more) - reach]
-        elif other.kind != "bowl":
-            yield [(r**2).sum() - (more[0] + reach) ** 2]
-        else:
-            yield [max(0.0, more[0] - reach) ** 2 - (r**2).sum()]
+        yield from other.regions(seen_from, reach)
 
 
 def _gap(first: Shape, second: Shape | Obstacle) -> float:

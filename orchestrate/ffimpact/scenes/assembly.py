@@ -684,9 +684,7 @@ def data_file(
     lines += [
         (
             obstacle.name,
-            "circle"
-            if obstacle.kind == "sphere" and scene.dimension is not SOLID
-            else obstacle.kind,
+            obstacle.kind,
             len(obstacle.numbers),
             *obstacle.numbers,
             *obstacle.velocity,

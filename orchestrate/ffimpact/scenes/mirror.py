@@ -5,7 +5,6 @@
 import numpy as np
 
 from ..failure import BadInput
-from ..geometry import implicit
 from ..input.dimension import SOLID
 from .bodies import Body
 from .obstacles import Obstacle
@@ -91,11 +90,4 @@ def _of_obstacle(obstacle: Obstacle, axis: int) -> bool:
         not obstacle.drive.translation[axis].is_zero or not obstacle.drive.turn.is_constant
     ):
         return True
-    if obstacle.kind == "surface":
-        return True
-    if obstacle.kind == "implicit":
-        return obstacle.velocity[axis] != 0 or not implicit.is_mirrored(
-            obstacle.numbers[2:], axis, 3
-        )
-    across = obstacle.numbers[3 + axis] if obstacle.kind == "plane" else obstacle.numbers[axis]
-    return across != 0 or obstacle.velocity[axis] != 0
+    return obstacle.velocity[axis] != 0 or not obstacle.is_mirrored(axis)

@@ -4,11 +4,14 @@
 Obstacles of a scene of revolution lie across the axis x = 0 or on it, or begin or end there.
 """
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from pathlib import Path
+from typing import Any, ClassVar
 
 import numpy as np
+from numpy.polynomial import Polynomial
 
 from ..failure import BadInput, gathered
 from ..geometry import implicit, polyline, time_functions, tumbling
@@ -19,24 +22,54 @@ from ..input.rules import Vector, placeholder
 from ..mesh import solids, surface_file
 from ..mesh.revolution import mirrored
 
-__all__ = ["Drive", "Obstacle", "read", "settled"]
+__all__ = ["Bowl", "Circle", "Drive", "Implicit", "KINDS", "Obstacle", "Plane", "Polyline", "Surface", "read", "settled"]
 
 DRIVE = ("motion", "rotation", "pivot", "axis")      # entries of an obstacle with a prescribed motion
 
 
 @dataclass(frozen=True)
 class Obstacle:
-    """One obstacle. `numbers` are those of the scripts: for a plane x y nx ny with a unit normal; for a
-    circle, sphere and concave sphere x y radius; for a polyline closed (1 or 0) rounding x1 y1 x2 y2
-    ..., for a surface of revolution with its mirror image; for an implicit obstacle the largest
-    gradient, the validity limit and the program (implicit.py), 1 and 1 before settled().
+    """One obstacle; the kinds are the classes below. `numbers` are those that the scripts read
+    (edp/core/contact/shapes.idp).
     """
 
     name: str
-    kind: str
     numbers: tuple[float, ...]
     velocity: np.ndarray
     drive: "Drive | None" = None
+
+    kind: ClassVar[str]                                  # in the scripts
+    is_exact: ClassVar[bool] = True                      # whether gap() is the distance at any distance
+
+    @classmethod
+    def numbers_of(cls, table: Any, dimension: Dimension, folder: Path) -> tuple[float, ...]:
+        """Returns the numbers of a table [[obstacle]]; files are relative to `folder`."""
+        raise NotImplementedError
+
+    def gap(self, points: np.ndarray) -> np.ndarray:
+        """Returns the signed distances (n,) [m] of points (n, axes) from the obstacle at the start,
+        negative inside.
+        """
+        raise NotImplementedError
+
+    def radius_at(self, point: np.ndarray, within: float) -> float:
+        """Returns the radius of curvature [m] of the surface where it is nearest to a point (axes,): 0
+        if a sharp corner is within `within` [m], infinity if the surface is flat or concave.
+        """
+        return np.inf
+
+    def is_mirrored(self, axis: int) -> bool:
+        """Whether the obstacle in space is its own mirror image at the plane of the origin normal to an
+        axis.
+        """
+        return self.numbers[axis] == 0
+
+    def regions(self, seen_from: Callable, reach: float) -> Iterator[list[Polynomial]]:
+        """Yields for each part of the surface a list of polynomials of time. All of a list are <= 0 while
+        a moving sphere of radius `reach` [m] is near that part. seen_from(point): the position
+        (axes,) of its centre relative to a point, of polynomials.
+        """
+        yield []
 
     @property
     def driven(self) -> bool:
@@ -51,65 +84,196 @@ class Obstacle:
         translation, when = farthest(self.drive.translation)
         return replace(self, velocity=translation / when if when > 0 else 0 * self.velocity)
 
-    def gap(self, points: np.ndarray) -> np.ndarray:
-        """Returns the signed distances (n,) [m] of points (n, axes) from the obstacle at the start,
-        negative inside.
-        """
-        if self.kind == "polyline":
-            return polyline.gap(points, self.numbers)
-        if self.kind == "implicit":
-            return implicit.gap(points, self.numbers)
-        if self.kind == "surface":
-            return self._surface.gap(points) - self.numbers[0]
-        axes = points.shape[1]
-        from_point = points - self.numbers[:axes]
-        if self.kind == "plane":
-            return from_point @ self.numbers[axes:]
-        outside = np.linalg.norm(from_point, axis=1) - self.numbers[axes]
-        return -outside if self.kind == "bowl" else outside
-
-    @cached_property
-    def _surface(self) -> solids.Shape:
-        """The surface of an obstacle from a file."""
-        points, triangles = _triangles(self.numbers)
-        return solids.surface(points[triangles])
-
     def gap_for_sizes(self, points: np.ndarray) -> np.ndarray:
         """Returns gaps for element sizes: like gap(), but to first order far from an implicit obstacle.
         """
-        return implicit.gap(points, self.numbers, bounds=False) if self.kind == "implicit" else self.gap(points)
-
-    @property
-    def is_exact(self) -> bool:
-        """Whether gap() is the distance at any distance."""
-        return self.kind != "implicit"
+        return self.gap(points)
 
     def gap_from(self, shape) -> float:
         """Returns the smallest gap [m] of the outline or surface of a body."""
-        return shape.least(self.gap) if self.is_exact else self.nearest(shape)[0]
+        return shape.least(self.gap)
+
+    def gap_in_plane(self, points: np.ndarray, t: float) -> np.ndarray:
+        """Returns the gaps (n,) [m] of points (n, 2) of the plane z = 0 at the time t [s]."""
+        whole = np.pad(points, [(0, 0), (0, len(self.velocity) - 2)])
+        return self.gap(self.drive.at_start(whole, t) if self.drive else whole - self.velocity * t)
+
+
+class Plane(Obstacle):
+    """The half-space below a plane. `numbers`: a point and the unit outward normal."""
+
+    kind = "plane"
+
+    @classmethod
+    def numbers_of(cls, table: models.Plane, dimension: Dimension, folder: Path) -> tuple[float, ...]:
+        for key in ("point", "normal"):
+            if key not in table:
+                raise BadInput(f"{table.at(key)}: is missing (accepted: {Vector().accepted_in(dimension)})")
+        point, normal = np.array(table.point), np.array(table.normal)
+        if not normal.any():
+            raise BadInput(f"{table.at('normal')}: '{table.value_text('normal')}' has no direction "
+                           f"(accepted: {placeholder(dimension.axes)} other than 0)")
+        if dimension is AXISYMMETRIC and normal[0] != 0:
+            raise BadInput(f"{table.at('normal')}: '{table.value_text('normal')}' is not along the axis of revolution "
+                           f"(accepted: [0, 1] or [0, -1])")
+        normal = normal / abs(normal).max()              # its squares do not underflow
+        return *map(float, point), *map(float, normal / np.linalg.norm(normal))
+
+    def gap(self, points: np.ndarray) -> np.ndarray:
+        axes = points.shape[1]
+        return (points - self.numbers[:axes]) @ self.numbers[axes:]
+
+    def is_mirrored(self, axis: int) -> bool:
+        return self.numbers[3 + axis] == 0
+
+    def regions(self, seen_from: Callable, reach: float) -> Iterator[list[Polynomial]]:
+        axes = len(self.velocity)
+        yield [seen_from(np.array(self.numbers[:axes])) @ np.array(self.numbers[axes:]) - reach]
+
+
+class Circle(Obstacle):
+    """A solid circle or sphere. `numbers`: centre and radius."""
+
+    kind = "circle"
+
+    @classmethod
+    def numbers_of(cls, table: Any, dimension: Dimension, folder: Path) -> tuple[float, ...]:
+        return *table.centre, table.radius
+
+    def gap(self, points: np.ndarray) -> np.ndarray:
+        axes = points.shape[1]
+        return np.linalg.norm(points - self.numbers[:axes], axis=1) - self.numbers[axes]
+
+    def radius_at(self, point: np.ndarray, within: float) -> float:
+        return self.numbers[-1]
+
+    def regions(self, seen_from: Callable, reach: float) -> Iterator[list[Polynomial]]:
+        centre, radius = np.array(self.numbers[:-1]), self.numbers[-1]
+        yield [(seen_from(centre) ** 2).sum() - (radius + reach) ** 2]
+
+
+class Bowl(Circle):
+    """The solid outside a circle or sphere."""
+
+    kind = "bowl"
+
+    def gap(self, points: np.ndarray) -> np.ndarray:
+        return -super().gap(points)
+
+    def radius_at(self, point: np.ndarray, within: float) -> float:
+        return np.inf
+
+    def regions(self, seen_from: Callable, reach: float) -> Iterator[list[Polynomial]]:
+        centre, radius = np.array(self.numbers[:-1]), self.numbers[-1]
+        yield [max(0.0, radius - reach) ** 2 - (seen_from(centre) ** 2).sum()]
+
+
+class Polyline(Obstacle):
+    """A chain of straight sides. `numbers`: closed (1 or 0), rounding, x y of each vertex; of a surface
+    of revolution with its mirror image.
+    """
+
+    kind = "polyline"
+
+    @classmethod
+    def numbers_of(cls, table: models.Polyline, dimension: Dimension, folder: Path) -> tuple[float, ...]:
+        closed, vertices = bool(table.closed), np.array(table.vertices)
+        if dimension is AXISYMMETRIC:
+            vertices, closed = mirrored(table.at("vertices"), vertices)
+        polyline.check(table.entry, vertices, closed)
+        return polyline.numbers(vertices, closed, table.rounding or 0.0)
+
+    def gap(self, points: np.ndarray) -> np.ndarray:
+        return polyline.gap(points, self.numbers)
+
+    def radius_at(self, point: np.ndarray, within: float) -> float:
+        return polyline.radius_at(point, within, self.numbers)
+
+    def regions(self, seen_from: Callable, reach: float) -> Iterator[list[Polynomial]]:
+        sides, near = polyline.sides_of(self.numbers), reach + self.numbers[1]
+        for point, along, low, high in zip(sides.start, sides.along, sides.low, sides.high):
+            r = seen_from(point)
+            above, at = r @ np.array([-along[1], along[0]]), r @ along
+            yield [above - near, -above - near,
+                   *([low - near - at] if np.isfinite(low) else []),
+                   *([at - high - near] if np.isfinite(high) else [])]
+
+
+class Implicit(Obstacle):
+    """The surface D(x) = 0. `numbers`: the largest gradient, the validity limit and the program of D
+    (implicit.py); 1 and 1 before settled().
+    """
+
+    kind = "implicit"
+    is_exact = False
+
+    @classmethod
+    def numbers_of(cls, table: models.Implicit, dimension: Dimension, folder: Path) -> tuple[float, ...]:
+        code = implicit.program(table.at("distance"), table.distance, "xyz"[:dimension.axes])
+        if dimension is AXISYMMETRIC and not implicit.is_mirrored(code, 0, 2):
+            raise BadInput(f"{table.at('distance')}: '{table.value_text('distance')}' is not the same for x and -x, "
+                           f"as of revolution (accepted: with x^2 or abs(x))")
+        return 1.0, 1.0, *code
+
+    def gap(self, points: np.ndarray) -> np.ndarray:
+        return implicit.gap(points, self.numbers)
+
+    def gap_for_sizes(self, points: np.ndarray) -> np.ndarray:
+        return implicit.gap(points, self.numbers, bounds=False)
+
+    def gap_from(self, shape) -> float:
+        return self.nearest(shape)[0]
 
     def nearest(self, shape) -> tuple[float, np.ndarray]:
-        """Returns the smallest gap [m] of a body from an implicit obstacle and the outward normal there.
-        The gap is that of the points of the body, or of its whole circle or sphere.
+        """Returns the smallest gap [m] of a body and the outward normal there. The gap is that of the
+        points of the body, or of its whole circle or sphere.
         """
         gaps, (_, limit, *code) = self.gap(shape.points), self.numbers
         with np.errstate(all="ignore"):
             return implicit.nearest(shape.points[gaps.argmin()], gaps.min(), code, limit, shape.disc)
 
     def radius_at(self, point: np.ndarray, within: float) -> float:
-        """Returns the radius of curvature [m] of the surface where it is nearest to a point (axes,): 0
-        if a sharp corner is within `within` [m], infinity if the surface is flat or concave.
-        """
-        if self.kind == "polyline":
-            return polyline.radius_at(point, within, self.numbers)
-        if self.kind == "implicit":
-            return implicit.radius_at(point, self.numbers)
-        return self.numbers[len(point)] if self.kind in ("circle", "sphere") else np.inf
+        return implicit.radius_at(point, self.numbers)
 
-    def gap_in_plane(self, points: np.ndarray, t: float) -> np.ndarray:
-        """Returns the gaps (n,) [m] of points (n, 2) of the plane z = 0 at the time t [s]."""
-        whole = np.pad(points, [(0, 0), (0, len(self.velocity) - 2)])
-        return self.gap(self.drive.at_start(whole, t) if self.drive else whole - self.velocity * t)
+    def is_mirrored(self, axis: int) -> bool:
+        return implicit.is_mirrored(self.numbers[2:], axis, 3)
+
+
+class Surface(Obstacle):
+    """A closed triangle mesh in space. `numbers`: rounding, numbers of vertices and triangles, x y z of
+    each vertex, the vertices of each triangle.
+    """
+
+    kind = "surface"
+
+    @classmethod
+    def numbers_of(cls, table: models.Surface, dimension: Dimension, folder: Path) -> tuple[float, ...]:
+        """The surface of a file, rotated about the origin of the file and then moved."""
+        try:
+            points, triangles = surface_file.read(folder / table.file)
+        except BadInput as error:
+            raise BadInput(f"{table.at('file')}: {error}") from None
+        turn = np.radians(table.turn or [0.0, 0.0, 0.0])
+        points = (table.scale or 1.0) * points @ tumbling.rotation(turn).T + np.array(table.position or [0.0, 0.0, 0.0])
+        return (table.rounding or 0.0, float(len(points)), float(len(triangles)), *points.ravel().tolist(),
+                *map(float, triangles.ravel()))
+
+    @cached_property
+    def _surface(self) -> solids.Shape:
+        count, faces = int(self.numbers[1]), int(self.numbers[2])
+        data = np.array(self.numbers[3:])
+        points, triangles = data[:3 * count].reshape(-1, 3), data[3 * count:].astype(int).reshape(faces, 3)
+        return solids.surface(points[triangles])
+
+    def gap(self, points: np.ndarray) -> np.ndarray:
+        return self._surface.gap(points) - self.numbers[0]
+
+    def is_mirrored(self, axis: int) -> bool:
+        return False
+
+
+KINDS: dict[str, type[Obstacle]] = {
+    "sphere": Circle, **{kind.kind: kind for kind in (Plane, Circle, Bowl, Polyline, Implicit, Surface)}}
 
 
 @dataclass(frozen=True)
@@ -150,14 +314,13 @@ def settled(obstacles: list[Obstacle], centre: np.ndarray, half: float) -> list[
     `centre` of half size `half` [m], in which the bodies lie.
     """
     return [replace(obstacle, numbers=implicit.settled(f"obstacle.{k}", obstacle.numbers[2:], centre, half))
-            if obstacle.kind == "implicit" else obstacle for k, obstacle in enumerate(obstacles, 1)]
+            if isinstance(obstacle, Implicit) else obstacle for k, obstacle in enumerate(obstacles, 1)]
 
 
 def _obstacle(table: models.Obstacle, dimension: Dimension, end_time: float, folder: Path) -> Obstacle:
-    shape = {"plane": _plane, "polyline": _polyline, "implicit": _implicit,
-             "surface": partial(_surface, folder=folder)}.get(table.kind, _circle)
-    return Obstacle(table.name or table.entry.replace(".", ""), table.kind, shape(table, dimension),
-                    np.array(table.velocity or [0.0] * dimension.axes), _drive(table, dimension, end_time))
+    kind = KINDS[table.kind]
+    return kind(table.name or table.entry.replace(".", ""), kind.numbers_of(table, dimension, folder),
+                np.array(table.velocity or [0.0] * dimension.axes), _drive(table, dimension, end_time))
 
 
 def _drive(table: models.Obstacle, dimension: Dimension, end_time: float) -> Drive | None:
@@ -186,58 +349,3 @@ def _drive(table: models.Obstacle, dimension: Dimension, end_time: float) -> Dri
     centre = (getattr(table, "centre", None) or getattr(table, "point", None)
               or [0.0] * dimension.axes)
     return Drive(translation, turn, np.array(table.pivot or centre), axis / np.linalg.norm(axis))
-
-
-def _plane(table: models.Plane, dimension: Dimension) -> tuple[float, ...]:
-    for key in ("point", "normal"):
-        if key not in table:
-            raise BadInput(f"{table.at(key)}: is missing (accepted: {Vector().accepted_in(dimension)})")
-    point, normal = np.array(table.point), np.array(table.normal)
-    if not normal.any():
-        raise BadInput(f"{table.at('normal')}: '{table.value_text('normal')}' has no direction (accepted: {placeholder(dimension.axes)} "
-                       f"other than 0)")
-    if dimension is AXISYMMETRIC and normal[0] != 0:
-        raise BadInput(f"{table.at('normal')}: '{table.value_text('normal')}' is not along the axis of revolution (accepted: [0, 1] or "
-                       f"[0, -1])")
-    normal = normal / abs(normal).max()                    # its squares do not underflow
-    return *map(float, point), *map(float, normal / np.linalg.norm(normal))
-
-
-def _surface(table: models.Surface, dimension: Dimension, folder: Path) -> tuple[float, ...]:
-    """Returns the numbers of the surface of a file, rotated about the origin of the file and then
-    moved.
-    """
-    try:
-        points, triangles = surface_file.read(folder / table.file)
-    except BadInput as error:
-        raise BadInput(f"{table.at('file')}: {error}") from None
-    turn = np.radians(table.turn or [0.0, 0.0, 0.0])
-    points = (table.scale or 1.0) * points @ tumbling.rotation(turn).T + np.array(table.position or [0.0, 0.0, 0.0])
-    return table.rounding or 0.0, float(len(points)), float(len(triangles)), *points.ravel().tolist(), *map(float, triangles.ravel())
-
-
-def _triangles(numbers: tuple[float, ...]) -> tuple[np.ndarray, np.ndarray]:
-    """Returns the vertices (n, 3) and triangles (t, 3) of the numbers of a surface."""
-    points, faces = int(numbers[1]), int(numbers[2])
-    data = np.array(numbers[3:])
-    return data[:3 * points].reshape(-1, 3), data[3 * points:3 * (points + faces)].astype(int).reshape(-1, 3)
-
-
-def _circle(table: models.Circle | models.Sphere | models.Bowl, dimension: Dimension) -> tuple[float, ...]:
-    return *table.centre, table.radius
-
-
-def _implicit(table: models.Implicit, dimension: Dimension) -> tuple[float, ...]:
-    code = implicit.program(table.at("distance"), table.distance, "xyz"[:dimension.axes])
-    if dimension is AXISYMMETRIC and not implicit.is_mirrored(code, 0, 2):
-        raise BadInput(f"{table.at('distance')}: '{table.value_text('distance')}' is not the same for x and -x, as of revolution "
-                       f"(accepted: with x^2 or abs(x))")
-    return 1.0, 1.0, *code
-
-
-def _polyline(table: models.Polyline, dimension: Dimension) -> tuple[float, ...]:
-    closed, vertices = bool(table.closed), np.array(table.vertices)
-    if dimension is AXISYMMETRIC:
-        vertices, closed = mirrored(table.at("vertices"), vertices)
-    polyline.check(table.entry, vertices, closed)
-    return polyline.numbers(vertices, closed, table.rounding or 0.0)
