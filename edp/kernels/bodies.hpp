@@ -40,7 +40,9 @@ template<int dimensions, int revolves> struct Stored {
 
 // How an evaluation ended, as stepStatus of residual.idp.
 enum { fine = 0, diverged = 1, inverted = 2, notANumber = 3 };
-enum { stepMean = 0, stepMiddle = 1, stepEnd = 2 };   // where in the step, as in normal.idp
+using tensors::stepMean;
+using tensors::stepMiddle;
+using tensors::stepEnd;
 
 const int mostNodes = 10, mostPoints = 8;  // of an element; 10 nodes: quadratic tetrahedron
 
@@ -49,7 +51,7 @@ struct Deformation { double *F0, *C0, *F1, *C1, *jacobian1, *Fs, *Ss; };
 
 // rate: 1/dt, 0 if no body is damped. breaks: det F <= 0 ends the step. carries: element pressures
 // are carried from iterate to iterate, and the residual is the condensed one (volume.idp).
-struct Step { double massScale, rate;  int lawInstant;  bool breaks, carries; };
+struct Step { double massScale, rate;  int stressInstant;  bool breaks, carries; };
 
 // Arrays of volume.idp over elements as numbered there: p* = star; the pressures p as they are
 // carried into an iteration and now. Over unknowns: the increment dBase from which they were
@@ -174,7 +176,9 @@ public:
     int ended = fine;
     nodal.resize(nodes * D);
     for (int i = 0; i < nodes * D; i++) nodal[i] = d[unknown[i]];
-    dispatch([&](auto stored) { ended = this->template innerForces<decltype(stored)>(step, at); });
+    dispatch([&](auto stored) {
+      ended = this->template internalForces<decltype(stored)>(step, at);
+    });
     if (ended != fine) return ended;
     if (step.carries)
       for (int i = 0; i < nodes * D; i++) volume.pressureRemainder[unknown[i]] = remainders[i];
@@ -229,7 +233,7 @@ public:
       put<T>(A, q, damping);
     });
   }
-  void lawStresses(const double *C, double *S) const {   // (4) at C
+  void lawStresses(const double *C, double *S) const {   // S of the laws at C
     atPoints([&](auto stored, int q) {
       typedef decltype(stored) T;
       put<T>(material(q).law->stress(material(q), symmetric<T>(C, q)), q, S);
@@ -310,7 +314,7 @@ private:
     for (int k = 0; k < T::C; k++) stacked[k * nq + q] = A[T::symmetric(k)];
   }
 
-  template<class T> int innerForces(const Step &step, const Deformation &at) {
+  template<class T> int internalForces(const Step &step, const Deformation &at) {
     // pull = internal forces, and remainders. Element contributions are summed in the order of the
     // elements, so the result does not depend on the number of threads.
     const int elements = int(firstNode.size()) - 1;
@@ -323,8 +327,8 @@ private:
     #pragma omp parallel for
     for (int g = 0; g < elements; g++) {
       if (nodesOf(g) == 0) continue;       // points of rigid bodies that have no weight
-      stretched<T>(g, step, at);
-      stressed<T>(g, step, at);
+      deformElement<T>(g, step, at);
+      elementForces<T>(g, step, at);
     }
     const double smallest = least(at.jacobian1);
     if (smallest != smallest) return notANumber;
@@ -360,7 +364,7 @@ private:
     return smallest;
   }
 
-  template<class T> void stretched(size_t g, const Step &step, const Deformation &at) const {
+  template<class T> void deformElement(size_t g, const Step &step, const Deformation &at) const {
     // At the points of element g: F1 = F0 + G d, Fs at the middle or end of the step, det F1.
     const int n = nodesOf(g), D = T::D;
     const double *N = &shape[firstShape[g]];
@@ -377,36 +381,36 @@ private:
       for (int k = 0; k < T::F; k++) {
         const double before = at.F0[k * nq + q], after = before + dF[k];
         at.F1[k * nq + q] = after;
-        at.Fs[k * nq + q] = step.lawInstant == stepEnd ? after : before + 0.5 * dF[k];
+        at.Fs[k * nq + q] = step.stressInstant == stepEnd ? after : before + 0.5 * dF[k];
       }
       at.jacobian1[q] = whole<T>(at.F1, q).determinant();
     }
   }
 
-  template<class T> void pulled(int q, int n, const double *N, const Tensor &F,
+  template<class T> void addPointForces(int q, int n, const double *N, const Tensor &F,
                                 const Symmetric &S, double *force) const {
     // force += G^T (w F S): forces on the n nodes, with shapes N, of the stress S at point q.
-    const Tensor P = weight[q] * F * laws::full(S);   // (2), (3): P = F S
+    const Tensor weightedP = weight[q] * F * laws::full(S);   // (2), (3): P = F S
     for (int a = 0; a < n; a++, N += T::derivatives) {
       for (int i = 0; i < T::D; i++)
-        for (int J = 0; J < T::D; J++) force[a * T::D + i] += N[J] * P(i, J);
-      if (T::H) force[a * T::D] += N[T::D] * P(2, 2);
+        for (int J = 0; J < T::D; J++) force[a * T::D + i] += N[J] * weightedP(i, J);
+      if (T::H) force[a * T::D] += N[T::D] * weightedP(2, 2);
     }
   }
 
-  template<class T> void stressed(size_t g, const Step &step, const Deformation &at) {
+  template<class T> void elementForces(size_t g, const Step &step, const Deformation &at) {
     // At the points of element g: C1, Ss; and the forces G^T (w Fs Ss) of the element.
     const int n = nodesOf(g);
     const double *N = &shape[firstShape[g]];
     double *force = &own[size_t(firstNode[g]) * D];
     Pressed pressed;
-    if (!cell.empty()) press<T>(g, step, at, pressed);
+    if (!cell.empty()) elementPressure<T>(g, step, at, pressed);
     for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++, N += n * T::derivatives) {
       const laws::Material &m = material(q);
       const Symmetric C0 = symmetric<T>(at.C0, q),
-        C1 = laws::rightCauchyGreen(whole<T>(step.lawInstant == stepMiddle ? at.Fs : at.F1, q));
-      Symmetric S = step.lawInstant == stepMean ? m.law->algorithmicStress(m, C0, C1)
-        : m.law->stress(m, C1);
+        C1 = laws::rightCauchyGreen(whole<T>(step.stressInstant == stepMiddle ? at.Fs : at.F1, q));
+      Symmetric S = step.stressInstant == stepMean ? m.law->algorithmicStress(m, C0, C1)
+        : m.law->stress(m, C1);            // (4): S = g(E)
       if (step.rate > 0) {
         const Symmetric A = m.relaxing > 0 ? symmetric<T>(damping, q) : laws::identity;
         S += laws::dampingStress(m, C0, laws::rightCauchyGreen(whole<T>(at.F1, q)), A, step.rate);
@@ -414,14 +418,14 @@ private:
       if (!cell.empty()) S += pressed.p * pressed.T[q - firstPoint[g]];
       put<T>(C1, q, at.C1);
       put<T>(S, q, at.Ss);
-      pulled<T>(q, n, N, whole<T>(at.Fs, q), S, force);
+      addPointForces<T>(q, n, N, whole<T>(at.Fs, q), S, force);
     }
     if (step.carries) addPressureForces<T>(g, at, pressed, force);
   }
 
   // Volume term of an element (volume.idp): pressure p, p* - p, and T = 2 dj/dC at its points.
   struct Pressed { double p, rest;  Symmetric T[mostPoints]; };
-  template<class T> void press(size_t g, const Step &step, const Deformation &at,
+  template<class T> void elementPressure(size_t g, const Step &step, const Deformation &at,
                                Pressed &pressed) {
     // p* from the mean volume measures theta0, theta1 at both ends of the step; p is p*, or, if it
     // is carried, carried + slope g0.(d - dBase). Incompressible: p* = p + kappa/2 (theta1 - 1).
@@ -429,11 +433,11 @@ private:
     double theta0 = 0, theta1 = 0;
     for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++) {
       const Symmetric C1 =
-        laws::rightCauchyGreen(whole<T>(step.lawInstant == stepMiddle ? at.Fs : at.F1, q));
+        laws::rightCauchyGreen(whole<T>(step.stressInstant == stepMiddle ? at.Fs : at.F1, q));
       const double w = weight[q] / elementWeight[g], j = laws::volume(m, C1);
       Symmetric &to = pressed.T[q - firstPoint[g]];
       theta1 += w * j;
-      if (step.lawInstant == stepMean) {
+      if (step.stressInstant == stepMean) {
         const Symmetric C0 = symmetric<T>(at.C0, q);
         const double j0 = laws::volume(m, C0);
         to = laws::volumeDirection(m, C0, C1, j0 + j);
@@ -441,14 +445,15 @@ private:
       }
       else to = laws::volumeDirection(m, C1, j);
     }
-    double star = step.lawInstant == stepMean ? laws::pressure(m, theta0, theta1)
+    double star = step.stressInstant == stepMean ? laws::pressure(m, theta0, theta1)
       : laws::pressure(m, theta1);
     pressed.p = star;
     if (step.carries) {
       pressed.p = volume.carried[cell[g]];
       if (slopeKnown) pressed.p += slope[g] * alongG0(g);
     }
-    if (m.incompressible) star = pressed.p + m.bulk / 2 * (theta1 - 1);
+    if (m.incompressible)
+      star = pressed.p + m.bulk / 2 * (theta1 - 1);   // (6): J = 1
     pressed.rest = star - pressed.p;
     volume.star[cell[g]] = star;
     volume.now[cell[g]] = pressed.p;
@@ -468,7 +473,8 @@ private:
     const double *N = &shape[firstShape[g]];
     double all[mostNodes * T::D] = {};
     for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++, N += n * T::derivatives)
-      pulled<T>(q, n, N, whole<T>(at.Fs, q), pressed.rest * pressed.T[q - firstPoint[g]], all);
+      addPointForces<T>(q, n, N, whole<T>(at.Fs, q), pressed.rest * pressed.T[q - firstPoint[g]],
+                        all);
     for (int i = 0; i < n * D; i++) {
       const double along = slopeKnown ? pressed.rest * g0[size_t(firstNode[g]) * D + i] : all[i];
       force[i] += along;
@@ -540,7 +546,7 @@ private:
       const Symmetric C = laws::rightCauchyGreen(f);
       const double j = laws::volume(m, C);
       theta += weight[q] * j / elementWeight[g];
-      pulled<T>(q, n, N, f, laws::volumeDirection(m, C, j), ownG0);
+      addPointForces<T>(q, n, N, f, laws::volumeDirection(m, C, j), ownG0);
       N += n * T::derivatives;
     }
     slope[g] = scale * laws::pressureSlope(m, theta) / elementWeight[g];

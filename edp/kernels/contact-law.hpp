@@ -1,18 +1,21 @@
 // contact-law.hpp: forces on one contact point in a step and their derivatives: the normal force
 // (10) and, with friction, the tangential force (11)-(13). Scripted in core/contact/normal.idp,
-// friction.idp and candidate-forces.idp, which define the symbols. Exports Law, Point and Forces.
+// friction.idp and candidate-forces.idp, which define the symbols. Exports Law, Candidate, Forces.
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include "tensors.hpp"
 
 namespace contact {
 
-enum Place { stepMean, stepMiddle, stepEnd };   // where in the step the normal law is evaluated
+using tensors::stepMean;
+using tensors::stepMiddle;
+using tensors::stepEnd;
 enum Regularization { linear, linearPrinted, sqrtOf, tanhOf };
 
 // A contact candidate: penetration at the start of the step [m], stiffness, coefficients of
 // friction, stick or slip status.
-struct Point { double vN0, k, muStatic, muDynamic; bool sticks; };
+struct Candidate { double vN0, k, muStatic, muDynamic; bool sticks; };
 struct Forces { double t[3], slope[3][3]; };    // (t_N, -t_T) and d/d(penetration, slip)
 
 // m, epsilon [m/s], the share of epsilon that is a ramp, the step [s]; jumps: mu_f changes by a
@@ -31,30 +34,30 @@ struct Law {
     if (lawInstant == stepMean) {
       if (!(vN0 > 0 || vN1 > 0)) return;
       const bool stays = std::min(vN0, vN1) > 0, moves = std::abs(vN1 - vN0) > 0.02 * (vN0 + vN1);
-      const double turn = (vN1 - vN0) / (vN0 + vN1), turn2 = turn * turn;
+      const double r = (vN1 - vN0) / (vN0 + vN1), r2 = r * r;
       if (!stays) t = k * (std::pow(std::max(vN0, vN1), m + 1) / (m + 1) / std::abs(vN1 - vN0));
-      else if (m == 1) t = k * middle;
+      else if (m == 1) t = k * middle;     // (10): t_N = k v_N^m, its mean over the step
       else if (moves)
         t = k * ((std::pow(vN1, m + 1) - std::pow(vN0, m + 1)) / (m + 1) / (vN1 - vN0));
       else t = k * (std::pow(middle, m)
-        * (1 + m * (m - 1) / 6 * turn2 * (1 + (m - 2) * (m - 3) / 20 * turn2
-          * (1 + (m - 4) * (m - 5) / 42 * turn2))));
+        * (1 + m * (m - 1) / 6 * r2 * (1 + (m - 2) * (m - 3) / 20 * r2
+          * (1 + (m - 4) * (m - 5) / 42 * r2))));
       if (stays && m == 1) stiff = k / 2;
       else if (!stays || moves) stiff = ((vN1 > 0 ? k * std::pow(vN1, m) : 0) - t) / (vN1 - vN0);
-      else stiff = k * m / 2 * std::pow(middle, m - 1) * (1 + (m - 1) / 3 * turn);
+      else stiff = k * m / 2 * std::pow(middle, m - 1) * (1 + (m - 1) / 3 * r);
     }
     if (lawInstant == stepMiddle && middle > 0) {
       t = k * std::pow(middle, m);
       stiff = k * m / 2 * std::pow(middle, m - 1);
     }
     if (lawInstant == stepEnd && vN1 > 0) {
-      t = k * std::pow(vN1, m);   // (10): t_N = k v_N^m where v_N > 0
+      t = k * std::pow(vN1, m);
       stiff = k * m * std::pow(vN1, m - 1);
     }
   }
 
-  void muPhiAt(double v, const Point &a, double &muPhi, double &slope) const {
-    // mu_f phi [-] (11), (13) and its derivative [s/m] at the velocity v [m/s]. With a jump, either
+  void muPhiAt(double v, const Candidate &a, double &muPhi, double &slope) const {
+    // mu_f phi [-] (12), (13) and its derivative [s/m] at the velocity v [m/s]. With a jump, either
     // status is continued beyond epsilon (friction.idp).
     const double pi = 3.14159265358979323846, vOverEps = std::abs(v) / slipVelocity,
       low = a.muStatic * (1 - bridge) / 2, rise = (a.muDynamic - low) / bridge;
@@ -94,7 +97,7 @@ struct Law {
     slope /= slipVelocity;
   }
 
-  void muPhiVector(const double *v, const Point &a, double *muPhi, double slope[2][2]) const {
+  void muPhiVector(const double *v, const Candidate &a, double *muPhi, double slope[2][2]) const {
     // The vector mu_f phi(|v|) e, e = v/|v|, of `slips` components, and its derivative
     // (mu_f phi)' e e^T + mu_f phi/|v| (I - e e^T). A negative (mu_f phi)' counts as 0 in space.
     if (slips == 1) return muPhiAt(v[0], a, muPhi[0], slope[0][0]);
@@ -109,19 +112,19 @@ struct Law {
       slope[i][j] = (i == j ? across : 0) + more * e[i] * e[j];
   }
 
-  void at(const Point &a, const double *x, const double *linearisedAt, Forces &f) const {
+  void at(const Candidate &a, const double *x, const double *linearisedAt, Forces &f) const {
     // Forces on a point with the penetration x[0] at the end of the step and the slip x[1], x[2] in
     // it. If the velocity linearisedAt is not null, mu_f phi is linearised there.
     normal(a.vN0, x[0], a.k, f.t[0], f.slope[0][0]);
     if (slips == 0) return;
     double v[2], muPhi[2], slope[2][2];
     for (int i = 0; i < slips; i++) v[i] = x[1 + i] / dt;
-    const double *lawInstant = linearisedAt ? linearisedAt : v;
-    muPhiVector(lawInstant, a, muPhi, slope);
+    const double *vOfLaw = linearisedAt ? linearisedAt : v;
+    muPhiVector(vOfLaw, a, muPhi, slope);
     for (int i = 0; i < slips; i++) for (int j = 0; j < slips && linearisedAt; j++)
-      muPhi[i] += slope[i][j] * (v[j] - lawInstant[j]);
+      muPhi[i] += slope[i][j] * (v[j] - vOfLaw[j]);
     for (int i = 0; i < slips; i++) {
-      f.t[1 + i] = muPhi[i] * f.t[0];   // (11), (12): -t_T = mu_f phi(v_T) |t_N|
+      f.t[1 + i] = muPhi[i] * f.t[0];   // (11), (12): t_T = -mu_f phi(v_T) |t_N|
       f.slope[1 + i][0] = muPhi[i] * f.slope[0][0];
       f.slope[0][1 + i] = 0;
       for (int j = 0; j < slips; j++) f.slope[1 + i][1 + j] = slope[i][j] * f.t[0] / dt;

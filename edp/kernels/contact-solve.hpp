@@ -67,15 +67,15 @@ inline void symmetric(const Eigen::VectorXf &A, const Vector &x, Vector &y) {
   y = to.cast<double>();
 }
 
-// The gap Jacobian B on n unknowns: a block of `kinds` rows for each active candidate, then a block
+// The gap Jacobian B on n unknowns: a block of gapRows rows for each active candidate, then a block
 // for each term of geometric contact stiffness, of which only the first row is used. A block is
 // called a point.
 struct Rows {
-  int n = 0, points = 0, kinds = 1;              // points: without the geometric terms
+  int n = 0, points = 0, gapRows = 1;              // points: without the geometric terms
   Indices first{0}, column, owner;               // point b has the entries first[b] to
                                                  // first[b + 1] - 1; unknown and point of an entry
   std::vector<double> value;
-  Vector geometric;                       // kinds values an entry; stiffness c of the terms
+  Vector geometric;                       // gapRows values an entry; stiffness c of the terms
   // Sparsity pattern of K and the diagonal for B with the entries `first`, `column`: by columns in
   // start and row; `place` of each contribution of stiffness(); UMFPACK's symbolic factorisation.
   struct Pattern { Indices first, column, start, row, place;  std::shared_ptr<void> symbolic; };
@@ -88,7 +88,7 @@ struct Rows {
     const std::shared_ptr<const Pattern> patternBefore = pattern;
     *this = Rows();
     n = unknowns;
-    kinds = kindsOfPoint;
+    gapRows = kindsOfPoint;
     pattern = patternBefore;
   }
   void entry(int j, int kind, double v) {
@@ -97,9 +97,9 @@ struct Rows {
     if (e == (int)column.size()) {
       column.push_back(j);
       owner.push_back(blocks());
-      value.resize(value.size() + kinds, 0.);
+      value.resize(value.size() + gapRows, 0.);
     }
-    value[kinds * e + kind] += v;
+    value[gapRows * e + kind] += v;
   }
   void endPoint() { first.push_back(column.size()); }
   void end(const Vector &geometricTerms) {
@@ -109,38 +109,38 @@ struct Rows {
   void push(const Vector &t, Vector &force) const {   // force = B^T t
     force = Vector::Zero(n);
     for (size_t e = 0; e < column.size(); e++)
-      for (int c = 0; c < kinds; c++)
-        force[column[e]] += value[kinds * e + c] * t[kinds * owner[e] + c];
+      for (int c = 0; c < gapRows; c++)
+        force[column[e]] += value[gapRows * e + c] * t[gapRows * owner[e] + c];
   }
   void pull(const Vector &increment, Vector &move) const {   // move = B increment
-    move = Vector::Zero(kinds * blocks());
+    move = Vector::Zero(gapRows * blocks());
     for (size_t e = 0; e < column.size(); e++)
-      for (int c = 0; c < kinds; c++)
-        move[kinds * owner[e] + c] += value[kinds * e + c] * increment[column[e]];
+      for (int c = 0; c < gapRows; c++)
+        move[gapRows * owner[e] + c] += value[gapRows * e + c] * increment[column[e]];
   }
   void slope(const Vector &D, const Vector &move, Vector &change) const {
-    // change = D move; D has a kinds x kinds block for each point
+    // change = D move; D has a gapRows x gapRows block for each point
     change = Vector::Zero(move.size());
     for (int b = 0; b < blocks(); b++)
-      for (int i = 0; i < kinds; i++)
-        for (int j = 0; j < kinds; j++)
-          change[kinds * b + i] += D[kinds * (kinds * b + i) + j] * move[kinds * b + j];
+      for (int i = 0; i < gapRows; i++)
+        for (int j = 0; j < gapRows; j++)
+          change[gapRows * b + i] += D[gapRows * (gapRows * b + i) + j] * move[gapRows * b + j];
   }
   template <class Function> void stiffness(const Vector &D, Function add) const {
     // K = B^T D B: calls add(t, i, j, v) for each contribution v to K_ij, t their running number.
     for (int b = 0, t = 0; b < blocks(); b++) {
-      const double *slopes = &D[kinds * kinds * b];
-      if (std::all_of(slopes, slopes + kinds * kinds, [](double d) { return d == 0; })) {
+      const double *slopes = &D[gapRows * gapRows * b];
+      if (std::all_of(slopes, slopes + gapRows * gapRows, [](double d) { return d == 0; })) {
         t += entries(b) * entries(b);
         continue;
       }
       for (int e = first[b]; e < first[b + 1]; e++) {
         double increment[3] = {}, *to = increment;   // column of D B
-        for (int i = 0; i < kinds; i++, to++)
-          for (int c = 0; c < kinds; c++) *to += slopes[kinds * i + c] * value[kinds * e + c];
+        for (int i = 0; i < gapRows; i++, to++)
+          for (int c = 0; c < gapRows; c++) *to += slopes[gapRows * i + c] * value[gapRows * e + c];
         for (int o = first[b]; o < first[b + 1]; o++, t++) {
           double sum = 0;
-          for (int i = 0; i < kinds; i++) sum += value[kinds * o + i] * increment[i];
+          for (int i = 0; i < gapRows; i++) sum += value[gapRows * o + i] * increment[i];
           add(t, column[o], column[e], sum);
         }
       }
@@ -179,7 +179,7 @@ class Newton {
  public:
   int mostDense = 200, mostIterations = 5;       // P is renewed if the last solve took more
   bool made = false;
-  Vector D;                                      // of the matrix, kinds x kinds for each point
+  Vector D;                                      // of the matrix, gapRows x gapRows for each point
   void forget() { made = false;  numeric.reset(); }
   void stiffen(const Vector &C, Vector &S) {
     // S = C^-1, full. For iterations it is only made in single precision, and S stays empty, if
@@ -193,7 +193,7 @@ class Newton {
     rounded = S.cast<float>();
   }
   bool fits(const Rows &B) const {
-    return made && n == B.n && D.size() == B.blocks() * B.kinds * B.kinds;
+    return made && n == B.n && D.size() == B.blocks() * B.gapRows * B.gapRows;
   }
 
   void make(Rows &B, const Vector &slopes, const Vector &S) {
@@ -293,7 +293,7 @@ class Problem {
   Rows B;
   Newton newton;
   Law law;
-  std::vector<Point> point;
+  std::vector<Candidate> point;
   Indices turned;                                // number of status changes of a point in the step
   Vector start, tau, force;                      // x_w; tau; B^T tau
   double enough = 0, sticksBelow = 0;            // tolerance for the norm of t - tau [N]; speed
@@ -371,7 +371,7 @@ class Problem {
   void evaluate(const Vector *at) {
     // t, D and t - tau at x; negative diagonal terms of D count as 0. `at`, if not null, has the
     // velocity at which friction is linearised, slips values for each point; nan: not linearised.
-    const int k = B.kinds;
+    const int k = B.gapRows;
     t = Vector::Zero(x.size());
     slopes = Vector::Zero(k * x.size());
     for (int b = 0; b < B.points; b++) {
@@ -397,7 +397,7 @@ class Problem {
     // t_T/(mu_f t_N) + v/sigma with the linear phi; sigma [m/s] is the velocity change that full
     // friction causes in the step (resolvent: Alart and Curnier 1991; de Saxce and Feng 1998).
     // Linearised at v, Newton's method oscillates: an inexact v does not determine the force.
-    const int k = B.kinds, slips = law.slips, blocks = B.points;
+    const int k = B.gapRows, slips = law.slips, blocks = B.points;
     if (sigma.size() == 0) {
       Vector full = Vector::Zero(x.size()), increment;
       for (int b = 0; b < blocks; b++) full[k * b + 1] = t[k * b] * point[b].muStatic;
@@ -408,7 +408,7 @@ class Problem {
     }
     Vector at = Vector::Constant(slips * blocks, NAN);
     for (int b = 0; b < blocks; b++) {
-      const Point &a = point[b];
+      const Candidate &a = point[b];
       const double cap = std::max(1e-200,
         t[k * b] * (a.sticks || !law.jumps ? a.muStatic : a.muDynamic));
       double off = 0, blend[2] = {0, 0};
@@ -462,11 +462,11 @@ class Problem {
   int updateStatuses() {
     // Changes the stick or slip status of points whose velocity contradicts it. Returns the number
     // of changes. A point that exceeds mostStatusChanges keeps slipping.
-    const int k = B.kinds;
+    const int k = B.gapRows;
     int changed = 0;
     if (!law.jumps || law.slips == 0) return 0;
     for (int b = 0; b < B.points; b++) {
-      Point &a = point[b];
+      Candidate &a = point[b];
       const double v = (law.slips == 1 ? std::abs(x[k * b + 1])
         : std::hypot(x[k * b + 1], x[k * b + 2])) / law.dt;
       if (!(t[k * b] > 0) || turned[b] > mostStatusChanges

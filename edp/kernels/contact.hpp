@@ -1,7 +1,7 @@
 // contact.hpp: contact in a step: gaps and forces of all candidates, the active set (the
 // candidates near contact and the unknowns on which they act) with its compliance C = (A^-1)_uu,
 // and the contact problem on it (contact-solve.hpp). Arrays over ns candidates are stacked by
-// component, component c of candidate s at c ns + s; kinds = 1 + slips: gap, tangential slip.
+// component, component c of candidate s at c ns + s; gapRows = 1 + slips: gap, tangential slip.
 // Exports Contact.
 #pragma once
 #include "call.hpp"
@@ -11,10 +11,11 @@
 namespace contact {
 
 // Arrays of the scripts. The scripts set the gap Jacobian B (triplets row, column, value), the
-// penetrations q0 at the start of the step, gapSlipStart (gap and slip for the increment 0) and the
-// geometric contact stiffness: terms of the given stiffness, whose rows are triplets.
+// penetrations q0 at the start of the step, gapSlipOffset (gap and slip for d = 0) and the
+// geometric contact stiffness c T^T T: c = termStiffness, and the rows T as triplets termOf,
+// termUnknown, termValue.
 struct Arrays {
-  Kept<double> q0, q1, gapSlip, gapSlipStart, candidateForces, force, k, muStatic, muDynamic;
+  Kept<double> q0, q1, gapSlip, gapSlipOffset, candidateForces, force, k, muStatic, muDynamic;
   Kept<long> sticks, statusChanges, row, column, termOf, termUnknown;
   Kept<double> value, termValue, termStiffness;
 };
@@ -34,11 +35,11 @@ class Contact {
   Contact(Factor &factorOfA, int &numberOfUnknowns) : factor(factorOfA), ndof(numberOfUnknowns) {}
 
   long ns() const { return script.q0.size(); }
-  int kinds() const { return 1 + law.slips; }
+  int gapRows() const { return 1 + law.slips; }
 
   void takeJacobian() {
     // Sorts the triplets of B by rows; row r has the entries first[r] to first[r + 1] - 1.
-    const long rows = kinds() * ns(), entries = script.row.size();
+    const long rows = gapRows() * ns(), entries = script.row.size();
     Indices next;
     first.assign(rows + 1, 0);
     column.resize(entries);
@@ -56,12 +57,12 @@ class Contact {
   }
 
   Vector move(const Vector &increment) const {   // B increment
-    Vector moved = Vector::Zero(kinds() * ns());
+    Vector moved = Vector::Zero(gapRows() * ns());
     for (long r = 0; r < moved.size(); r++)
       for (int e = first[r]; e < first[r + 1]; e++) moved[r] += value[e] * increment[column[e]];
     return moved;
   }
-  Vector gapSlip(const Vector &d) const { return move(d) + script.gapSlipStart.numbers(); }
+  Vector gapSlip(const Vector &d) const { return move(d) + script.gapSlipOffset.numbers(); }
 
   void evaluate(const Vector &d) {
     // gapSlip, q1, candidateForces t (10)-(13) and force = B^T t (15) at the increment d.
@@ -72,9 +73,9 @@ class Contact {
     for (long s = 0; s < ns(); s++) if (script.q0[s] > 0 || script.q1[s] > 0) {
       double x[3];
       Forces f;
-      for (int c = 0; c < kinds(); c++) x[c] = script.gapSlip[c * ns() + s];
+      for (int c = 0; c < gapRows(); c++) x[c] = script.gapSlip[c * ns() + s];
       law.at(point(s), x, nullptr, f);
-      for (int c = 0; c < kinds(); c++) {
+      for (int c = 0; c < gapRows(); c++) {
         const long r = c * ns() + s;
         script.candidateForces[r] = f.t[c];
         for (int e = first[r]; e < first[r + 1]; e++)
@@ -87,7 +88,7 @@ class Contact {
     return ns() > 0 && std::max(script.q0.numbers().maxCoeff(), script.q1.numbers().maxCoeff()) > 0;
   }
 
-  void empty() {
+  void clearActiveSet() {
     // Removes all candidates from the active set. C remains.
     active.assign(ns(), 0);
     candidates.clear();
@@ -105,7 +106,7 @@ class Contact {
       if (jacobianFixed && !candidates.empty()) takeUnknowns();
       orderedLast = unknowns;
     }
-    empty();
+    clearActiveSet();
   }
   void beginStep() {
     inversesOfStep = 0;
@@ -113,12 +114,13 @@ class Contact {
   }
   void update(const Vector &q, double distance) {
     // Adds the candidates with q > -distance [m] to the active set; renews its rows and C.
-    bool joins = false;
     if (active.size() != size_t(ns())) active.assign(ns(), 0);
-    for (long s = 0; s < ns(); s++) joins = joins || (!active[s] && q[s] + distance > 0);
-    if (!joins && !rowsChanged) return;
-    setsMade += joins;
-    for (long s = 0; s < ns(); s++) if (!active[s] && q[s] > -distance) {
+    const auto joins = [&](long s) { return !active[s] && q[s] > -distance; };
+    bool any = false;
+    for (long s = 0; s < ns(); s++) any = any || joins(s);
+    if (!any && !rowsChanged) return;
+    setsMade += any;
+    for (long s = 0; s < ns(); s++) if (joins(s)) {
       active[s] = 1;
       candidates.push_back(int(s));
     }
@@ -133,9 +135,9 @@ class Contact {
   }
 
   Vector ofActive(const Vector &rows) const {    // the active ones of values over all rows
-    Vector values(kinds() * candidates.size());
+    Vector values(gapRows() * candidates.size());
     int i = 0;
-    for (int c = 0; c < kinds(); c++) for (int s : candidates) values[i++] = rows[c * ns() + s];
+    for (int c = 0; c < gapRows(); c++) for (int s : candidates) values[i++] = rows[c * ns() + s];
     return values;
   }
   Vector onUnknowns(const Vector &values) const {   // values of the active unknowns, else 0
@@ -157,7 +159,7 @@ class Contact {
     // force = B^T tau. `enough`: tolerance of the forces [N]. Returns the iterations, -1 if they do
     // not converge.
     Problem &p = problem;
-    const int n = int(candidates.size()), kinds = this->kinds();
+    const int n = int(candidates.size()), gapRows = this->gapRows();
     if (solvedSet < 0) p.newton.forget();
     else if (solvedSet != setsMade) p.newton.made = false;
     solvedSet = setsMade;
@@ -169,15 +171,15 @@ class Contact {
     for (int i = 0; i < n; i++) {
       p.point.push_back(point(candidates[i]));
       p.turned.push_back(int(script.statusChanges[candidates[i]]));
-      for (int c = 0; c < kinds; c++) {
-        p.start[kinds * i + c] = freeGapSlip[c * ns() + candidates[i]];
-        p.tau[kinds * i + c] = tau[c * n + i];
+      for (int c = 0; c < gapRows; c++) {
+        p.start[gapRows * i + c] = freeGapSlip[c * ns() + candidates[i]];
+        p.tau[gapRows * i + c] = tau[c * n + i];
       }
     }
     const int iterations = p.solve(mostInverses, inversesOfStep);
     if (iterations < 0) return -1;
     for (int i = 0; i < n; i++) {
-      for (int c = 0; c < kinds; c++) tau[c * n + i] = p.tau[kinds * i + c];
+      for (int c = 0; c < gapRows; c++) tau[c * n + i] = p.tau[gapRows * i + c];
       if (law.slips == 0) continue;
       script.sticks[candidates[i]] = p.point[i].sticks;
       script.statusChanges[candidates[i]] = p.turned[i];
@@ -227,7 +229,7 @@ class Contact {
   long setsMade = 0, solvedSet = -1;             // active sets so far; the last one solved
   Vector C;                                      // full, or the diagonal
 
-  Point point(long s) const {
+  Candidate point(long s) const {
     return {script.q0[s], script.k[s], script.muStatic[s], script.muDynamic[s],
             script.sticks[s] == 1};
   }
@@ -239,7 +241,7 @@ class Contact {
       index[j] = int(unknowns.size());
       unknowns.push_back(j);
     };
-    for (int s : candidates) for (long r = s; r < kinds() * ns(); r += ns())
+    for (int s : candidates) for (long r = s; r < gapRows() * ns(); r += ns())
       for (int e = first[r]; e < first[r + 1]; e++) take(column[e], value[e]);
     for (long e = 0; e < script.termUnknown.size(); e++)
       take(int(script.termUnknown[e]), script.termValue[e]);
@@ -261,9 +263,9 @@ class Contact {
   void fillRows() {
     // B of the problem: the rows of the active candidates, then those of the geometric terms.
     Rows &B = problem.B;
-    B.begin(int(unknowns.size()), kinds());
+    B.begin(int(unknowns.size()), gapRows());
     for (int s : candidates) {
-      for (int c = 0; c < kinds(); c++)
+      for (int c = 0; c < gapRows(); c++)
         for (int r = s + c * ns(), e = first[r]; e < first[r + 1]; e++)
           if (value[e] != 0) B.entry(index[column[e]], c, value[e]);
       B.endPoint();

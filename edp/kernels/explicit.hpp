@@ -48,7 +48,7 @@ class ExplicitContact {
       if (!contact.jacobianFixed) {
         back = free - increment;
         start += contact.move(back);
-        contact.empty();
+        contact.clearActiveSet();
       }
       contact.script.q1.numbers() = start.head(ns);
       if (!contact.touches()) return part(increment, free, start);

@@ -123,13 +123,13 @@ static void addFactor() {
 static void addStep() {
   // Kernels of contact.hpp, step.hpp and explicit.hpp. The first three are called once.
   add("kernelContactArrays", +[](bool jacobianFixed, Reals q0, Reals q1, Reals gapSlip,
-                                Reals gapSlipStart, Reals candidateForces, Reals force, Reals k,
+                                Reals gapSlipOffset, Reals candidateForces, Reals force, Reals k,
                                 Reals muStatic, Reals muDynamic, Ints sticks, Ints statusChanges,
                                 Ints row, Ints column, Reals value, Ints termOf, Ints termUnknown,
                                 Reals termValue, Reals termStiffness) {
     touching.jacobianFixed = jacobianFixed;
     touching.script = {
-      {&q0}, {&q1}, {&gapSlip}, {&gapSlipStart}, {&candidateForces}, {&force}, {&k}, {&muStatic},
+      {&q0}, {&q1}, {&gapSlip}, {&gapSlipOffset}, {&candidateForces}, {&force}, {&k}, {&muStatic},
       {&muDynamic}, {&sticks}, {&statusChanges}, {&row}, {&column}, {&termOf}, {&termUnknown},
       {&value}, {&termValue}, {&termStiffness}};
     touching.takeJacobian();
@@ -152,14 +152,14 @@ static void addStep() {
   add("kernelStep", +[](double dt, double massScale, double stiffnessScale, long stressInstant,
                        long lawInstant, double searchDistance, double energyScale,
                        double momentumScale, double roundOff, long mostInverses,
-                       double &lastResidual, Callback gaps, Callback terms, Callback loads,
+                       double &residualWorkRatio, Callback gaps, Callback terms, Callback loads,
                        Callback search) {
     bodyNow();
     touching.mostInverses = mostInverses;
     const long ended = step.take({dt, massScale, stiffnessScale, stressInstant, lawInstant,
       searchDistance, energyScale, momentumScale, roundOff}, {gaps, terms, loads, search},
       deformation());
-    lastResidual = step.lastResidual;
+    residualWorkRatio = step.residualWorkRatio;
     return ended;
   });
   add("kernelContactForces", +[](Reals d, double dt, long lawInstant) {

@@ -435,7 +435,7 @@ inline double cauchy(const Material &m, const Tensor &F, double p, Symmetric &si
   const double J = F.determinant();
   Symmetric S = m.law->stress(m, C);
   if (m.bulk > 0) S += p * volumeDirection(m, C, J);
-  sigma = 1 / J * symmetric(F * full(S) * F.transpose());
+  sigma = 1 / J * symmetric(F * full(S) * F.transpose());   // (3): J sigma = P F^T
   double mises = 0;
   for (int k = 0; k < 3; k++)
     mises += std::pow(sigma[k] - sigma[(k + 1) % 3], 2) / 2 + 3 * sigma[3 + k] * sigma[3 + k];

@@ -227,7 +227,7 @@ public:
       for (int e : query.facets)
         if (s.body[c] != s.body[e] || (s.selfContact[s.body[c]] && sightOf(c, e) > 0)) {
           join(x, c, e, hits);
-          join(x, e, c, hits);
+          join(x, e, c, hits);             // (8): each body is B1 once and B2 once
         }
     }
     std::sort(hits.begin(), hits.end());

@@ -1,6 +1,7 @@
 // shapes.hpp: rigid obstacles (7) whose closest point needs a search: a polyline and an implicit
 // surface D(x) = 0 here, a triangle mesh in surface.hpp. Each is a Shape, made from the numbers
-// that core/contact/shapes.idp describes. Planes, circles, spheres and bowls are there alone.
+// that core/contact/shapes.idp describes. Scripts compute planes, circles,
+// spheres and bowls.
 // Exports addShapes(): the kernels kernelObstacle and kernelObstacleGaps.
 #pragma once
 #include <map>
@@ -52,12 +53,12 @@ class Polyline : public Shape {
     }
     const bool before = along < side[j].low, after = along > side[j].high;
     if (!before && !after)
-      return {side[j].normal.dot(x - vertex[j]) - rounding, side[j].normal, long(j) + 1};
+      return {side[j].normal.dot(x - vertex[j]) - rounding, side[j].normal, long(j) + 1};   // (7)
     const size_t v = before ? j : (j + 1) % vertex.size();
     const Point r = x - vertex[v],
       both = side[v].normal + side[v > 0 ? v - 1 : side.size() - 1].normal;
     const double h = (both.dot(r) < 0 ? -1 : 1) * std::max(1e-300, r.norm());
-    return {h - rounding, r / h, -long(v) - 1};
+    return {h - rounding, r / h, -long(v) - 1};   // (7)
   }
 
  private:
@@ -147,7 +148,7 @@ class Implicit : public Shape {
       if (!(error < otherError)) { error = otherError;  closest = other; }
     }
     if (!(error <= 1e-9 * limit)) fail(x);
-    return std::abs(closest.gap) <= 2 * limit ? closest : bound;
+    return std::abs(closest.gap) <= 2 * limit ? closest : bound;   // (7)
   }
 
  private:

@@ -1,7 +1,7 @@
 // step.hpp: the increment d of an implicit step of (2), by Newton's method with a frozen
 // factorisation A of the tangent of the bodies, massScale M + stiffnessScale K. An iteration
 // computes the correction -A^-1 r of the residual r, applies it to the trial state w (the motion
-// without contact forces; d itself if B changes), and solves contact and friction exactly for
+// without contact forces; d itself if B changes), and solves contact and friction for
 // d = w - A^-1 B^T t(d). A line search limits the correction; a poor A is factorised anew. Exports
 // ImplicitStep.
 #pragma once
@@ -24,7 +24,7 @@ struct Motion {
   long stressInstant, lawInstant;
   double searchDistance, energyScale, momentumScale, roundOff;
 };
-// What scripts do in a step: gaps: B, q0 and gapSlipStart at d; terms: geometric contact stiffness
+// What scripts do in a step: gaps: B, q0 and gapSlipOffset at d; terms: geometric contact stiffness
 // under the forces; loads: loadForce at d; search: 1 if d moves beyond the last contact search,
 // which is then made anew.
 struct Scripts { Callback gaps, terms, loads, search; };
@@ -42,7 +42,7 @@ class ImplicitStep {
   StepArrays script;
   Settings settings;
   bodies::Triplets translations = {};            // (ndof x 3 bodies)
-  double lastResidual = 0;                       // work of the residual over energyScale
+  double residualWorkRatio = 0;                       // work of the residual over energyScale
 
   ImplicitStep(bodies::Bodies &allBodies, Factor &factorOfA, contact::Contact &contactOfStep)
     : body(allBodies), factor(factorOfA), contact(contactOfStep) {}
@@ -51,8 +51,8 @@ class ImplicitStep {
            const bodies::Deformation &arrays) {
     // Finds d from the prediction in d. Returns fine, or the reason of the failure (bodies.hpp).
     begin(stepMotion, stepScripts, arrays);
-    predict();
-    const int failed = ended != bodies::fine ? ended : iterate();
+    evaluatePrediction();
+    const int failed = status != bodies::fine ? status : iterate();
     script.counts[iterationsMade] = iterations;
     script.counts[inverses] = contact.inversesOfStep;
     return failed;
@@ -84,7 +84,7 @@ class ImplicitStep {
   const Scripts *scripts = nullptr;
   bodies::Deformation at = {};
   Anderson history;
-  int ended = bodies::fine;
+  int status = bodies::fine;
   // A: its massScale (-1: there is none), F, S and pressures at which it was assembled
   double massScaleOfA = -1;
   Vector FofA, SofA, pOfA;
@@ -98,7 +98,7 @@ class ImplicitStep {
   double residualNow = 0, residualBefore = 0, residualFirst = 0, convergence = 0,
     searchDistance = 0;
   // d; w; -A^-1 r, now and before; change of w; r of the bodies, with contact
-  Vector d, dBack, trial, correction, correctionBefore, searchDirection, ofBodies, residual;
+  Vector d, dBack, trial, correction, correctionBefore, searchDirection, bodyResidual, residual;
   // p* - p of the elements, its change in w, p at the last iterate (volume.idp)
   Vector pressureResidual, pressureResidualBefore, pressureDirection, pressureBack;
 
@@ -126,17 +126,17 @@ class ImplicitStep {
     residualNow = residualFirst = residual.norm();
     double contraction = 0.1;
     while (iterations < 120) {
-      direct();
+      computeCorrection();
       dBack = d;
       lineSearch();
       iterations++;
-      measure();
+      testConvergence();
       if (convergence <= 1 && consecutive) {
         if (collapses()) return bodies::inverted;
         if (scripts->search() == 0) return accept();
-        if (!contact.jacobianFixed) contact.empty();
+        if (!contact.jacobianFixed) contact.clearActiveSet();
         evaluate();
-        if (ended != bodies::fine) return ended;
+        if (status != bodies::fine) return status;
         consecutive = false;
         continue;
       }
@@ -158,31 +158,29 @@ class ImplicitStep {
     contact.law.dt = motion.dt;
     contact.law.lawInstant = int(motion.lawInstant);
     contact.beginStep();
-    if (!contact.jacobianFixed) contact.empty();
+    if (!contact.jacobianFixed) contact.clearActiveSet();
     d = script.d.numbers();
     script.counts.numbers().setZero();
     iterations = renewed = renewedAt = 0;
     consecutive = false;
     if (!inMean())
       pressureResidual = pressureResidualBefore = pressureDirection = pressureBack = Vector();
-    // a changing B is set up in every iteration: few candidates
-    searchDistance = contact.jacobianFixed
-      ? motion.dt * script.v.numbers().lpNorm<Eigen::Infinity>()
-      : motion.searchDistance / 5;
+    searchDistance = (contact.jacobianFixed
+      ? motion.dt * script.v.numbers().lpNorm<Eigen::Infinity>() : motion.searchDistance) / 5;
     if (settings.allCandidates) searchDistance = 1e30;
   }
 
-  void predict() {
+  void evaluatePrediction() {
     // Evaluates at the prediction, which is halved, up to six times, while it inverts elements.
     const Eigen::Map<const Vector> start(script.pressureStart, script.pressureStart.size());
-    returnTo(d, start);
-    for (int cut = 0; ended != bodies::fine && cut < 6; cut++) {
+    evaluateAt(d, start);
+    for (int cut = 0; status != bodies::fine && cut < 6; cut++) {
       for (int j = 0; j < d.size(); j++) if (body.free[j] != 0) d[j] /= 2;
-      returnTo(d, start);
+      evaluateAt(d, start);
     }
   }
 
-  void returnTo(const Vector &increment, const Vector &pressures) {
+  void evaluateAt(const Vector &increment, const Vector &pressures) {
     // Evaluates the residual at an increment with the carried pressures of the elements.
     setD(increment);
     if (inMean()) {
@@ -194,41 +192,41 @@ class ImplicitStep {
 
   void evaluate() {
     evaluateBodies();
-    if (ended == bodies::fine) evaluateContact();
+    if (status == bodies::fine) evaluateContact();
   }
   void evaluateBodies() {
     // Residual of the bodies, with 0 at held unknowns; heldResidual is that before.
     const Timed timed(seconds(assembly));
     script.counts[evaluations]++;
-    ofBodies.resize(d.size());
-    ended = body.forces(d.data(), script.inertiaKnown, script.bodyForce,
+    bodyResidual.resize(d.size());
+    status = body.forces(d.data(), script.inertiaKnown, script.bodyForce,
       {motion.massScale, settings.damped ? 1 / motion.dt : 0, int(motion.stressInstant),
-       settings.breaks, inMean()}, at, ofBodies.data());
-    if (settings.loads && ended == bodies::fine) {
+       settings.breaks, inMean()}, at, bodyResidual.data());
+    if (settings.loads && status == bodies::fine) {
       scripts->loads();
-      ofBodies -= script.loadForce.numbers();
+      bodyResidual -= script.loadForce.numbers();
     }
     if (script.heldResidual.size() > 0) {
-      script.heldResidual.numbers() = ofBodies;
+      script.heldResidual.numbers() = bodyResidual;
       if (inMean()) script.heldResidual.numbers() += mapped(body.volume.pressureRemainder);
     }
-    ofBodies = ofBodies.cwiseProduct(mapped(body.free));
+    bodyResidual = bodyResidual.cwiseProduct(mapped(body.free));
     if (inMean()) mapped(body.volume.pressureRemainder).array() *= mapped(body.free).array();
   }
   void evaluateContact() {
     const Timed timed(seconds(contacts));
     if (!contact.jacobianFixed) { scripts->gaps();  contact.takeJacobian(); }
     contact.evaluate(d);
-    residual = ofBodies;
+    residual = bodyResidual;
     if (contact.touches()) {
       if (!contact.jacobianFixed) scripts->terms();
       residual += contact.script.force.numbers();
     }
     residualNow = residual.norm();
-    if (residualNow != residualNow) ended = bodies::notANumber;
+    if (residualNow != residualNow) status = bodies::notANumber;
   }
 
-  void direct() {
+  void computeCorrection() {
     // The correction -A^-1 r at d and, with the history of iterations, the change of w.
     const Timed timed(seconds(solution));
     correction = -solved(residual);
@@ -254,8 +252,9 @@ class ImplicitStep {
   }
 
   void lineSearch() {
-    // Goes from dBack along searchDirection, halved at most six times, until the residual has not
-    // grown by more than a fifth. Sets d and consecutive.
+    // Goes from dBack along searchDirection, halved at most six times, until the residual is below
+    // 1.2 times the last one and the first one of the step. The whole first correction of a step is
+    // accepted in any case. Sets d and consecutive.
     double scale = 1;
     const bool fresh = renewed > 0 && iterations == renewedAt;   // A was factorised at dBack
     const Eigen::Matrix<long, Eigen::Dynamic, 1> sticks = contact.script.sticks.numbers(),
@@ -265,17 +264,17 @@ class ImplicitStep {
     residualBefore = residualNow;
     for (int cut = 0; cut < 7 && !consecutive; cut++) {
       // B and forces of the iterate, not of the try
-      if (cut > 0 && !contact.jacobianFixed) returnTo(dBack, pressureBack);
+      if (cut > 0 && !contact.jacobianFixed) evaluateAt(dBack, pressureBack);
       const Vector tried = trial + scale * searchDirection;
       if (inMean()) {
         mapped(body.volume.carried) = pressureBack + scale * pressureDirection;
         mapped(body.volume.dBase) = dBack;
       }
-      project(tried);
-      if (ended == bodies::fine) {
+      solveForContact(tried);
+      if (status == bodies::fine) {
         evaluate();
         const bool falls = residualNow < 1.2 * std::min(residualBefore, residualFirst);
-        consecutive = ended == bodies::fine && (falls || (iterations == 0 && cut == 0));
+        consecutive = status == bodies::fine && (falls || (iterations == 0 && cut == 0));
       }
       if (consecutive) {
         if (contact.jacobianFixed) trial = tried;
@@ -285,7 +284,7 @@ class ImplicitStep {
       contact.script.sticks.numbers() = sticks;
       contact.script.statusChanges.numbers() = changes;
       // an old matrix that inverts elements is replaced, not followed in small steps
-      if (ended == bodies::inverted && cut > 0 && !fresh) break;
+      if (status == bodies::inverted && cut > 0 && !fresh) break;
     }
     if (!consecutive) return;
     if (iterations == 0) residualFirst = residualNow;   // residuals must not creep up
@@ -293,10 +292,8 @@ class ImplicitStep {
     pressureDirection *= scale;
   }
 
-  void project(const Vector &w) {
-    // Contact on A: d = w - A^-1 B^T t(q(d)), from the forces of the last evaluation. The error
-    // becomes part of the next residual: 1/500 of the last one is accurate enough. If the step may
-    // end with this iteration: 1e-10 of the contact force, as momentum has to be exact. The
+  void solveForContact(const Vector &w) {
+    // Contact on A: d = w - A^-1 B^T t(q(d)), from the forces of the last evaluation. The
     // geometric contact stiffness c with rows T has no force at the last d.
     const Timed timed(seconds(contacts));
     const long ns = contact.ns();
@@ -305,21 +302,22 @@ class ImplicitStep {
       contactDisplacement = Vector::Zero(w.size());
     if (highest.maxCoeff() <= 0) highest = gapSlip.head(ns);
     const bool last = work() < 1e3 * settings.tolerance * motion.energyScale;
-    ended = bodies::fine;
+    status = bodies::fine;
     bool more = highest.maxCoeff() > 0;
     for (int pass = 0; pass < 20 && more; pass++) {
-      contact.update(highest, searchDistance / (contact.jacobianFixed ? 5 : 1));
+      contact.update(highest, searchDistance);
       Vector force;
-      if (!solveContact(w, gapSlip, last, force)) { ended = bodies::diverged;  return; }
+      if (!solveContact(w, gapSlip, last, force)) { status = bodies::diverged;  return; }
       factor.respond(contact.unknowns, force.data(), contactDisplacement.data());
       highest = gapSlip.head(ns) - contact.move(contactDisplacement).head(ns);
       more = contact.penetrates(highest);
     }
-    if (more) ended = bodies::diverged;
+    if (more) status = bodies::diverged;
     else setD(w - contactDisplacement);
   }
   bool solveContact(const Vector &w, const Vector &gapSlip, bool last, Vector &force) {
-    // Forces on the active unknowns for the trial state w; without those in w if B changes.
+    // force: contact forces on the active unknowns for the trial state w. If B changes, w contains
+    // the last ones already, and force is their change.
     const Vector acting = contact.script.force.numbers()(contact.unknowns);
     Vector tau = contact.ofActive(contact.script.candidateForces.numbers()), freeGapSlip = gapSlip,
       freeDisplacement = (w - d)(contact.unknowns);
@@ -331,6 +329,8 @@ class ImplicitStep {
     const bool exact = tau.size() <= std::min(200L, 2L * long(contact.unknowns.size()) + 1);
     // the prediction's forces are less accurate
     if (contact.jacobianFixed && iterations == 0 && !exact) tau = contact.ofActive(contact.last);
+    // The error becomes part of the next residual: 1/500 of the last one is accurate enough. If the
+    // step may end with this iteration: 1e-10 of the contact force, as momentum has to be exact.
     const double enough = exact ? 0
       : last ? 1e-10 * contact.script.force.numbers().norm() : 2e-3 * residual.norm();
     if (contact.solve(freeGapSlip, freeDisplacement, enough, tau, force) < 0) return false;
@@ -341,23 +341,23 @@ class ImplicitStep {
   double work() const {                          // of the residual, relative to the frame [J/m; J]
     return std::abs(residual.dot(d - motion.dt * script.frameMotion.numbers()));
   }
-  void measure() {
+  void testConvergence() {
     // `convergence`, accepted at <= 1: from the work of the residual, linear in it, and its work on
     // the last correction, quadratic. Both may vanish by chance, so the residual must not change
     // the momentum of any body, either. A residual that no longer halves is taken for round-off.
     const Vector moved = d - dBack;
     if (inMean()) residual += mapped(body.volume.pressureRemainder);
-    lastResidual = work() / motion.energyScale;
+    residualWorkRatio = work() / motion.energyScale;
     const double scale = 1e-2 * settings.tolerance * motion.energyScale;
-    convergence = std::max(lastResidual / settings.tolerance,
+    convergence = std::max(residualWorkRatio / settings.tolerance,
                            std::sqrt(std::abs(residual.dot(moved)) / scale));
-    const double off = lostMomentum();
+    const double off = largestResultant();
     if (residualNow < residualBefore / 2 && off > motion.roundOff)
       convergence = std::max(convergence,
                              off * motion.dt / (settings.momentumShare * motion.momentumScale));
     if (inMean()) residual -= mapped(body.volume.pressureRemainder);
   }
-  double lostMomentum() const {                  // largest resultant of the residual on a body [N]
+  double largestResultant() const {   // of the residual on a body [N/m; N]
     Vector sum = Vector::Zero(translations.m);
     for (size_t e = 0; e < translations.size; e++)
       sum[translations.column[e]] += translations.value[e] * residual[translations.row[e]];
@@ -390,10 +390,10 @@ class ImplicitStep {
   int renew() {
     // Factorises A anew, at the previous iterate if the line search failed. Returns fine, or why
     // the step fails.
-    const int failed = std::max<int>(ended, bodies::diverged);
+    const int failed = std::max<int>(status, bodies::diverged);
     if (!consecutive) {
-      returnTo(dBack, pressureBack);
-      if (ended != bodies::fine || (iterations - renewedAt == 1 && renewed > 0)) return failed;
+      evaluateAt(dBack, pressureBack);
+      if (status != bodies::fine || (iterations - renewedAt == 1 && renewed > 0)) return failed;
     }
     if ((renewed >= 12 && !settings.newMatrix) || !factorise()) return failed;
     renewed++;

@@ -10,6 +10,9 @@
 
 namespace tensors {
 
+// Where in the step stress and contact law are evaluated, as in normal.idp.
+enum Instant { stepMean, stepMiddle, stepEnd };
+
 template<int n> using Vector = Eigen::Matrix<double, n, 1>;
 typedef Eigen::Matrix3d Tensor;            // F, P
 typedef Vector<6> Symmetric;               // C, S, E

@@ -9,6 +9,7 @@ from ffimpact import scene
 from ffimpact.failure import Unreadable
 from ffimpact.report import compare, impacts
 from ffimpact.running import run
+from verification.measure import bodies
 
 COARSE = {"law": "neohookean", "accuracy": 0.1, "fields": 0}
 OBLIQUE = COARSE | {"speed": 12, "angle": 60, "friction_static": 0.7, "friction_dynamic": 0.5, "slip_velocity": 0.1}
@@ -137,3 +138,19 @@ def test_bounces_are_drawn(tmp_path):
     (result.folder / "summary.json").unlink()
     with pytest.raises(Unreadable, match="contacts.csv cannot be read: it lacks the columns partner, start"):
         impacts.read(result.folder)
+
+
+def test_a_circle_that_turns_about_its_centre(tmp_path):
+    """Without friction its rotation changes neither restitution nor slip of the body. The slip is that
+    of the surface, angular velocity times radius."""
+    rows = {}
+    for rate in (0, 1000):  # [rad/s]
+        turning = {"rotation": f"{np.degrees(rate)}*t"} if rate else {}
+        tables = {"law": "neohookean", "young": 7e6, "nu": 0.4, "density": 1722, "end_time": 0.006, "dt": 1e-4, "accuracy": 0.1,
+                  "body": [{"shape": "disc", "radius": 0.05, "position": [0, 0.05001], "velocity": [0, -6], "mesh_size": 0.012, "contact_mesh_size": 0.012}],
+                  "obstacle": [{"kind": "circle", "centre": [0, -0.1], "radius": 0.1} | turning]}
+        bodies(tmp_path / str(rate), tables)
+        rows[rate] = pd.read_csv(tmp_path / str(rate) / "run/contacts.csv").iloc[0]
+    still, turns = rows[0], rows[1000]
+    assert turns.restitution == pytest.approx(still.restitution, rel=1e-3) and turns.approach == pytest.approx(6, rel=1e-6)
+    assert turns.slip_before == pytest.approx(1000 * 0.1, rel=2e-3) and still.slip_before < 1e-3

@@ -62,6 +62,20 @@ def test_the_gap_is_the_distance(text):
     assert implicit.radius_at(np.array([0.0, 0.09]), settled("0.01 - x*x - y*y", (0.0, 0.0), 0.05)) == np.inf
 
 
+@pytest.mark.parametrize("radius", [0.01, 0.03, 0.06])
+@pytest.mark.parametrize("degrees", [40, 75, 90])
+def test_nearest_point_of_a_disc(radius, degrees):
+    """A disc of radius 0.05 beside a circle, also a smaller one: gap and normal are on the line between
+    the centres."""
+    along = np.array([np.cos(np.radians(degrees)), np.sin(np.radians(degrees))])
+    centre, turns = (radius + 0.0501) * along, np.linspace(0, 2 * np.pi, 181)
+    points = centre + 0.05 * np.column_stack([np.cos(turns), np.sin(turns)])
+    _, limit, *code = numbers = settled(f"x^2 + y^2 - {radius**2}", tuple(centre), 0.05)
+    gaps = implicit.gap(points, numbers)
+    gap, normal = implicit.nearest(points[gaps.argmin()], gaps.min(), code, limit, (centre, 0.05))
+    assert gap == pytest.approx(1e-4, abs=1e-12) and normal == pytest.approx(along, abs=1e-6)
+
+
 @pytest.mark.parametrize("text, centre", [("y - sqrt(x^2 + 1e-10)", (0.0, 0.05)),
                                           ("y - sqrt(x^2 + z^2 + 1e-10)", (0.0, 0.05, 0.0)),
                                           ("y - sqrt(x^2 + 1e-10)", (0.0, 0.05, 0.0))])

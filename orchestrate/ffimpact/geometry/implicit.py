@@ -228,20 +228,37 @@ def nearest(
 
     `point` (axes,) is the sampled point of the body with the least gap, `gap`. Farther than `limit`
     the function returns this gap and the direction of the gradient. Nearer than `limit` it projects
-    the point onto the surface. For a disc or ball, `disc` = (centre, radius), it iterates with
-    point = centre - radius n, where n is the normal at the closest point of the surface.
+    the point onto the surface. For a disc or ball, `disc` = (centre, radius), it turns the point
+    about the centre towards point = centre - radius n, n the normal at the closest point of the
+    surface, by a share that is halved until the gap decreases: the whole way is too far if the
+    radius exceeds the radius of curvature of the surface.
     """
     value, slope = run(code, point[None])
     if abs(value[0]) >= limit * np.linalg.norm(slope):
         return float(gap), slope[0] / np.linalg.norm(slope)
+    distance, normal = _projected(point, code, limit)
+    if disc is None:
+        return min(gap, distance), normal
+    centre, radius = disc
+    share, direction = 1.0, (centre - point) / np.linalg.norm(centre - point)
     for _ in range(TURNS):
-        distance, on = closest(point[None], code, limit)
-        normal = run(code, on)[1][0]
-        normal /= np.linalg.norm(normal)
-        before, point = point, disc[0] - disc[1] * normal if disc else point
-        if abs(point - before).max() <= CLOSE * limit:
+        turned = direction + share * (normal - direction)
+        turned /= np.linalg.norm(turned)
+        nearer, its_normal = _projected(centre - radius * turned, code, limit)
+        if nearer > distance:
+            share /= 2
+            continue
+        change, direction, distance, normal = abs(turned - direction).max(), turned, nearer, its_normal
+        if radius * change <= CLOSE * limit:
             break
-    return float(min(gap, distance[0])), normal
+    return min(gap, distance), normal
+
+
+def _projected(point: np.ndarray, code: list[float], limit: float) -> tuple[float, np.ndarray]:
+    """Gap [m] of a point (axes,), and the unit normal at its closest point of the surface."""
+    distance, on = closest(point[None], code, limit)
+    slope = run(code, on)[1][0]
+    return float(distance[0]), slope / np.linalg.norm(slope)
 
 
 def settled(

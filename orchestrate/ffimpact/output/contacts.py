@@ -203,8 +203,8 @@ class Interval:
 
     def _motion(self, row: int, after: int, firm: int) -> Motion:
         """The motion before the first step (`after` 0) or after the last (1). Of circles and
-        spheres the normal is that of step `firm`, of two about their centres of mass the line
-        between these.
+        spheres the normal is that of step `firm`. Of two about their centres of mass, or of one and
+        a round obstacle, it is the line between their centres.
         """
         rows = self.rows
         centres, velocity, rim, line = (
@@ -214,7 +214,7 @@ class Interval:
         body, other = self.pair["body"], self.pair["counter_body"]
         if self.radii[0] != 0 and (other < 0 or self.radii[1] != 0):
             n = rows[firm, 6:9]
-            if other >= 0 and other != body and self.arms.sum() == 0:
+            if line.any() and other != body and self.arms.sum() == 0:
                 n = line / (np.copysign(1.0, n @ line) * np.linalg.norm(line))
         return Motion(
             float(n @ velocity),
