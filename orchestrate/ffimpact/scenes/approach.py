@@ -215,7 +215,7 @@ def _onset(scene: Scene, first: int, second: int) -> Onset:
             first,
             second,
             outlines,
-            float(np.linalg.norm(velocity)),
+            float(np.linalg.norm(velocity)) + _turning_speed(other, outlines[0]),
             0.0,
             float(np.linalg.norm(pull)) + loaded,
             0.0,
@@ -237,9 +237,7 @@ def _onset(scene: Scene, first: int, second: int) -> Onset:
         normal,
     )
     onset = replace(onset, pressed=_pressed(scene, onset))
-    if isinstance(other, Obstacle) and other.drive:  # the surface of a turning obstacle slides
-        away = np.linalg.norm(outlines[0].points - other.drive.pivot, axis=1).min()
-        onset = replace(onset, sliding=onset.sliding + other.drive.fastest_turn * float(away))
+    onset = replace(onset, sliding=onset.sliding + _turning_speed(other, outlines[0]))
     if scene.dimension is not PLANE_STRAIN:
         return onset
     # `spun` [m/s] is the closing velocity of the points in contact, with that by spin.
@@ -251,6 +249,16 @@ def _onset(scene: Scene, first: int, second: int) -> Onset:
         ):
             spun += sign * struck.spin * lever
     return replace(onset, closing=float(abs(spun)))
+
+
+def _turning_speed(other: Body | Obstacle, shape: Shape) -> float:
+    """Returns the largest speed [m/s] by rotation of a driven obstacle at the point of a body nearest
+    to its pivot; 0 for others.
+    """
+    if not isinstance(other, Obstacle) or not other.drive:
+        return 0.0
+    away = np.linalg.norm(shape.points - other.drive.pivot, axis=1).min()
+    return other.drive.fastest_turn * float(away)
 
 
 def loaded_pull(body: Body) -> float:
