@@ -77,7 +77,24 @@ class Program {
   struct Dual { double value;  Point slope; };
   typedef std::vector<char> Branches;      // those taken of min, max and |a|
 
-  Program(const double *numbers, long size) : code(numbers, numbers + size) {}
+  explicit Program(std::vector<double> itsCode) : code(std::move(itsCode)) {}
+
+  static void split(const std::vector<double> &code, std::vector<Program> &parts) {
+    // Appends the programs of a, b, ... of an expression min(a, b, ...), else the whole. They are
+    // the surfaces of solids whose union is the obstacle.
+    size_t end = 0;                        // of the first operand: the last time that one is left
+    int entries = 0;
+    for (size_t e = 0; e + 1 < code.size(); e++) {
+      const int op = int(code[e]);
+      entries += op < 4 ? 1 : op < 11 ? -1 : 0;
+      if (op == 0) e++;
+      if (entries == 1) end = e + 1;
+    }
+    const bool splits = code.back() == 9 && code[code.size() - 2] != 0;
+    if (!splits) return parts.push_back(Program(code));
+    split({code.begin(), code.begin() + end}, parts);
+    split({code.begin() + end, code.end() - 1}, parts);
+  }
 
   Dual at(const Point &x, Branches &branch, bool choose) const {
     // If choose, the branches of min, max and |a| are chosen and stored; else the stored ones are
@@ -98,8 +115,70 @@ class Program {
     return stack.back();
   }
 
+  // Whether D has a value and no zero in the box of half the width h about x, by interval
+  // arithmetic.
+  bool hasNoZero(const Point &x, double h) const {
+    std::vector<Interval> stack;
+    for (size_t e = 0; e < code.size(); e++) {
+      const int op = int(code[e]);
+      if (op == 0) { stack.push_back({code[e + 1], code[e + 1]});  e++;  continue; }
+      if (op < 4) { stack.push_back({x[op - 1] - h, x[op - 1] + h});  continue; }
+      Interval b = {0, 0};
+      if (op < 11) { b = stack.back();  stack.pop_back(); }
+      stack.back() = range(op, stack.back(), b);
+    }
+    return stack.back().low > 0 || stack.back().high < 0;
+  }
+
  private:
   std::vector<double> code;
+
+  struct Interval { double low, high; };
+
+  static Interval range(int op, const Interval &a, const Interval &b) {
+    // Bounds of the operation on the intervals a and b, infinite if they are not known.
+    const double all = INFINITY;
+    const auto among = [&](std::initializer_list<double> values) {
+      for (double v : values) if (!(std::abs(v) < all)) return Interval{-all, all};
+      return Interval{std::min(values), std::max(values)};
+    };
+    switch (op) {
+      case 4: return {a.low + b.low, a.high + b.high};
+      case 5: return {a.low - b.high, a.high - b.low};
+      case 6: return among({a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high});
+      case 7:
+        if (b.low <= 0 && b.high >= 0) return {-all, all};
+        return among({a.low / b.low, a.low / b.high, a.high / b.low, a.high / b.high});
+      case 8: {
+        const double power = b.low, low = std::pow(a.low, power), high = std::pow(a.high, power);
+        if (a.low > 0 || (power > 0 && (a.low == 0 || std::fmod(power, 2) == 1)))
+          return among({low, high});
+        if (power > 0 && std::fmod(power, 2) == 0)
+          return {a.high > 0 ? 0 : high, std::max(low, high)};
+        return {-all, all};
+      }
+      case 9: return {std::min(a.low, b.low), std::min(a.high, b.high)};
+      case 10: return {std::max(a.low, b.low), std::max(a.high, b.high)};
+      case 11: return {-a.high, -a.low};
+      case 12: return sine(a);
+      case 13: return sine({a.low + M_PI / 2, a.high + M_PI / 2});
+      case 14: return {a.low > 0 ? std::sqrt(a.low) : 0, a.high > 0 ? std::sqrt(a.high) : 0};
+      case 15: return {std::exp(a.low), std::exp(a.high)};
+      default:
+        return {a.low > 0 ? a.low : std::max(0., -a.high), std::max(-a.low, a.high)};
+    }
+  }
+  static Interval sine(const Interval &a) {
+    // The extremes +-1 are at pi/2 + k pi.
+    const double first = std::ceil(a.low / M_PI - 0.5), last = std::floor(a.high / M_PI - 0.5);
+    Interval range = {std::min(std::sin(a.low), std::sin(a.high)),
+                      std::max(std::sin(a.low), std::sin(a.high))};
+    if (!(last - first < 2)) return {-1, 1};
+    for (double k = first; k <= last; k++) {
+      if (std::fmod(k, 2) == 0) range.high = 1; else range.low = -1;
+    }
+    return range;
+  }
 
   static Dual result(int op, const Dual &a, const Dual &b, bool first) {
     const double x = a.value, y = b.value;
@@ -125,38 +204,58 @@ class Program {
 class Implicit : public Shape {
  public:
   Implicit(long itsNumber, long itsAxes, const double *numbers, long size)
-    : number(itsNumber), axes(itsAxes), steepest(numbers[0]), limit(numbers[1]),
-      distance(numbers + 2, size - 2) {}
+    : number(itsNumber), axes(itsAxes), limit(numbers[0]) {
+    Program::split({numbers + 1, numbers + size}, parts);
+  }
 
   Nearest nearest(const Point &x) const override {
-    // limit is a third of the smallest radius of curvature, steepest the largest |grad D| around
-    // bodies and surface. If |D| / |grad D| exceeds limit or the gap 2 limit, the gap is
-    // D / max(steepest, |grad D|), a lower bound.
-    Program::Branches branch;
-    const Program::Dual D = distance.at(x, branch, true);
-    const double size = D.slope.norm();
-    const bool finite = size < 1e150;      // else |grad D|^2 overflows: only the sign of D is used
-    const Nearest bound = {finite ? D.value / std::max(steepest, size)
-      : (D.value > 0 ? limit : -limit), D.slope / size, 0};
-    if (!(std::abs(D.value) < limit * std::min(size, 1e150))) return bound;
-    // From beside x or, if that hardly converges, from x itself: points farther than a radius of
-    // the surface may not converge from beside it.
-    Nearest closest, other;
-    double error = project(x, x + 1e-6 * limit * alongSurface(bound.normal), closest);
-    if (!(error < 1e-12 * limit)) {
-      const double otherError = project(x, x, other);
-      if (!(error < otherError)) { error = otherError;  closest = other; }
+    Nearest least = nearestOf(parts[0], x);
+    for (size_t k = 1; k < parts.size(); k++) {
+      const Nearest other = nearestOf(parts[k], x);
+      if (other.gap < least.gap) least = other;
     }
-    if (!(error <= 1e-9 * limit)) fail(x);
-    return std::abs(closest.gap) <= 2 * limit ? closest : bound;   // (7)
+    return least;   // (7)
   }
 
  private:
   long number, axes;
-  double steepest, limit;
-  Program distance;
+  double limit;
+  std::vector<Program> parts;
 
-  double project(const Point &x, Point y, Nearest &closest) const {
+  Nearest nearestOf(const Program &distance, const Point &x) const {
+    // limit is a third of the smallest radius of curvature. If |D| / |grad D| exceeds it, or the
+    // gap 2 limit, the gap is a bound of the distance (boundAt()).
+    Program::Branches branch;
+    const Program::Dual D = distance.at(x, branch, true);
+    const double size = D.slope.norm();
+    Nearest closest = {0, D.slope / size, 0}, other = closest;
+    if (std::abs(D.value) < limit * size) {
+      // From beside x or, if that hardly converges, from x itself: points farther than a radius of
+      // the surface may not converge from beside it.
+      const Point along = alongSurface(closest.normal);
+      double error = project(distance, x, x + 1e-6 * limit * along, closest);
+      if (!(error < 1e-12 * limit)) {
+        const double otherError = project(distance, x, x, other);
+        if (!(error < otherError)) { error = otherError;  closest = other; }
+      }
+      const bool found = error <= 1e-9 * limit && std::abs(closest.gap) <= 2 * limit;
+      // outside, another part of the surface may be nearer than the one found
+      if (found && (closest.gap <= 0 || distance.hasNoZero(x, closest.gap / 2))) return closest;
+      if (D.value < 0 && !(error <= 1e-9 * limit)) fail(x);
+    }
+    return {boundAt(distance, x, D.value), D.slope / size, 0};
+  }
+
+  double boundAt(const Program &distance, const Point &x, double D) const {
+    // A lower bound of the distance, with the sign of D: half the width of a box about x without a
+    // zero; in general at least half of the largest such box.
+    double h = limit;
+    if (distance.hasNoZero(x, h)) while (h < 1e9 * limit && distance.hasNoZero(x, 2 * h)) h *= 2;
+    else while (h > 1e-12 * limit && !distance.hasNoZero(x, h)) h /= 2;
+    return D < 0 ? -h : h;
+  }
+
+  double project(const Program &distance, const Point &x, Point y, Nearest &closest) const {
     // Iterates the closest point y of the surface to x by projecting x onto the tangent plane of D
     // at y, G = grad D:
     //   y <- x - G s,   s = (D + G.(x - y)) / |G|^2,   finally gap = s |G|, n = G / |G|.
@@ -188,9 +287,10 @@ class Implicit : public Shape {
     return axes == 2 ? Point(n[1], -n[0], 0) : Point(n.cross(Point(0.36, 0.48, 0.8)));
   }
   [[noreturn]] void fail(const Point &x) const {
-    char text[200];
+    char text[300];
     std::snprintf(text, sizeof text, "distance: obstacle %ld has no closest point near %g, %g m "
-      "(accepted: an expression that is smooth, and not constant, next to its zeros)", number + 1,
+      "(accepted: an expression that is smooth next to its zeros, with no radius of curvature far "
+      "below those near the start of the bodies)", number + 1,
       x[0], x[1]);
     giveUp(10, text);
   }

@@ -56,7 +56,7 @@ def test_the_gap_is_the_distance(text):
     numbers = settled(text)
     gaps, exact = implicit.gap(POINTS, numbers), np.linalg.norm(POINTS, axis=1) - 0.1
     near = abs(exact) < 0.02
-    assert numbers[1] == pytest.approx(0.1 / 3, rel=1e-3) and near.any()
+    assert numbers[0] == pytest.approx(0.1 / 3, rel=1e-3) and near.any()
     assert gaps[near] == pytest.approx(exact[near], abs=1e-15) and (abs(gaps) <= abs(exact) + 1e-15).all() and (gaps * exact >= 0).all()
     assert implicit.radius_at(np.array([0.0, 0.11]), numbers) == pytest.approx(0.1, rel=1e-5)
     assert implicit.radius_at(np.array([0.0, 0.09]), settled("0.01 - x*x - y*y", (0.0, 0.0), 0.05)) == np.inf
@@ -70,7 +70,7 @@ def test_nearest_point_of_a_disc(radius, degrees):
     along = np.array([np.cos(np.radians(degrees)), np.sin(np.radians(degrees))])
     centre, turns = (radius + 0.0501) * along, np.linspace(0, 2 * np.pi, 181)
     points = centre + 0.05 * np.column_stack([np.cos(turns), np.sin(turns)])
-    _, limit, *code = numbers = settled(f"x^2 + y^2 - {radius**2}", tuple(centre), 0.05)
+    limit, *code = numbers = settled(f"x^2 + y^2 - {radius**2}", tuple(centre), 0.05)
     gaps = implicit.gap(points, numbers)
     gap, normal = implicit.nearest(points[gaps.argmin()], gaps.min(), code, limit, (centre, 0.05))
     assert gap == pytest.approx(1e-4, abs=1e-12) and normal == pytest.approx(along, abs=1e-6)
@@ -85,9 +85,9 @@ def test_the_closest_point_is_not_the_bottom_of_a_groove(text, centre):
     This also holds exactly above it, where the bottom is a stationary point of the distance.
     """
     numbers, points = settled(text, centre), np.zeros((3, len(centre)))
-    points[:, 1] = numbers[1] * np.array([0.1, 0.5, 0.9])  # the walls are within `limit`
+    points[:, 1] = numbers[0] * np.array([0.1, 0.5, 0.9])  # the walls are within `limit`
     distance = points[:, 1] / np.sqrt(2)
-    assert numbers[1] > 1e-3 and implicit.gap(points, numbers) == pytest.approx(distance, abs=1e-6)
+    assert numbers[0] > 1e-3 and implicit.gap(points, numbers) == pytest.approx(distance, abs=1e-6)
 
 
 def test_an_expression_that_is_no_distance_far_away():
@@ -97,3 +97,32 @@ def test_an_expression_that_is_no_distance_far_away():
     heights = np.array([1e-3, 0.09, 0.5, 3.0, 30.0, 1e5])
     gaps = implicit.gap(np.column_stack([0 * heights, heights]), numbers)
     assert gaps[:2] == pytest.approx(heights[:2]) and (0 < gaps).all() and (gaps <= heights + 1e-15).all()
+
+
+EXPRESSIONS = ["y - 0.1*sin(7*x)", "x^2 + y^2 - 0.01", "(x^4 + y^4)^0.25 - 0.3", "x*y/(1 + x^2) - 0.2", "min(y, 200*(abs(x - 0.5) - 0.1))",
+               "max(abs(x) - 0.2, abs(y) - 0.4)", "exp(3*y) - 1 + cos(x)/4", "sqrt(x^2 + 0.01) - y^3", "2*x - x^2 - y"]
+
+
+@pytest.mark.parametrize("text", EXPRESSIONS)
+def test_boxes_without_a_zero_have_none(text):
+    """Interval arithmetic never excludes a zero that is there: in every excluded box D has one sign."""
+    code, random = implicit.program("obstacle.1.distance", text, "xy"), np.random.default_rng(3)
+    centres, half = random.uniform(-1, 1, (300, 2)), 10 ** random.uniform(-3, 0, 300)
+    excluded = implicit.no_zero(code, centres, half)
+    assert 20 < excluded.sum() < 300
+    for centre, width in zip(centres[excluded], half[excluded]):
+        value = implicit.run(code, centre + width * random.uniform(-1, 1, (200, 2)))[0]
+        assert (value > 0).all() or (value < 0).all()
+
+
+def test_a_wall_far_from_the_start_is_seen():
+    """The scale of an operand of min changes no gap: that of a thin wall, steep and 5 m away."""
+    points = np.array([[4.9, 0.06], [4.99, 0.3], [4.999, 0.05], [2.0, 0.05]])
+    steep, plain = (implicit.gap(points, settled(f"min(y, {factor}*(abs(x - 5) - 0.0005))", (0.0, 0.1), 0.1)) for factor in (200, 1))
+    assert steep == pytest.approx(plain, abs=1e-12) and steep[2] == pytest.approx(5e-4, abs=1e-9)
+
+
+def test_a_far_surface_is_found():
+    """A circle 50 m below, of radius 0.2 m."""
+    numbers = settled("x^2 + (y + 0.2)^2 - 0.04", (0.0, 50.05), 0.1)
+    assert implicit.gap(np.array([[0.0, 0.001]]), numbers) == pytest.approx([0.001], abs=1e-9)

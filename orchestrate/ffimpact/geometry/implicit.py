@@ -8,6 +8,7 @@ this program; edp/kernels/shapes.hpp documents the numbers and the gap that foll
 
 import ast
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +22,7 @@ __all__ = [
     "gap",
     "is_mirrored",
     "nearest",
+    "no_zero",
     "program",
     "radius_at",
     "run",
@@ -38,9 +40,10 @@ TINY = 1e-300
 TURNS = 60  # largest number of iterations of the closest-point projection
 CLOSE = 1e-9  # convergence tolerance of the closest-point projection, relative to `limit`
 BESIDE = 1e-6  # tangential offset of the first iterate from the point, relative to `limit`
-SAMPLES = 4000  # number of points at which gradient and curvature are sampled
+SAMPLES = 4000  # number of points near which curvature is sampled
 # Largest gradient whose square does not overflow. Beyond it only the sign of D is used.
 STEEPEST = 1e150
+Interval = tuple[np.ndarray, np.ndarray]  # lower and upper bounds (n,)
 FARTHEST = 1e4  # largest factor by which the box of the bodies grows in search of the surface
 
 
@@ -162,26 +165,133 @@ def run(
     return stack[0]
 
 
+def no_zero(code: Sequence[float], points: np.ndarray, half: np.ndarray) -> np.ndarray:
+    """Whether D has values and no zero in boxes about points (n, axes) of half the width (n,) [m]:
+    (n,), by interval arithmetic. False where that cannot tell.
+    """
+    stack, entries = [], enumerate(code)
+    for _, op in entries:
+        if op == 0:
+            value = np.full(len(points), next(entries)[1])
+            stack.append((value, value))
+        elif op < 4:
+            stack.append((points[:, int(op) - 1] - half, points[:, int(op) - 1] + half))
+        else:
+            b = stack.pop() if op < 11 else None
+            stack.append(RANGES[int(op)](stack.pop(), b))
+    low, high = stack[0]
+    return (low > 0) | (high < 0)
+
+
+def _among(*values: np.ndarray) -> Interval:
+    """The smallest and the largest of values; infinite where one is no number."""
+    finite = np.isfinite(values).all(axis=0)
+    return (
+        np.where(finite, np.min(values, axis=0), -np.inf),
+        np.where(finite, np.max(values, axis=0), np.inf),
+    )
+
+
+def _quotients(a: Interval, b: Interval) -> Interval:
+    whole = np.where((b[0] <= 0) & (b[1] >= 0), np.nan, 1.0)
+    return _among(*(x / y * whole for x in a for y in b))
+
+
+def _powers(a: Interval, b: Interval) -> Interval:
+    (low, high), power = a, b[0][0]
+    if power > 0 and power % 2 == 0:
+        ends = low**power, high**power
+        return np.where((low <= 0) & (high >= 0), 0.0, np.minimum(*ends)), np.maximum(*ends)
+    defined = (low > 0) | (power > 0) & ((low == 0) | (power % 2 == 1))
+    return _among(np.where(defined, low, np.nan) ** power, high**power)
+
+
+def _sines(a: Interval, shift: float = 0.0) -> Interval:
+    """The extremes +-1 are at pi/2 + k pi."""
+    low, high = a[0] + shift, a[1] + shift
+    first, last = np.ceil(low / np.pi - 0.5), np.floor(high / np.pi - 0.5)
+    ends, both = (np.sin(low), np.sin(high)), ~(last - first < 1)
+    top, bottom = ((first <= last) & (first % 2 == k) | both for k in (0, 1))
+    return np.where(bottom, -1.0, np.minimum(*ends)), np.where(top, 1.0, np.maximum(*ends))
+
+
+# Each operation on intervals a (and b) returns bounds of its values, infinite if they are not known.
+RANGES = {
+    4: lambda a, b: (a[0] + b[0], a[1] + b[1]),
+    5: lambda a, b: (a[0] - b[1], a[1] - b[0]),
+    6: lambda a, b: _among(*(x * y for x in a for y in b)),
+    7: _quotients,
+    8: _powers,
+    9: lambda a, b: (np.minimum(a[0], b[0]), np.minimum(a[1], b[1])),
+    10: lambda a, b: (np.maximum(a[0], b[0]), np.maximum(a[1], b[1])),
+    11: lambda a, b: (-a[1], -a[0]),
+    12: lambda a, b: _sines(a),
+    13: lambda a, b: _sines(a, np.pi / 2),
+    14: lambda a, b: tuple(np.sqrt(np.maximum(end, 0.0)) for end in a),
+    15: lambda a, b: (np.exp(a[0]), np.exp(a[1])),
+    16: lambda a, b: (np.maximum(0.0, np.maximum(a[0], -a[1])), np.maximum(-a[0], a[1])),
+}
+
+
+def _bound(code: Sequence[float], points: np.ndarray, limit: float) -> np.ndarray:
+    """A lower bound (n,) [m] of the distance of points from the surface: half the width of a box
+    without a zero; in general at least half of the largest such box.
+    """
+    half, grows = np.full(len(points), limit), no_zero(code, points, np.full(len(points), limit))
+    more = grows.copy()
+    while more.any():
+        more[more] = no_zero(code, points[more], 2 * half[more]) & (half[more] < 1e9 * limit)
+        half[more] *= 2
+    more = ~grows
+    while more.any():
+        half[more] /= 2
+        more[more] = (half[more] > 1e-12 * limit) & ~no_zero(code, points[more], half[more])
+    return half
+
+
+def _parts(code: Sequence[float]) -> list[Sequence[float]]:
+    """The programs of a, b, ... of an expression min(a, b, ...), else the whole: the surfaces of solids
+    whose union is the obstacle.
+    """
+    first, depth, entries = 0, 0, enumerate(code[:-1])
+    for e, op in entries:
+        depth += 1 if op < 4 else -1 if op < 11 else 0
+        if op == 0:
+            e, _ = next(entries, (e, 0))
+        if depth == 1:
+            first = e + 1
+    if code[-1] != TWO["min"] or code[-2] == 0:
+        return [code]
+    return _parts(code[:first]) + _parts(code[first:-1])
+
+
 def gap(points: np.ndarray, numbers: tuple[float, ...], bounds: bool = True) -> np.ndarray:
     """Signed distances (n,) [m] of points (n, axes) from the surface.
 
-    Distances up to about `limit` are exact. Larger values are D / max(steepest, |grad D|), a lower
-    bound of the distance, or without `bounds` D / |grad D|, the distance to first order.
-    `numbers` are those that `settled` returns: steepest, limit and the program.
+    Distances up to about `limit` are exact if that part of the surface is certainly the nearest.
+    Others are a lower bound or, without `bounds`, D / |grad D|, the distance to first order.
+    `numbers` are those that `settled` returns: limit and the program.
     """
-    steepest, limit, *code = numbers
+    limit, *code = numbers
+    return np.min([_gap(points, part, limit, bounds) for part in _parts(code)], axis=0)
+
+
+def _gap(points: np.ndarray, code: Sequence[float], limit: float, bounds: bool) -> np.ndarray:
+    """gap() of one part."""
     with np.errstate(all="ignore"):
-        gaps, slope = run(code, points)
+        value, slope = run(code, points)
         size = np.linalg.norm(slope, axis=1)
-        near = abs(gaps) < limit * np.minimum(size, STEEPEST)
-        gaps = np.where(
-            size < STEEPEST,
-            gaps / np.maximum(steepest if bounds else 0, size),
-            np.copysign(limit, gaps),
-        )
+        near = abs(value) < limit * size
+        if bounds:
+            gaps = np.copysign(_bound(code, points, limit), value)
+        else:
+            gaps = np.where(size < STEEPEST, value / size, np.copysign(limit, value))
         if near.any():
             distance = closest(points[near], code, limit)[0]
-            gaps[near] = np.where(abs(distance) <= 2 * limit, distance, gaps[near])
+            certain = (abs(distance) <= 2 * limit) & (
+                (distance <= 0) | ~bounds | no_zero(code, points[near], distance / 2)
+            )
+            gaps[near] = np.where(certain, distance, gaps[near])
     return gaps
 
 
@@ -220,7 +330,7 @@ def _along_surface(slope: np.ndarray) -> np.ndarray:
 def nearest(
     point: np.ndarray,
     gap: float,
-    code: list[float],
+    code: Sequence[float],
     limit: float,
     disc: tuple[np.ndarray, float] | None,
 ) -> tuple[float, np.ndarray]:
@@ -233,6 +343,7 @@ def nearest(
     surface, by a share that is halved until the gap decreases: the whole way is too far if the
     radius exceeds the radius of curvature of the surface.
     """
+    code = min(_parts(code), key=lambda part: float(_gap(point[None], part, limit, True)[0]))
     value, slope = run(code, point[None])
     if abs(value[0]) >= limit * np.linalg.norm(slope):
         return float(gap), slope[0] / np.linalg.norm(slope)
@@ -248,7 +359,12 @@ def nearest(
         if nearer > distance:
             share /= 2
             continue
-        change, direction, distance, normal = abs(turned - direction).max(), turned, nearer, its_normal
+        change, direction, distance, normal = (
+            abs(turned - direction).max(),
+            turned,
+            nearer,
+            its_normal,
+        )
         if radius * change <= CLOSE * limit:
             break
     return min(gap, distance), normal
@@ -264,17 +380,18 @@ def _projected(point: np.ndarray, code: list[float], limit: float) -> tuple[floa
 def settled(
     path: str, code: tuple[float, ...], centre: np.ndarray, half: float
 ) -> tuple[float, ...]:
-    """Returns the numbers of an obstacle: steepest, limit [m] and the program of D.
+    """Returns the numbers of an obstacle: limit [m] and the program of D.
 
-    `steepest` is 1.1 times the largest gradient of D, and `limit` is a third of the smallest convex
-    or concave radius of curvature, `half` at most. Both are sampled in a box around the `centre`
-    (axes,) of the bodies. The box begins with half the side length `half` [m] and is doubled until
-    it contains a part of the surface. Raises BadInput, with the name path.distance, if D has no
-    value or gradient at a point, or if no surface is found.
+    `limit` is a third of the smallest convex or concave radius of curvature, `half` at most, of the
+    surface in a box around the `centre` (axes,) of the bodies, of half the side length `half` [m].
+    If it is not there, the surface is looked for along the gradient, then in boxes of twice the
+    size. Raises BadInput, with the name path.distance, if D has no value or gradient at a point, or
+    if no surface is found.
     """
     cube, growth = np.random.default_rng(1).uniform(-1, 1, (SAMPLES, len(centre))), 1
+    middle = centre
     while True:
-        points = centre + growth * half * cube
+        points = middle + growth * half * cube
         with np.errstate(all="ignore"):
             value, slope = run(code, points)
             if not (np.isfinite(value).all() and np.isfinite(slope).all()):
@@ -283,24 +400,47 @@ def settled(
                     f"{path}.distance: has no value or no gradient at {_text(bad)} (accepted: an expression that has both "
                     f"wherever bodies may be)"
                 )
-        if value.min() < 0 < value.max():
-            break
+            if value.min() < 0 < value.max():
+                break
+            foot = _foot(code, centre) if growth == 1 and middle is centre else None
+        if foot is not None:
+            middle = foot
+            continue
         if growth > FARTHEST:
             raise BadInput(
                 f"{path}.distance: is 0 nowhere within {growth * half:.3g} m of the bodies (accepted: an expression that is 0 "
                 f"on a surface there)"
             )
-        growth *= 2
+        middle, growth = centre, 2 * growth
     with np.errstate(all="ignore"):
         size = np.linalg.norm(slope, axis=1)
-        on = closest(points[abs(value) < 0.1 * growth * half * size], code, half)[1]
-        on = on[(abs(on - centre) <= growth * half).all(axis=1)]
+        near = points[abs(value) < 0.1 * growth * half * size]
+        on = closest(near, code, half)[1] if len(near) else near
+        on = on[(abs(on - middle) <= growth * half).all(axis=1)]
+        if not len(on):
+            raise BadInput(
+                f"{path}.distance: changes its sign near {_text(middle)} without being 0 (accepted: an expression that is "
+                f"continuous, with a gradient on its surface)"
+            )
         # Next to a corner the estimate depends on the step: the smaller of two estimates leaves out
         # most of these points.
         bend = np.minimum(
             *(abs(bending(code, on, step * half)).max(axis=1) for step in (1e-3, 1e-4))
         ).max(initial=0.0)
-    return 1.1 * float(size.max()), float(min(half, 1 / max(3 * bend, 1e-300))), *code
+    return float(min(half, 1 / max(3 * bend, 1e-300))), *code
+
+
+def _foot(code: Sequence[float], point: np.ndarray) -> np.ndarray | None:
+    """A point (axes,) of the surface, by Newton's method along the gradient; None if it fails."""
+    for _ in range(10 * TURNS):
+        (value,), (slope,) = run(code, point[None])
+        step = value / (slope @ slope) * slope
+        point = point - step
+        if not np.isfinite(point).all():
+            return None
+        if np.linalg.norm(step) <= 1e-9 * np.linalg.norm(point):
+            return point
+    return None
 
 
 def bending(code: tuple[float, ...], points: np.ndarray, step: float) -> np.ndarray:
@@ -333,7 +473,7 @@ def radius_at(point: np.ndarray, numbers: tuple[float, ...]) -> float:
 
     The radius is infinite where the surface is concave or flat.
     """
-    _, limit, *code = numbers
+    limit, *code = numbers
     with np.errstate(all="ignore"):
         bend = bending(code, closest(point[None], code, limit)[1], 1e-3 * limit).max()
     return float(1 / bend) if bend * limit > 1e-6 else np.inf

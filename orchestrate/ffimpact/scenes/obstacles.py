@@ -200,8 +200,8 @@ class Polyline(Obstacle):
 
 
 class Implicit(Obstacle):
-    """The surface D(x) = 0. `numbers`: the largest gradient, the validity limit and the program of D
-    (implicit.py); 1 and 1 before settled().
+    """The surface D(x) = 0. `numbers`: the validity limit and the program of D (implicit.py); 1 before
+    settled().
     """
 
     kind = "implicit"
@@ -213,7 +213,7 @@ class Implicit(Obstacle):
         if dimension is AXISYMMETRIC and not implicit.is_mirrored(code, 0, 2):
             raise BadInput(f"{table.at('distance')}: '{table.value_text('distance')}' is not the same for x and -x, "
                            f"as of revolution (accepted: with x^2 or abs(x))")
-        return 1.0, 1.0, *code
+        return 1.0, *code
 
     def gap(self, points: np.ndarray) -> np.ndarray:
         return implicit.gap(points, self.numbers)
@@ -228,7 +228,7 @@ class Implicit(Obstacle):
         """Returns the smallest gap [m] of a body and the outward normal there. The gap is that of the
         points of the body, or of its whole circle or sphere.
         """
-        gaps, (_, limit, *code) = self.gap(shape.points), self.numbers
+        gaps, (limit, *code) = self.gap(shape.points), self.numbers
         with np.errstate(all="ignore"):
             return implicit.nearest(shape.points[gaps.argmin()], gaps.min(), code, limit, shape.disc)
 
@@ -236,7 +236,7 @@ class Implicit(Obstacle):
         return implicit.radius_at(point, self.numbers)
 
     def is_mirrored(self, axis: int) -> bool:
-        return implicit.is_mirrored(self.numbers[2:], axis, 3)
+        return implicit.is_mirrored(self.numbers[1:], axis, 3)
 
 
 class Surface(Obstacle):
@@ -313,7 +313,7 @@ def settled(obstacles: list[Obstacle], centre: np.ndarray, half: float) -> list[
     """Returns the obstacles with the largest gradient and curvature of implicit ones in a box about
     `centre` of half size `half` [m], in which the bodies lie.
     """
-    return [replace(obstacle, numbers=implicit.settled(f"obstacle.{k}", obstacle.numbers[2:], centre, half))
+    return [replace(obstacle, numbers=implicit.settled(f"obstacle.{k}", obstacle.numbers[1:], centre, half))
             if isinstance(obstacle, Implicit) else obstacle for k, obstacle in enumerate(obstacles, 1)]
 
 
