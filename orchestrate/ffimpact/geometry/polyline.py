@@ -90,13 +90,11 @@ def gap(points: np.ndarray, numbers: tuple[float, ...]) -> np.ndarray:
     `numbers` is the chain as the function `numbers` returns it.
     """
     sides = sides_of(numbers)
-    from_start = points[:, None] - sides.start  # (n, m, 2)
-    at = np.sum(from_start * sides.along, axis=2)
-    # vectors from the closest point of each side
-    away = from_start - np.clip(at, sides.low, sides.high)[..., None] * sides.along
-    distance = np.linalg.norm(away, axis=2)
-    row, nearest = np.arange(len(points)), distance.argmin(axis=1)
-    at, away = at[row, nearest], away[row, nearest]
+    nearest = _nearest(sides, points)
+    start, along = sides.start[nearest], sides.along[nearest]
+    at = np.sum((points - start) * along, axis=1)
+    # vectors from the closest points
+    away = points - start - np.clip(at, sides.low[nearest], sides.high[nearest])[:, None] * along
     # The sign is that of `away` . normal. At a vertex the normal is the sum of both sides' normals.
     normal = np.column_stack([-sides.along[:, 1], sides.along[:, 0]])
     before, after = normal[nearest - 1], normal[(nearest + 1) % len(normal)]
@@ -104,7 +102,22 @@ def gap(points: np.ndarray, numbers: tuple[float, ...]) -> np.ndarray:
         :, None
     ] * before
     side = np.sum(away * (normal[nearest] + beyond), axis=1)
-    return np.where(side < 0, -1, 1) * distance[row, nearest] - numbers[1]
+    return np.where(side < 0, -1, 1) * np.linalg.norm(away, axis=1) - numbers[1]
+
+
+def _nearest(sides: Sides, points: np.ndarray) -> np.ndarray:
+    """The numbers (n,) of the sides nearest to points (n, 2)."""
+    if len(sides.start) == 1 or len(points) == 0:
+        return np.zeros(len(points), int)
+    import shapely  # imported here: other obstacles do not need it
+
+    far = 10 * np.ptp(np.vstack([sides.start, points]), axis=0).max() + 1  # ends of an open chain
+    ends = [
+        sides.start + np.clip(end, -far, far)[:, None] * sides.along
+        for end in (sides.low, sides.high)
+    ]
+    tree = shapely.STRtree(shapely.linestrings(np.stack(ends, axis=1)))
+    return tree.nearest(shapely.points(points))
 
 
 def sides_of(numbers: tuple[float, ...]) -> Sides:

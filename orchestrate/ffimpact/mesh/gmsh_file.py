@@ -52,7 +52,7 @@ def read(path: Path) -> mesh.Mesh:
         try:
             gmsh.open(str(path))
         except Exception as error:  # gmsh raises plain exceptions
-            raise BadInput(f"gmsh cannot read it: {error}") from None
+            raise BadInput(f"gmsh cannot read it: {ascii(str(error))[1:-1]}") from None
         return taken(gmsh.model)
 
 

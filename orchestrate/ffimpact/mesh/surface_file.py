@@ -54,7 +54,7 @@ def _taken(path: Path) -> tuple[np.ndarray, np.ndarray]:
         try:
             gmsh.open(str(path))
         except Exception as error:  # gmsh raises plain exceptions
-            raise BadInput(f"gmsh cannot read it: {error}") from None
+            raise BadInput(f"gmsh cannot read it: {ascii(str(error))[1:-1]}") from None
         if gmsh.model.mesh.getElementTypes(3).size:
             points, cells, _ = elements_of(
                 gmsh.model, (3,), TETRAHEDRA, "tetrahedron", "tetrahedra"

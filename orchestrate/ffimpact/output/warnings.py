@@ -132,7 +132,11 @@ class Evidence:
     @property
     def counter_body(self) -> str:
         """What the bodies come into contact with."""
-        return "the others" if len(self.bodies) > 1 else "the plane"
+        if len(self.bodies) > 1:
+            return "the others"
+        if not self.facts["named"]:
+            return "the plane"
+        return self.obstacle(0) if len(self.facts["obstacles"]) == 1 else "the obstacles"
 
     def near(self, extreme: Sequence[float]) -> str:
         """The place of an extreme (value, time, X, Y, Z)."""
@@ -347,7 +351,7 @@ def _contact(e: Evidence) -> Iterator[Sentence]:
     facts, record = e.facts, e.record
     if not record["contact_intervals"]:
         if not facts["supports_move"] and not facts["loads"]:
-            none = " and ".join(["the bodies"] if len(e.bodies) > 1 else ["the body", "the plane"])
+            none = " and ".join(["the bodies"] if len(e.bodies) > 1 else ["the body", e.counter_body])
             yield warn(f"no contact: {none} have not come into contact by the end_time")
         return
     used, requested = facts["penalty_used"], facts["penalty"]
