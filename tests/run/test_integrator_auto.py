@@ -38,7 +38,7 @@ def test_parts_are_dearer_between_bodies(tmp_path):
     explicit ones.
     """
     summary = run.run(scene.load("two-discs"), {"integrator": "auto", "accuracy": 0.02, "contact.friction_static": 0.0}, tmp_path, estimate=False).summary
-    parts = int(next(words for words in summary["skipped"] if "explicit parts" in words).split("takes ")[1].split()[0])
+    parts = int(next(words for words in summary["skipped"] if "explicit substeps" in words).split("takes ")[1].split()[0])
     assert summary["integrator"] == "energy-momentum" and parts < summary["dofs"]**0.4
 
 
@@ -47,6 +47,6 @@ def test_the_count_of_parts_is_that_of_the_run(tmp_path):
     ones."""
     for script, accuracy in (("ball-plane", 0.02), ("disc-plane", 0.005), ("ball-axisymmetric", 0.005)):
         result = disc(tmp_path / script, script, **BALL | {"accuracy": accuracy})
-        sentence = next(words for words in result.summary["skipped"] if "explicit parts" in words)
+        sentence = next(words for words in result.summary["skipped"] if "explicit substeps" in words)
         parts = result.history["newton_iterations"].max()
         assert int(sentence.split("takes ")[1].split()[0]) == pytest.approx(parts, abs=1), script
