@@ -229,7 +229,8 @@ class Implicit : public Shape {
     const Program::Dual D = distance.at(x, branch, true);
     const double size = D.slope.norm();
     Nearest closest = {0, D.slope / size, 0}, other = closest;
-    if (std::abs(D.value) < limit * size) {
+    // beyond 1e150 the square of the gradient overflows
+    if (std::abs(D.value) < limit * std::min(size, 1e150)) {
       // From beside x or, if that hardly converges, from x itself: points farther than a radius of
       // the surface may not converge from beside it.
       const Point along = alongSurface(closest.normal);

@@ -26,9 +26,10 @@ def test_two_discs_that_meet_head_on_part_so(tmp_path):
 
 @pytest.mark.robustness
 def test_an_obstacle_that_is_met_twice_has_one_table():
-    """A disc that lands on two crests of a wave has one table of contact in the scene as used,
-    which reads back as written."""
-    tables = scene(DISC | {"position": [0, 0.0551]}, {"name": "waves", "kind": "implicit", "distance": "y - 0.002*sin(200*x)"})
+    """An ellipse that lands on two crests of a wave has one table of contact in the scene as used, which
+    reads back as written."""
+    ellipse = {key: value for key, value in DISC.items() if key != "radius"} | {"shape": "ellipse", "semi_axes": [0.05, 0.03], "angle": 30.0}
+    tables = scene(ellipse | {"position": [0, 0.0551]}, {"name": "waves", "kind": "implicit", "distance": "y - 0.002*sin(200*x)"})
     assert [(pair.first, pair.second) for pair in approach.onsets_of(tables)] == [(0, -1), (0, -1)]
     built = assembly.assemble(tables)
     assert [pair["bodies"] for pair in built.used["contact"]["pair"]] == [["disc", "waves"]]

@@ -281,7 +281,7 @@ def _gap(points: np.ndarray, code: Sequence[float], limit: float, bounds: bool) 
     with np.errstate(all="ignore"):
         value, slope = run(code, points)
         size = np.linalg.norm(slope, axis=1)
-        near = abs(value) < limit * size
+        near = abs(value) < limit * np.minimum(size, STEEPEST)
         if bounds:
             gaps = np.copysign(_bound(code, points, limit), value)
         else:

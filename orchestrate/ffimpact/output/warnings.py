@@ -351,7 +351,9 @@ def _contact(e: Evidence) -> Iterator[Sentence]:
     facts, record = e.facts, e.record
     if not record["contact_intervals"]:
         if not facts["supports_move"] and not facts["loads"]:
-            none = " and ".join(["the bodies"] if len(e.bodies) > 1 else ["the body", e.counter_body])
+            none = " and ".join(
+                ["the bodies"] if len(e.bodies) > 1 else ["the body", e.counter_body]
+            )
             yield warn(f"no contact: {none} have not come into contact by the end_time")
         return
     used, requested = facts["penalty_used"], facts["penalty"]
