@@ -453,7 +453,7 @@ private:
       if (slopeKnown) pressed.p += slope[g] * alongG0(g);
     }
     if (m.incompressible)
-      star = pressed.p + m.bulk / 2 * (theta1 - 1);   // (6): J = 1
+      star = pressed.p + m.bulk / 2 * (theta1 - 1);   // (6): for J = 1, p in place of lambda ln J
     pressed.rest = star - pressed.p;
     volume.star[cell[g]] = star;
     volume.now[cell[g]] = pressed.p;

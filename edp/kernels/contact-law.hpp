@@ -124,7 +124,7 @@ struct Law {
     for (int i = 0; i < slips; i++) for (int j = 0; j < slips && linearisedAt; j++)
       muPhi[i] += slope[i][j] * (v[j] - vOfLaw[j]);
     for (int i = 0; i < slips; i++) {
-      f.t[1 + i] = muPhi[i] * f.t[0];   // (11), (12): t_T = -mu_f phi(v_T) |t_N|
+      f.t[1 + i] = muPhi[i] * f.t[0];   // (11), (12): -t_T = mu_f phi(v_T) |t_N|
       f.slope[1 + i][0] = muPhi[i] * f.slope[0][0];
       f.slope[0][1 + i] = 0;
       for (int j = 0; j < slips; j++) f.slope[1 + i][1 + j] = slope[i][j] * f.t[0] / dt;

@@ -149,7 +149,7 @@ struct Logarithm {
 struct NeoHookean : Conserving<NeoHookean> {
   static Logarithm rest(const Material &m) { return {m.lambda, m.mu}; }
   Symmetric stress(const Material &m, const Symmetric &C) const {
-    return rest(m).stress(C) + m.mu * identity;   // (6): S = mu (I - C^-1) + lambda ln J C^-1
+    return rest(m).stress(C) + m.mu * identity;   // (6): rest gives (lambda ln J - mu) C^-1
   }
   double gradientCorrection(const Material &m, const Symmetric &M, const Symmetric &H) const {
     return rest(m).gradientCorrection(M, H);

@@ -52,13 +52,13 @@ class Polyline : public Shape {
       if (distance2 < best) { best = distance2;  along = t;  j = i; }
     }
     const bool before = along < side[j].low, after = along > side[j].high;
-    if (!before && !after)
+    if (!before && !after)   // beside a side: gap n.(x_B - x_R) = -v_N
       return {side[j].normal.dot(x - vertex[j]) - rounding, side[j].normal, long(j) + 1};   // (7)
     const size_t v = before ? j : (j + 1) % vertex.size();
     const Point r = x - vertex[v],
       both = side[v].normal + side[v > 0 ? v - 1 : side.size() - 1].normal;
     const double h = (both.dot(r) < 0 ? -1 : 1) * std::max(1e-300, r.norm());
-    return {h - rounding, r / h, -long(v) - 1};   // (7)
+    return {h - rounding, r / h, -long(v) - 1};   // (7): gap to a corner = -v_N
   }
 
  private:
@@ -214,7 +214,7 @@ class Implicit : public Shape {
       const Nearest other = nearestOf(parts[k], x);
       if (other.gap < least.gap) least = other;
     }
-    return least;   // (7)
+    return least;   // (7): gap = -v_N, of the nearest part
   }
 
  private:
