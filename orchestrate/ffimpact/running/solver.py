@@ -21,7 +21,7 @@ from ..failure import Failure, NotInstalled, Unreadable, of_code
 from ..freefem import freefem
 from ..input.parameters import Value
 from ..output import estimate
-from ..output.evaluate import evaluate
+from ..output.evaluate import RECORD, evaluate
 from ..output.results import read_history, read_json, read_summary, write_json
 from ..progress import Line
 from ..scene import Scene
@@ -104,6 +104,9 @@ class Solver(AbstractContextManager):
         )
         taken, exit_code, message = self._taken(overrides, where), 0, ""
         if not taken:
+            record = where / RECORD
+            if record.exists() and not record.read_bytes().rstrip().endswith(b"}"):
+                record.unlink()  # FreeFem++ was killed while it wrote this last file
             evaluate(where)  # what a run has left that was killed before it was evaluated
         if taken or not (where / "summary.json").exists():
             with ExitStack() as leaving:
