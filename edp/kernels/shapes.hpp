@@ -267,8 +267,8 @@ class Implicit : public Shape {
     Program::Branches branch;
     const double roundOff = 1e-15 * (x.norm() + limit);
     double change = 1e300;
-    for (int turn = 0; turn < 60; turn++) {
-      const Program::Dual D = distance.at(y, branch, turn == 0);
+    for (int iteration = 0; iteration < 60; iteration++) {
+      const Program::Dual D = distance.at(y, branch, iteration == 0);
       const double size = D.slope.norm();
       closest.piece = 0;
       closest.normal = D.slope / size;

@@ -338,7 +338,7 @@ def nearest(
 
     `point` (axes,) is the sampled point of the body with the least gap, `gap`. Farther than `limit`
     the function returns this gap and the direction of the gradient. Nearer than `limit` it projects
-    the point onto the surface. For a disc or ball, `disc` = (centre, radius), it turns the point
+    the point onto the surface. For a disc or ball, `disc` = (centre, radius), it rotates the point
     about the centre towards point = centre - radius n, n the normal at the closest point of the
     surface, by a share that is halved until the gap decreases: the whole way is too far if the
     radius exceeds the radius of curvature of the surface.
@@ -402,9 +402,11 @@ def settled(
                 )
             if value.min() < 0 < value.max():
                 break
-            foot = _foot(code, centre) if growth == 1 and middle is centre else None
-        if foot is not None:
-            middle = foot
+            on_surface = (
+                _point_of_surface(code, centre) if growth == 1 and middle is centre else None
+            )
+        if on_surface is not None:
+            middle = on_surface
             continue
         if growth > FARTHEST:
             raise BadInput(
@@ -430,7 +432,7 @@ def settled(
     return float(min(half, 1 / max(3 * bend, 1e-300))), *code
 
 
-def _foot(code: Sequence[float], point: np.ndarray) -> np.ndarray | None:
+def _point_of_surface(code: Sequence[float], point: np.ndarray) -> np.ndarray | None:
     """A point (axes,) of the surface, by Newton's method along the gradient; None if it fails."""
     for _ in range(10 * TURNS):
         (value,), (slope,) = run(code, point[None])

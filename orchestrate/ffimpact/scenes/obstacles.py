@@ -64,9 +64,9 @@ class Obstacle:
         """
         return self.numbers[axis] == 0
 
-    def regions(self, seen_from: Callable, reach: float) -> Iterator[list[Polynomial]]:
+    def regions(self, seen_from: Callable, bounding_radius: float) -> Iterator[list[Polynomial]]:
         """Yields for each part of the surface a list of polynomials of time. All of a list are <= 0 while
-        a moving sphere of radius `reach` [m] is near that part. seen_from(point): the position
+        a moving sphere of this radius [m] is near that part. seen_from(point): the position
         (axes,) of its centre relative to a point, of polynomials.
         """
         yield []
@@ -126,9 +126,9 @@ class Plane(Obstacle):
     def is_mirrored(self, axis: int) -> bool:
         return self.numbers[3 + axis] == 0
 
-    def regions(self, seen_from: Callable, reach: float) -> Iterator[list[Polynomial]]:
+    def regions(self, seen_from: Callable, bounding_radius: float) -> Iterator[list[Polynomial]]:
         axes = len(self.velocity)
-        yield [seen_from(np.array(self.numbers[:axes])) @ np.array(self.numbers[axes:]) - reach]
+        yield [seen_from(np.array(self.numbers[:axes])) @ np.array(self.numbers[axes:]) - bounding_radius]
 
 
 class Circle(Obstacle):
@@ -147,9 +147,9 @@ class Circle(Obstacle):
     def radius_at(self, point: np.ndarray, within: float) -> float:
         return self.numbers[-1]
 
-    def regions(self, seen_from: Callable, reach: float) -> Iterator[list[Polynomial]]:
+    def regions(self, seen_from: Callable, bounding_radius: float) -> Iterator[list[Polynomial]]:
         centre, radius = np.array(self.numbers[:-1]), self.numbers[-1]
-        yield [(seen_from(centre) ** 2).sum() - (radius + reach) ** 2]
+        yield [(seen_from(centre) ** 2).sum() - (radius + bounding_radius) ** 2]
 
 
 class Bowl(Circle):
@@ -163,9 +163,9 @@ class Bowl(Circle):
     def radius_at(self, point: np.ndarray, within: float) -> float:
         return np.inf
 
-    def regions(self, seen_from: Callable, reach: float) -> Iterator[list[Polynomial]]:
+    def regions(self, seen_from: Callable, bounding_radius: float) -> Iterator[list[Polynomial]]:
         centre, radius = np.array(self.numbers[:-1]), self.numbers[-1]
-        yield [max(0.0, radius - reach) ** 2 - (seen_from(centre) ** 2).sum()]
+        yield [max(0.0, radius - bounding_radius) ** 2 - (seen_from(centre) ** 2).sum()]
 
 
 class Polyline(Obstacle):
@@ -189,8 +189,8 @@ class Polyline(Obstacle):
     def radius_at(self, point: np.ndarray, within: float) -> float:
         return polyline.radius_at(point, within, self.numbers)
 
-    def regions(self, seen_from: Callable, reach: float) -> Iterator[list[Polynomial]]:
-        sides, near = polyline.sides_of(self.numbers), reach + self.numbers[1]
+    def regions(self, seen_from: Callable, bounding_radius: float) -> Iterator[list[Polynomial]]:
+        sides, near = polyline.sides_of(self.numbers), bounding_radius + self.numbers[1]
         for point, along, low, high in zip(sides.start, sides.along, sides.low, sides.high):
             r = seen_from(point)
             above, at = r @ np.array([-along[1], along[0]]), r @ along
