@@ -34,9 +34,9 @@ def test_gap_and_normal(numbers, shape):
 @pytest.mark.parametrize("shape", SHAPES)
 def test_rows_give_the_change_of_the_gap(numbers, shape):
     """q0 + B d + motion = q1 and the slip along the middle tangent are exact to round-off for steps
-    of 1 m to 1e-9 m, also across corners."""
+    of 1 m to 1e-9 m, also across corners. Normals of expressions are iterated to 1e-12."""
     assert numbers[f"begin{shape}"] < 1e-14 and numbers[f"end{shape}"] < 1e-14
-    assert numbers[f"place{shape}"] < 1e-14 and numbers[f"slip{shape}"] < 1e-14
+    assert numbers[f"place{shape}"] < 1e-14 and numbers[f"slip{shape}"] < (1e-12 if shape in IMPLICIT else 1e-14)
 
 
 @pytest.mark.parametrize("shape", SHAPES)
@@ -47,7 +47,7 @@ def test_normal_force_is_along_the_normal_of_the_middle(numbers, shape):
     If it changes segments, or the segment is neither flat nor round, the remainder of B is along
     the motion.
     """
-    assert numbers[f"across{shape}"] < (1e-12 if shape in IMPLICIT else 1e-14) and numbers[f"beside{shape}"] < 1e-13
+    assert numbers[f"across{shape}"] < (1e-12 if shape in IMPLICIT else 1e-14) and numbers[f"beside{shape}"] < (1e-12 if shape in IMPLICIT else 1e-13)
     assert (numbers[f"pieces{shape}"] > 0.01) == (shape in [*CORNERS, "circleImplicit"])
 
 
@@ -79,9 +79,20 @@ def test_slots_within_reach_are_found_wherever_the_body_goes(numbers):
     assert numbers["none"] == 0 and numbers["missed"] == 0 and numbers["most"] < numbers["slots"]
 
 
-def test_rows_of_planes_are_built_once(measure):
+def test_scripts_agree_with_kernels(measure, numbers):
+    """Scripts compute planes, circle and bowl in the same way, to round-off."""
+    scripted = measure("obstacles", scripts=1)
+    for shape in ("plane", "inclined", *CURVED):
+        for name in ("gap", "unit", "begin", "end", "place", "slip", "across", "moment"):
+            assert scripted[name + shape] < 1e-14
+        assert scripted[f"slope{shape}"] < 1e-7 and scripted[f"pieces{shape}"] == 0
+    assert max(scripted["turned"], scripted["work"]) < 1e-13
+
+
+@pytest.mark.parametrize("scripts", [0, 1])
+def test_rows_of_planes_are_built_once(measure, scripts):
     """Planes, both of them moving, have constant Jacobians that satisfy the same identities."""
-    planes = measure("obstacles", planes=1)
+    planes = measure("obstacles", planes=1, scripts=scripts)
     assert planes["fixed"] == 1 and planes["kept"] == 0
     for shape in ("plane", "inclined"):
         assert max(planes[name + shape] for name in ("gap", "begin", "end", "place", "slip")) < 1e-14 and planes[f"across{shape}"] < 1e-14

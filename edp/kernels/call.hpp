@@ -46,6 +46,10 @@ template <class R> struct Kept {
   Eigen::Map<Numbers> numbers() const { return {static_cast<R *>(*array), array->N()}; }
 };
 
+// Script arrays for the rows of gaps as triplets: B(row, unknown) = normal, and for each tangent
+// S_a(row, unknown) = slip, first all S_1.
+struct JacobianRows { Ints row, unknown;  Reals normal, slip; };
+
 // Writes values to `numbers`, or reads them from there in the same order.
 struct Archive {
   std::vector<double> numbers;

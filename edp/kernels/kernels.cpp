@@ -9,8 +9,8 @@
 #include "bodies.hpp"
 #include "factor.hpp"
 #include "explicit.hpp"
+#include "obstacles.hpp"
 #include "pairs.hpp"
-#include "shapes.hpp"
 #include "step.hpp"
 
 static bodies::Bodies body;
@@ -33,6 +33,8 @@ static Factor factor;
 static contact::Contact touching(factor, body.ndof);
 static ImplicitStep step(body, factor, touching);
 static ExplicitContact substep(touching);
+static std::unique_ptr<pairs::AnyPairs> pairsOfBodies;
+static obstacles::Obstacles rigid;                   // the obstacles
 
 static bodies::Triplets entries(Sparse A) {
   // The entries of a sparse matrix. The kernels take no half (symmetric) or 1-based storage.
@@ -171,8 +173,9 @@ static void addStep() {
   });
   add("kernelForget", +[]() { step.forget(); });
   add("kernelState", +[](Reals state) {
-    // Stores in an array what the step remembers from earlier ones.
+    // Stores in an array what step and obstacles remember from earlier steps.
     Archive archive;
+    rigid.archive(archive);
     step.archive(archive);
     state.resize(long(archive.numbers.size()));
     std::copy(archive.numbers.begin(), archive.numbers.end(), (double *)state);
@@ -181,6 +184,7 @@ static void addStep() {
     Archive archive;
     archive.numbers = copied<double>(state);
     archive.reads = true;
+    rigid.archive(archive);
     step.archive(archive);
     bodyNow();
     if (step.isFactorised()) step.restore();
@@ -209,6 +213,100 @@ static void addStep() {
   });
 }
 
+static void addPairs() {
+  // Kernels of pairs.hpp: gaps between bodies. kernelSurface is called once.
+  add("kernelSurface", +[](Table shape, long points, long obstacles, long bodies, Ints unknown,
+                          Ints body, Reals side, Reals pointShape, Ints selfContact,
+                          Reals reference) {
+    const int facets = int(body.N()), nodes = int(shape.N());
+    pairs::Surface s = {facets, nodes, int(points), facets * int(points), int(obstacles),
+      int(bodies), copied<int>(unknown), copied<int>(body), copied<double>(side),
+      copied<double>(pointShape), copied<int>(selfContact), copied<double>(reference),
+      pairs::Shape(nodes, shape.M())};
+    for (int a = 0; a < nodes; a++) for (int j = 0; j < shape.M(); j++) s.shape(a, j) = shape(a, j);
+    if (shape.M() == pairs::termsOf(2)) pairsOfBodies.reset(new pairs::Pairs<2>(s));
+    else pairsOfBodies.reset(new pairs::Pairs<3>(s));
+  });
+  add("kernelSearchPairs", +[](Reals x, double searchDistance) {
+    return pairsOfBodies->search(x, searchDistance);
+  });
+  add("kernelPairStart", +[](Reals x) { return pairsOfBodies->start(x, x.N()); });
+  add("kernelPairGaps", +[](Reals d, Reals q0, Reals q1, Ints row, Ints unknown, Reals normal,
+                           Reals slip) {
+    pairsOfBodies->gaps(d, q0, q1, {row, unknown, normal, slip});
+  });
+  add("kernelPairGeometricTerms", +[](Reals t, Reals free, Reals limit, Ints termOf, Ints unknown,
+                                     Reals value, Reals stiffness) {
+    return pairsOfBodies->geometricTerms(t, free, limit, termOf, unknown, value, stiffness);
+  });
+}
+
+static obstacles::Point spatial(Reals x) {           // with z = 0 in the plane
+  return shapes::pointOf(x, int(x.N()));
+}
+
+static void addObstacles() {
+  // Kernels of obstacles.hpp. The first four are called at the start.
+  add("kernelObstacle", +[](std::string &kind, long axes, Reals numbers, Reals velocity) {
+    // Appends an obstacle.
+    obstacles::Obstacle added;
+    added.shape.reset(shapes::make(long(rigid.obstacle.size()), kind, int(axes), numbers,
+                                   numbers.N()));
+    added.velocity = spatial(velocity);
+    rigid.axes = int(axes);
+    rigid.obstacle.push_back(std::move(added));
+  });
+  add("kernelDrive", +[](long k, Reals pivot, Reals axis) {
+    rigid.obstacle[k].driven = true;
+    rigid.obstacle[k].pivot = spatial(pivot);
+    rigid.obstacle[k].axis = spatial(axis);
+  });
+  add("kernelDriveFunction", +[](long k, long c, Reals time, Reals value, Reals slope) {
+    // Function c of the driven obstacle k: components 0 to 2 of the displacement, 3 the angle.
+    obstacles::Obstacle &driven = rigid.obstacle[k];
+    (c < 3 ? driven.displacement[c] : driven.angle) =
+      {copied<double>(time), copied<double>(value), copied<double>(slope)};
+  });
+  add("kernelContactPoints", +[](Reals places, Sparse traces) {
+    rigid.setPoints(places, entries(traces));
+  });
+  add("kernelObstacleStart", +[](Reals u0, double t, double searchDistance) {
+    return rigid.start(u0, t, searchDistance);
+  });
+  add("kernelObstacleRows", +[](Reals d, double dt, Reals q0, Reals q1, Reals motion, Ints row,
+                               Ints unknown, Reals normal, Reals slip) {
+    rigid.rows(d, dt, q0, q1, motion, {row, unknown, normal, slip});
+  });
+  add("kernelObstacleIncrement", +[](Reals d, double dt, double &farthest) {
+    farthest = rigid.largestIncrement(d, dt);
+  });
+  add("kernelCountCrossings", +[](Ints crossed) { rigid.countCrossings(crossed); });
+  add("kernelObstacleGaps", +[](long k, Reals x, double t, Reals gap, Reals normal) {
+    // Gaps (m) [m] and normals (axes m) of obstacle k at time t, for m positions x (axes m).
+    const obstacles::Pose pose = rigid.obstacle[k].pose(t);
+    const long m = gap.N(), axes = rigid.axes;
+    for (long i = 0; i < m; i++) {
+      obstacles::Point place = obstacles::Point::Zero();
+      for (long c = 0; c < axes; c++) place[c] = x[c * m + i];
+      const shapes::Nearest closest = rigid.obstacle[k].shape->nearest(pose.frame(place));
+      const obstacles::Point n = pose.R * closest.normal;
+      gap[i] = closest.gap;
+      for (long c = 0; c < axes; c++) normal[c * m + i] = n[c];
+    }
+  });
+  add("kernelObstaclePoint", +[](long k, double t, Reals X, Reals x) {
+    // Position x (3) in the scene at time t of the point X of the frame of obstacle k.
+    const obstacles::Point place = rigid.obstacle[k].pose(t).scene(spatial(X));
+    for (int c = 0; c < 3; c++) x[c] = place[c];
+  });
+  add("kernelObstacleVelocity", +[](long k, double t, Reals x, Reals v, Reals spin) {
+    // Velocity v (3) of obstacle k at the position x in the scene, and its spin (3), at time t.
+    const obstacles::Obstacle &moving = rigid.obstacle[k];
+    const obstacles::Point velocity = moving.velocityAt(t, spatial(x)), turning = moving.spin(t);
+    for (int c = 0; c < 3; c++) { v[c] = velocity[c];  spin[c] = turning[c]; }
+  });
+}
+
 extern "C" void openblas_set_num_threads(int) __attribute__((weak));
 
 static void limitThreads() {
@@ -226,8 +324,8 @@ static void addKernels() {
   addBodies();
   addFactor();
   addStep();
-  pairs::addPairs();
-  shapes::addShapes();
+  addPairs();
+  addObstacles();
 }
 
 LOADFUNC(addKernels)

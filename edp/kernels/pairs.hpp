@@ -2,7 +2,7 @@
 // core/contact/pair.idp, which derives the formulas: search for contact candidates, closest-point
 // projection onto the facets of the counter-body (edges in the plane, faces in space; A is the
 // dimension), rows of B and S, and the geometric contact stiffness at vertices. A candidate has the
-// number counterBody np + point. Exports addPairs().
+// number counterBody np + point. Exports Pairs.
 #pragma once
 #include <map>
 #include <memory>
@@ -143,17 +143,6 @@ inline Vector<3> normalOf(const ClosestPoint<3> &closestPoint, double side) {
   return side * closestPoint.tangents.col(0).cross(closestPoint.tangents.col(1)).normalized();
 }
 
-// Unit tangents (A, A - 1), perpendicular to n and to each other, as tangentFrames() of shapes.idp.
-inline Vector<2> tangentsOf(const Vector<2> &n) { return {n[1], -n[0]}; }
-inline Eigen::Matrix<double, 3, 2> tangentsOf(const Vector<3> &n) {
-  const double h = std::hypot(n[0], n[1]), x = std::sqrt(std::max(0., 1 - n[0] * n[0]));
-  Eigen::Matrix<double, 3, 2> t;
-  if (h > 0.1) t.col(0) << n[1] / h, -n[0] / h, 0;
-  else t.col(0) << x, -n[0] * n[1] / std::max(0.5, x), -n[0] * n[2] / std::max(0.5, x);
-  t.col(1) = t.col(0).cross(n);
-  return t;
-}
-
 // The vectors c_l (columns) in the slip t.rho + c_l.(N_a,l delta y_a) along t. They subtract the
 // rotation of the facet, which turns the gap vector g n (closest.idp). m: normal of the facet.
 inline Vector<2> turning(const ClosestPoint<2> &closestPoint, const Vector<2> &,
@@ -185,14 +174,11 @@ struct Surface {
   Shape shape;                             // N_a = shape(a, :) . monomials
 };
 
-// Triplets of B (normal) and S (slip), with 2 A nodes entries for each candidate.
-struct Rows { Ints row, unknown;  Reals normal, slip; };
-
 struct AnyPairs {
   virtual ~AnyPairs() {}
   virtual long search(const double *x, double searchDistance) = 0;
   virtual long start(const double *x, long unknowns) = 0;
-  virtual void gaps(const double *d, double *q0, double *q1, const Rows &rows) = 0;
+  virtual void gaps(const double *d, double *q0, double *q1, const JacobianRows &rows) = 0;
   virtual long geometricTerms(const double *t, const double *free, const double *limit,
                               Ints termOf, Ints unknown, Reals value, Reals stiffness) = 0;
 };
@@ -274,7 +260,7 @@ public:
     return long(candidate.size());
   }
 
-  void gaps(const double *d, double *q0, double *q1, const Rows &rows) {
+  void gaps(const double *d, double *q0, double *q1, const JacobianRows &rows) {
     // For the increment d: penetrations q0, q1 [m] at the start and end of the step, and the rows
     // of B and S. Candidates that cannot come into contact keep q0, q1 and get zero rows.
     const long n = long(candidate.size()), entries = 2 * A * surface.nodes * n;
@@ -584,7 +570,7 @@ private:
     });
   }
 
-  void row(int k, long n, bool seen, double change, const Rows &rows) const {
+  void row(int k, long n, bool seen, double change, const JacobianRows &rows) const {
     // Row k of n of B and S in the middle configuration, (b) and (c) of pair.idp, zero if not seen:
     //   rho = delta x - N_a delta y_a,  G delta = n.rho,
     //   S_j delta = t_j.rho + c_jl.(N_a,l delta y_a),  a = G d,  s_j = S_j d,
@@ -646,35 +632,5 @@ private:
       + (increments > 0 ? r : 1 - r) * p.closestPoint.tangents.col(0).norm() - p.gap * theta)) : 0;
   }
 };
-
-static std::unique_ptr<AnyPairs> ofScene;
-
-static void addPairs() {
-  // kernelSurface makes `ofScene` from a Surface; the others call its functions.
-  ::add("kernelSurface", +[](Table shape, long points, long obstacles, long bodies, Ints unknown,
-                            Ints body, Reals side, Reals pointShape, Ints selfContact,
-                            Reals reference) {
-    const int facets = int(body.N()), nodes = int(shape.N());
-    Surface s = {facets, nodes, int(points), facets * int(points), int(obstacles), int(bodies),
-                 copied<int>(unknown), copied<int>(body), copied<double>(side),
-                 copied<double>(pointShape), copied<int>(selfContact),
-                 copied<double>(reference), Shape(nodes, shape.M())};
-    for (int a = 0; a < nodes; a++) for (int j = 0; j < shape.M(); j++) s.shape(a, j) = shape(a, j);
-    if (shape.M() == termsOf(2)) ofScene.reset(new Pairs<2>(s));
-    else ofScene.reset(new Pairs<3>(s));
-  });
-  ::add("kernelSearchPairs", +[](Reals x, double searchDistance) {
-    return ofScene->search(x, searchDistance);
-  });
-  ::add("kernelPairStart", +[](Reals x) { return ofScene->start(x, x.N()); });
-  ::add("kernelPairGaps", +[](Reals d, Reals q0, Reals q1, Ints row, Ints unknown, Reals normal,
-                             Reals slip) {
-    ofScene->gaps(d, q0, q1, {row, unknown, normal, slip});
-  });
-  ::add("kernelPairGeometricTerms", +[](Reals t, Reals free, Reals limit, Ints termOf,
-                                       Ints unknown, Reals value, Reals stiffness) {
-    return ofScene->geometricTerms(t, free, limit, termOf, unknown, value, stiffness);
-  });
-}
 
 }

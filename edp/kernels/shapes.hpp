@@ -1,10 +1,8 @@
-// shapes.hpp: rigid obstacles (7) whose closest point needs a search: a polyline and an implicit
-// surface D(x) = 0 here, a triangle mesh in surface.hpp. Each is a Shape, made from the numbers
-// that core/contact/shapes.idp describes. Scripts compute planes, circles,
-// spheres and bowls.
-// Exports addShapes(): the kernels kernelObstacle and kernelObstacleGaps.
+// shapes.hpp: rigid obstacles (7) in their own frame: signed gap, outward normal and piece of the
+// closest point. A Shape is made from the numbers that core/contact/shapes.idp describes; make()
+// knows their kinds. The triangle mesh is in surface.hpp; obstacles.hpp moves the shapes.
+// Exports Shape, Nearest and make().
 #pragma once
-#include <map>
 #include <memory>
 #include "call.hpp"
 #include "surface.hpp"
@@ -18,8 +16,40 @@ typedef Eigen::Vector3d Point;             // z = 0 in the plane
 struct Nearest { double gap;  Point normal;  long piece; };
 
 struct Shape {
+  double rounding = 0;   // on a round piece |x - centre| = |gap + rounding|
   virtual ~Shape() {}
   virtual Nearest nearest(const Point &x) const = 0;
+};
+
+inline Point pointOf(const double *numbers, int axes) {
+  return {numbers[0], numbers[1], axes == 3 ? numbers[2] : 0};
+}
+
+class Plane : public Shape {
+ public:
+  Plane(const double *numbers, int axes)   // a point [m], the outward normal
+    : point(pointOf(numbers, axes)), normal(pointOf(numbers + axes, axes).normalized()) {}
+  Nearest nearest(const Point &x) const override {
+    return {normal.dot(x - point), normal, 1};   // (7): v_N = -n.(x_B - x_R), regularised by (10)
+  }
+
+ private:
+  Point point, normal;
+};
+
+// A circle or, in space, a sphere; a bowl is solid outside it.
+class Circle : public Shape {
+ public:
+  Circle(const double *numbers, int axes, bool hollow)   // centre, radius [m]
+    : centre(pointOf(numbers, axes)), side(hollow ? -1 : 1) { rounding = side * numbers[axes]; }
+  Nearest nearest(const Point &x) const override {
+    const double r = side * std::max(1e-300, (x - centre).norm());
+    return {r - rounding, (x - centre) / r, -1};   // (7): gap = -v_N
+  }
+
+ private:
+  Point centre;
+  double side;
 };
 
 // A chain of straight sides in the plane; its free side is to the left. If open, it continues
@@ -65,7 +95,6 @@ class Polyline : public Shape {
   struct Side { Point along, normal;  double low, high; };   // from vertex j to j + 1
   std::vector<Point> vertex;
   std::vector<Side> side;
-  double rounding;
 };
 
 // D(x) with its gradient, both exact (dual numbers). The program is for a stack: 0 and a number;
@@ -203,7 +232,7 @@ class Program {
 // The surface D(x) = 0, free where D > 0.
 class Implicit : public Shape {
  public:
-  Implicit(long itsNumber, long itsAxes, const double *numbers, long size)
+  Implicit(long itsNumber, int itsAxes, const double *numbers, long size)
     : number(itsNumber), axes(itsAxes), limit(numbers[0]) {
     Program::split({numbers + 1, numbers + size}, parts);
   }
@@ -218,7 +247,8 @@ class Implicit : public Shape {
   }
 
  private:
-  long number, axes;
+  long number;
+  int axes;
   double limit;
   std::vector<Program> parts;
 
@@ -321,30 +351,14 @@ class Triangles : public Shape {
   surface::Surface mesh;
 };
 
-static std::map<long, std::unique_ptr<Shape>> obstacles;   // by their numbers
-
-inline void addShapes() {
-  ::add("kernelObstacle", +[](long k, std::string &kind, long axes, Reals numbers) {
-    // Makes obstacle k from its numbers.
-    const long n = numbers.N();
-    obstacles[k].reset(kind == "polyline" ? static_cast<Shape *>(new Polyline(numbers, n))
-      : kind == "implicit" ? static_cast<Shape *>(new Implicit(k, axes, numbers, n))
-      : new Triangles(numbers));
-  });
-  ::add("kernelObstacleGaps", +[](long k, Reals X, Reals gap, Reals normal, Ints piece) {
-    // Gaps (m) [m], normals (axes m) and pieces (m) of obstacle k at m points X (axes m) in its
-    // frame.
-    const Shape &obstacle = *obstacles[k];
-    const long m = gap.N(), axes = m > 0 ? X.N() / m : 0;
-    for (long i = 0; i < m; i++) {
-      Point x = Point::Zero();
-      for (long c = 0; c < axes; c++) x[c] = X[c * m + i];
-      const Nearest closest = obstacle.nearest(x);
-      gap[i] = closest.gap;
-      piece[i] = closest.piece;
-      for (long c = 0; c < axes; c++) normal[c * m + i] = closest.normal[c];
-    }
-  });
+inline Shape *make(long number, const std::string &kind, int axes, const double *numbers,
+                   long size) {
+  // The shape of obstacle `number` from its numbers.
+  if (kind == "plane") return new Plane(numbers, axes);
+  if (kind == "polyline") return new Polyline(numbers, size);
+  if (kind == "implicit") return new Implicit(number, axes, numbers, size);
+  if (kind == "surface") return new Triangles(numbers);
+  return new Circle(numbers, axes, kind == "bowl");
 }
 
 }

@@ -58,4 +58,15 @@ inline Vector<3> principal(const Symmetric &C, bool spatial) {
   return {solver.eigenvalues()[1], solver.eigenvalues()[0], C[2]};
 }
 
+// Unit tangents (A, A - 1), perpendicular to n and to each other, as tangentFrames() of shapes.idp.
+inline Vector<2> tangentsOf(const Vector<2> &n) { return {n[1], -n[0]}; }
+inline Eigen::Matrix<double, 3, 2> tangentsOf(const Vector<3> &n) {
+  const double h = std::hypot(n[0], n[1]), x = std::sqrt(std::max(0., 1 - n[0] * n[0]));
+  Eigen::Matrix<double, 3, 2> t;
+  if (h > 0.1) t.col(0) << n[1] / h, -n[0] / h, 0;
+  else t.col(0) << x, -n[0] * n[1] / std::max(0.5, x), -n[0] * n[2] / std::max(0.5, x);
+  t.col(1) = t.col(0).cross(n);
+  return t;
+}
+
 }
