@@ -44,7 +44,7 @@ class Circle : public Shape {
     : centre(pointOf(numbers, axes)), side(hollow ? -1 : 1) { rounding = side * numbers[axes]; }
   Nearest nearest(const Point &x) const override {
     const double r = side * std::max(1e-300, (x - centre).norm());
-    return {r - rounding, (x - centre) / r, -1};   // (7): gap = -v_N
+    return {r - rounding, (x - centre) / r, -1};
   }
 
  private:
@@ -83,12 +83,12 @@ class Polyline : public Shape {
     }
     const bool before = along < side[j].low, after = along > side[j].high;
     if (!before && !after)   // beside a side: gap n.(x_B - x_R) = -v_N
-      return {side[j].normal.dot(x - vertex[j]) - rounding, side[j].normal, long(j) + 1};   // (7)
+      return {side[j].normal.dot(x - vertex[j]) - rounding, side[j].normal, long(j) + 1};
     const size_t v = before ? j : (j + 1) % vertex.size();
     const Point r = x - vertex[v],
       both = side[v].normal + side[v > 0 ? v - 1 : side.size() - 1].normal;
     const double h = (both.dot(r) < 0 ? -1 : 1) * std::max(1e-300, r.norm());
-    return {h - rounding, r / h, -long(v) - 1};   // (7): gap to a corner = -v_N
+    return {h - rounding, r / h, -long(v) - 1};
   }
 
  private:
@@ -243,7 +243,7 @@ class Implicit : public Shape {
       const Nearest other = nearestOf(parts[k], x);
       if (other.gap < least.gap) least = other;
     }
-    return least;   // (7): gap = -v_N, of the nearest part
+    return least;
   }
 
  private:

@@ -56,7 +56,7 @@ class Surface {
     const double distance = away.norm(), side = away.dot(closest.normal) < 0 ? -1 : 1;
     n = closest.inFace || distance == 0 ? closest.normal.normalized()
       : Point(side / distance * away);
-    return side * distance - rounding;   // (7): n.(x_B - x_R) = -v_N
+    return side * distance - rounding;
   }
 
  private:
