@@ -29,8 +29,8 @@ def turned(moments: np.ndarray, start: np.ndarray, spin: np.ndarray, t: float) -
     horizon = radian * 2.0 ** max(0, math.ceil(math.log2(max(t / radian, 1))))
     solution = _solution(moments.tobytes(), start.tobytes(), spin.tobytes(), horizon)
     # the rotation closest to the solution
-    left, _, right = np.linalg.svd(solution(t).reshape(3, 3))
-    return left @ right
+    left_vectors, _, right_vectors = np.linalg.svd(solution(t).reshape(3, 3))
+    return left_vectors @ right_vectors
 
 
 def fastest(moments: np.ndarray, start: np.ndarray, spin: np.ndarray) -> float:
