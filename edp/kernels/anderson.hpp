@@ -21,7 +21,8 @@ class Anderson {
 
   void learn(const Vector &move, const Vector &correction, const Vector &pressure) {
     // Adds the pair of a change `move` of w and a change `correction` of -A^-1 r, unless that is 0.
-    // pressure: the same for the pressures of the elements (volume.idp), without slope g0.d.
+    // pressure: the sum of both changes for the pressures of the elements (volume.idp), without
+    // slope g0.d.
     const double size = correction.norm();
     if (!(size > 0)) return;
     newest = (newest + 1) % memory;

@@ -24,7 +24,7 @@ using laws::Symmetric;
 
 // The stored components of F and C. Component k of F is F_iJ, i = row(k), J = column(k), made of
 // u_component(k) and shape derivative number derivative(k), of which a node has `derivatives`.
-// symmetric(k) is the position of component k of C in a Symmetric.
+// symmetricIndex(k) is the position of component k of C in a Symmetric.
 template<int dimensions, int revolves> struct Stored {
   static const int D = dimensions, H = revolves, F = D * D + H, C = D == 3 ? 6 : 4,
     derivatives = D + H;
@@ -32,14 +32,14 @@ template<int dimensions, int revolves> struct Stored {
   static int column(int k) { return k < D * D ? k % D : 2; }
   static int component(int k) { return k < D * D ? k / D : 0; }
   static int derivative(int k) { return k < D * D ? k % D : D; }
-  static int symmetric(int k) {
+  static int symmetricIndex(int k) {
     static const int plane[4] = {0, 1, 3, 2};
     return D == 3 ? k : plane[k];
   }
 };
 
 // How an evaluation ended, as stepStatus of residual.idp.
-enum { fine = 0, diverged = 1, inverted = 2, notANumber = 3 };
+enum { succeeded = 0, diverged = 1, inverted = 2, notANumber = 3 };
 using tensors::stepMean;
 using tensors::stepMiddle;
 using tensors::stepEnd;
@@ -171,23 +171,24 @@ public:
   int forces(const double *d, const double *inertiaKnown, const double *bodyForce,
              const Step &step, const Deformation &at, double *residual) {
     // residual = G^T (w P) + M (massScale d - inertiaKnown) - bodyForce [N/m, N] of (2) at the
-    // increment d, also at held unknowns, and the deformation `at`. Returns fine, inverted or
+    // increment d, also at held unknowns, and the deformation `at`. Returns succeeded, inverted or
     // notANumber.
-    int ended = fine;
+    int ended = succeeded;
     nodal.resize(nodes * D);
     for (int i = 0; i < nodes * D; i++) nodal[i] = d[unknown[i]];
     dispatch([&](auto stored) {
       ended = this->template internalForces<decltype(stored)>(step, at);
     });
-    if (ended != fine) return ended;
+    if (ended != succeeded) return ended;
     if (step.carries)
       for (int i = 0; i < nodes * D; i++) volume.pressureRemainder[unknown[i]] = remainders[i];
     for (int i = 0; i < nodes * D; i++)
       nodal[i] = step.massScale * nodal[i] - inertiaKnown[unknown[i]];
     dispatch([&](auto stored) { this->template inertia<stored.D>(); });
-    for (int i = 0; i < nodes * D; i++)   // pull: P : Grad w + rho0 A, of unknown i
-      residual[unknown[i]] = pull[i] - bodyForce[unknown[i]];   // (1): Div P + rho0 b = rho0 A
-    return fine;
+    for (int i = 0; i < nodes * D; i++)   // nodalForces: P : Grad w + rho0 A, of unknown i
+      residual[unknown[i]] =
+        nodalForces[i] - bodyForce[unknown[i]];   // (1): Div P + rho0 b = rho0 A
+    return succeeded;
   }
 
   void tangent(const double *F, const double *S, const double *p, double massScale,
@@ -207,17 +208,17 @@ public:
     atPoints([&](auto stored, int q) {
       typedef decltype(stored) T;
       const laws::Material &m = material(q);
-      const Symmetric c = symmetric<T>(C, q);
+      const Symmetric c = tensorAt<T>(C, q);
       W[q] = laws::energy(m, c);
       if (m.relaxing > 0)
-        W[q] += laws::stored(m, laws::invariantsBeyond(c, symmetric<T>(damping, q)), 1);
+        W[q] += laws::stored(m, laws::invariantsBeyond(c, tensorAt<T>(damping, q)), 1);
     });
     for (size_t g = 0; g < cell.size(); g++) {
       double theta = 0;
       dispatch([&](auto stored) {
         for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++)
           theta += weight[q] / elementWeight[g]
-            * laws::volume(material(q), symmetric<decltype(stored)>(C, q));
+            * laws::volume(material(q), tensorAt<decltype(stored)>(C, q));
       });
       for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++)
         W[q] += laws::volumeEnergy(material(q), theta);
@@ -227,34 +228,34 @@ public:
     // Advances `damping` over a step from C0 to C1.
     atPoints([&](auto stored, int q) {
       typedef decltype(stored) T;
-      Symmetric A = symmetric<T>(damping, q);
+      Symmetric A = tensorAt<T>(damping, q);
       damping[T::C * nq + q] +=
-        laws::damp(material(q), symmetric<T>(C0, q), symmetric<T>(C1, q), dt, A);
+        laws::damp(material(q), tensorAt<T>(C0, q), tensorAt<T>(C1, q), dt, A);
       put<T>(A, q, damping);
     });
   }
   void lawStresses(const double *C, double *S) const {   // S of the laws at C
     atPoints([&](auto stored, int q) {
       typedef decltype(stored) T;
-      put<T>(material(q).law->stress(material(q), symmetric<T>(C, q)), q, S);
+      put<T>(material(q).law->stress(material(q), tensorAt<T>(C, q)), q, S);
     });
   }
   void corrections(const double *M, const double *H, double *e) const {   // gradientCorrection()
     atPoints([&](auto stored, int q) {
       typedef decltype(stored) T;
-      e[q] = material(q).law->gradientCorrection(material(q), symmetric<T>(M, q),
-                                                 symmetric<T>(H, q));
+      e[q] = material(q).law->gradientCorrection(material(q), tensorAt<T>(M, q),
+                                                 tensorAt<T>(H, q));
     });
   }
   void ellipticities(const double *C, double *e) const {
     atPoints([&](auto stored, int q) {
-      e[q] = material(q).law->ellipticity(material(q), symmetric<decltype(stored)>(C, q), D == 3);
+      e[q] = material(q).law->ellipticity(material(q), tensorAt<decltype(stored)>(C, q), D == 3);
     });
   }
   void smallestStretches(const double *C, double *stretch) const {
     // Smallest principal stretch; in plane strain the smaller one in the plane.
     atPoints([&](auto stored, int q) {
-      const laws::Vector<3> L = laws::principal(symmetric<decltype(stored)>(C, q), D == 3);
+      const laws::Vector<3> L = laws::principal(tensorAt<decltype(stored)>(C, q), D == 3);
       stretch[q] = std::sqrt(std::max(0., D == 3 ? L[2] : H == 1 ? std::min(L[1], L[2]) : L[1]));
     });
   }
@@ -285,8 +286,9 @@ private:
   }
 
   // (node, component): displacements or accelerations, forces, d - dBase, pressureRemainder
-  std::vector<double> nodal, pull, increment, remainders;
-  std::vector<double> own, ownRemainders;  // contributions of each element to pull and remainders
+  std::vector<double> nodal, nodalForces, increment, remainders;
+  // contributions of each element to nodalForces and remainders
+  std::vector<double> own, ownRemainders;
 
   // Calls f(stored) with the Stored<...> of these bodies.
   template<class Function> void dispatch(Function f) const {
@@ -305,18 +307,18 @@ private:
     for (int k = 0; k < T::F; k++) F(T::row(k), T::column(k)) = stacked[k * nq + q];
     return F;
   }
-  template<class T> Symmetric symmetric(const double *stacked, int q) const {
+  template<class T> Symmetric tensorAt(const double *stacked, int q) const {
     Symmetric A = Symmetric::Zero();
-    for (int k = 0; k < T::C; k++) A[T::symmetric(k)] = stacked[k * nq + q];
+    for (int k = 0; k < T::C; k++) A[T::symmetricIndex(k)] = stacked[k * nq + q];
     return A;
   }
   template<class T> void put(const Symmetric &A, int q, double *stacked) const {
-    for (int k = 0; k < T::C; k++) stacked[k * nq + q] = A[T::symmetric(k)];
+    for (int k = 0; k < T::C; k++) stacked[k * nq + q] = A[T::symmetricIndex(k)];
   }
 
   template<class T> int internalForces(const Step &step, const Deformation &at) {
-    // pull = internal forces, and remainders. Element contributions are summed in the order of the
-    // elements, so the result does not depend on the number of threads.
+    // nodalForces = internal forces, and remainders. Element contributions are summed in the order
+    // of the elements, so the result does not depend on the number of threads.
     const int elements = int(firstNode.size()) - 1;
     if (step.carries) {
       increment.resize(nodes * D);
@@ -333,9 +335,9 @@ private:
     const double smallest = least(at.jacobian1);
     if (smallest != smallest) return notANumber;
     if (smallest <= 0 && step.breaks) return inverted;
-    sum(own, pull);
+    sum(own, nodalForces);
     if (step.carries) sum(ownRemainders, remainders);
-    return fine;
+    return succeeded;
   }
   void sum(const std::vector<double> &ofElements, std::vector<double> &all) const {
     // Adds the contributions of the elements at each node.
@@ -345,10 +347,10 @@ private:
   }
 
   template<int D> void inertia() {
-    // pull += M nodal
+    // nodalForces += M nodal
     for (size_t p = 0; p < massOf.size(); p++) {
       const double m = massOf[p], *x = nodal.data();
-      double *to = pull.data();
+      double *to = nodalForces.data();
       const int a = pairA[p] * D, b = pairB[p] * D;
       for (int i = 0; i < D; i++) to[a + i] += m * x[b + i];
       if (a != b) for (int i = 0; i < D; i++) to[b + i] += m * x[a + i];
@@ -407,12 +409,12 @@ private:
     if (!cell.empty()) elementPressure<T>(g, step, at, pressed);
     for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++, N += n * T::derivatives) {
       const laws::Material &m = material(q);
-      const Symmetric C0 = symmetric<T>(at.C0, q),
+      const Symmetric C0 = tensorAt<T>(at.C0, q),
         C1 = laws::rightCauchyGreen(whole<T>(step.stressInstant == stepMiddle ? at.Fs : at.F1, q));
       Symmetric S = step.stressInstant == stepMean ? m.law->algorithmicStress(m, C0, C1)
         : m.law->stress(m, C1);            // (4): S = g(E)
       if (step.rate > 0) {
-        const Symmetric A = m.relaxing > 0 ? symmetric<T>(damping, q) : laws::identity;
+        const Symmetric A = m.relaxing > 0 ? tensorAt<T>(damping, q) : laws::identity;
         S += laws::dampingStress(m, C0, laws::rightCauchyGreen(whole<T>(at.F1, q)), A, step.rate);
       }
       if (!cell.empty()) S += pressed.p * pressed.T[q - firstPoint[g]];
@@ -438,7 +440,7 @@ private:
       Symmetric &to = pressed.T[q - firstPoint[g]];
       theta1 += w * j;
       if (step.stressInstant == stepMean) {
-        const Symmetric C0 = symmetric<T>(at.C0, q);
+        const Symmetric C0 = tensorAt<T>(at.C0, q);
         const double j0 = laws::volume(m, C0);
         to = laws::volumeDirection(m, C0, C1, j0 + j);
         theta0 += w * j0;
@@ -491,7 +493,7 @@ private:
       const double *N = &shape[firstShape[g]];
       for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++) {
         double A[T::F][T::F];
-        slopes<T>(q, whole<T>(F, q), symmetric<T>(S, q), cell.empty() ? 0 : pressure[cell[g]],
+        slopes<T>(q, whole<T>(F, q), tensorAt<T>(S, q), cell.empty() ? 0 : pressure[cell[g]],
                   scale, rate, A);
         const int *to = &pairOf[firstPair[g]];
         for (int a = 0; a < n; a++) {
@@ -515,8 +517,8 @@ private:
 
   template<class T> void slopes(int q, const Tensor &F, const Symmetric &S, double p,
                                 double scale, double rate, double A[][T::F]) const {
-    // A = scale w dP_iJ/dF_kL, dP_iJ/dF_kL = delta_ik S_JL + F_iI F_kK D_IJKL, as addModuli() of
-    // assembly.idp.
+    // A = scale w dP_iJ/dF_kL, dP_iJ/dF_kL = delta_ik S_JL + F_iI F_kK D_IJKL, as setPointModuli()
+    // of assembly.idp.
     const laws::Moduli moduli = laws::moduli(material(q), laws::rightCauchyGreen(F), p, scale,
                                              rate);
     double G[6][T::F];                     // F_kK D_IJKL

@@ -1,6 +1,6 @@
 // call.hpp: add(name, f) makes the C++ function f callable from FreeFEM scripts under `name`.
-// f takes any number of arguments (long, double, bool, long &, std::string &, Reals, Ints, Table,
-// Sparse) and returns long or nothing; FreeFEM then gets 0.
+// f takes any number of arguments (long, double, bool, double &, std::string &, Reals, Ints,
+// Table, Sparse, Callback) and returns long or nothing; FreeFEM then gets 0.
 // Exports add(), the argument types, copied(), and giveUp() and check() for fatal errors.
 #pragma once
 #include <cstdio>
@@ -18,9 +18,9 @@
   std::fflush(nullptr);
   std::_Exit(code);
 }
-// For a library that has run out of memory or has rejected its arguments.
+// For a library that has run out of memory.
 [[noreturn]] inline void giveUp(const std::string &what) {
-  giveUp(14, "memory: " + what
+  giveUp(14, "memory: not enough for " + what
     + ": take larger elements (mesh_size, contact_mesh_size) or a larger accuracy");
 }
 inline void check(bool good, const char *what) { if (!good) giveUp(what); }
@@ -121,7 +121,7 @@ template <class F, class... A> struct Called : E_F0mps {
   AnyType operator()(Stack s) const {
     try { return SetAny<long>(call(f, s, std::index_sequence_for<A...>())); }
     catch (const std::bad_alloc &) {
-      giveUp("there is not enough of it for the compiled kernels");
+      giveUp("the compiled kernels");
     }
   }
 };

@@ -50,7 +50,7 @@ bool invert(int n, Numbers &A,
   return true;
 }
 inline bool isDiagonal(const Vector &A, int n) { return n > 1 && A.size() == n; }
-inline void symmetric(const Vector &A, const Vector &x, Vector &y) {
+inline void multiply(const Vector &A, const Vector &x, Vector &y) {
   // y = A x with a symmetric A, full or diagonal.
   const double alpha = 1, beta = 0;
   const int n = x.size(), step = 1;
@@ -58,7 +58,7 @@ inline void symmetric(const Vector &A, const Vector &x, Vector &y) {
   y.resize(n);
   if (n > 0) dsymv_("L", &n, &alpha, A.data(), &n, x.data(), &step, &beta, y.data(), &step);
 }
-inline void symmetric(const Eigen::VectorXf &A, const Vector &x, Vector &y) {
+inline void multiply(const Eigen::VectorXf &A, const Vector &x, Vector &y) {
   // The same in single precision.
   const float alpha = 1, beta = 0;
   const int n = x.size(), step = 1;
@@ -68,12 +68,11 @@ inline void symmetric(const Eigen::VectorXf &A, const Vector &x, Vector &y) {
 }
 
 // The gap Jacobian B on n unknowns: a block of gapRows rows for each active candidate, then a block
-// for each term of geometric contact stiffness, of which only the first row is used. A block is
-// called a point.
+// for each term of geometric contact stiffness, of which only the first row is used.
 struct Rows {
-  int n = 0, points = 0, gapRows = 1;              // points: without the geometric terms
-  Indices first{0}, column, owner;               // point b has the entries first[b] to
-                                                 // first[b + 1] - 1; unknown and point of an entry
+  int n = 0, points = 0, gapRows = 1;            // points: blocks of candidates
+  Indices first{0}, column, blockOf;             // block b has the entries first[b] to
+                                                 // first[b + 1] - 1; unknown and block of an entry
   std::vector<double> value;
   Vector geometric;                       // gapRows values an entry; stiffness c of the terms
   // Sparsity pattern of K and the diagonal for B with the entries `first`, `column`: by columns in
@@ -83,12 +82,12 @@ struct Rows {
 
   int blocks() const { return first.size() - 1; }
   int entries(int b) const { return first[b + 1] - first[b]; }
-  void begin(int unknowns, int kindsOfPoint) {
+  void begin(int unknowns, int rowsOfBlock) {
     // Removes all points; the pattern is kept.
     const std::shared_ptr<const Pattern> patternBefore = pattern;
     *this = Rows();
     n = unknowns;
-    gapRows = kindsOfPoint;
+    gapRows = rowsOfBlock;
     pattern = patternBefore;
   }
   void entry(int j, int kind, double v) {
@@ -96,27 +95,27 @@ struct Rows {
     const int e = std::find(column.begin() + first.back(), column.end(), j) - column.begin();
     if (e == (int)column.size()) {
       column.push_back(j);
-      owner.push_back(blocks());
+      blockOf.push_back(blocks());
       value.resize(value.size() + gapRows, 0.);
     }
     value[gapRows * e + kind] += v;
   }
-  void endPoint() { first.push_back(column.size()); }
+  void endBlock() { first.push_back(column.size()); }
   void end(const Vector &geometricTerms) {
     geometric = geometricTerms;
     points = blocks() - geometric.size();
   }
-  void push(const Vector &t, Vector &force) const {   // force = B^T t
+  void transposeTimes(const Vector &t, Vector &force) const {   // force = B^T t
     force = Vector::Zero(n);
     for (size_t e = 0; e < column.size(); e++)
       for (int c = 0; c < gapRows; c++)
-        force[column[e]] += value[gapRows * e + c] * t[gapRows * owner[e] + c];
+        force[column[e]] += value[gapRows * e + c] * t[gapRows * blockOf[e] + c];
   }
-  void pull(const Vector &increment, Vector &move) const {   // move = B increment
+  void times(const Vector &increment, Vector &move) const {   // move = B increment
     move = Vector::Zero(gapRows * blocks());
     for (size_t e = 0; e < column.size(); e++)
       for (int c = 0; c < gapRows; c++)
-        move[gapRows * owner[e] + c] += value[gapRows * e + c] * increment[column[e]];
+        move[gapRows * blockOf[e] + c] += value[gapRows * e + c] * increment[column[e]];
   }
   void slope(const Vector &D, const Vector &move, Vector &change) const {
     // change = D move; D has a gapRows x gapRows block for each point
@@ -165,7 +164,7 @@ struct Rows {
                                     made.row.data(), nullptr, made.place.data()) == UMFPACK_OK
           && umfpack_di_symbolic(n, n, made.start.data(), made.row.data(), nullptr, &symbolic,
                                  nullptr, nullptr) == UMFPACK_OK,
-          "there is not enough of it for the pattern of the contact");
+          "there is not forceTolerance of it for the pattern of the contact");
     made.symbolic.reset(symbolic, [](void *s) { umfpack_di_free_symbolic(&s); });
     pattern = std::make_shared<const Pattern>(std::move(made));
   }
@@ -174,7 +173,7 @@ struct Rows {
 // The Newton matrix S + K on the unknowns, S = C^-1, K = B^T D B sparse, D = dt/dx, and its solver:
 // dense LU for up to mostDense unknowns, else conjugate residuals with the preconditioner P, a
 // sparse LU of S + K restricted to the pattern of K. Other entries of S are small beside K. For a
-// diagonal S, P is the matrix itself. The iterations read S in single precision.
+// diagonal S, P is the matrix itself. The iterations read a full S in single precision.
 class Newton {
  public:
   int mostDense = 200, mostIterations = 5;       // P is renewed if the last solve took more
@@ -244,7 +243,7 @@ class Newton {
     const int status = umfpack_di_numeric(start.data(), row.data(), P.data(),
                                           pattern->symbolic.get(), &made, nullptr, nullptr);
     check(status == UMFPACK_OK || status == UMFPACK_WARNING_singular_matrix,
-          "there is not enough of it for the matrix of the contact");
+          "the matrix of the contact");
     numeric.reset(made, [](void *s) { umfpack_di_free_numeric(&s); });
   }
 
@@ -263,12 +262,12 @@ class Newton {
                                           P.data(), increment.data(), residual.data(),
                                           numeric.get(), control, nullptr);
       check(status == UMFPACK_OK || status == UMFPACK_WARNING_singular_matrix,
-            "there is not enough of it to solve the contact");
-      if (isDiagonal(S, n)) symmetric(S, increment, image);
-      else symmetric(rounded, increment, image);
-      B.pull(increment, move);
+            "the solution of the contact");
+      if (isDiagonal(S, n)) multiply(S, increment, image);
+      else multiply(rounded, increment, image);
+      B.times(increment, move);
       B.slope(D, move, change);
-      B.push(change, more);
+      B.transposeTimes(change, more);
       image += more;
       for (size_t k = 0; k < increments.size(); k++) {
         const double h = image.dot(images[k]);
@@ -294,22 +293,22 @@ class Problem {
   Newton newton;
   Law law;
   std::vector<Candidate> point;
-  Indices turned;                                // number of status changes of a point in the step
+  Indices statusChanges;                         // of a point in the step
   Vector start, tau, force;                      // x_w; tau; B^T tau
-  double enough = 0, sticksBelow = 0;            // tolerance for the norm of t - tau [N]; speed
-                                                 // below which a slipping point sticks again [m/s]
-  int inverses = 0, mostStatusChanges = 4,       // matrices of this solve; limit of changes
-    agreeingFrom = 20;                           // matrices before the line search is used
+  double forceTolerance = 0;                     // for the norm of t - tau [N]
+  double sticksBelow = 0;                        // speed below which a slipping point sticks [m/s]
+  int mostStatusChanges = 0;                     // of a point
+  int matrices = 0, lineSearchFrom = 20;           // matrices of this solve; before the line search
 
   void comply(const Vector &compliance) {   // C: n x n values, or n if C is diagonal
     C = compliance;
     stiff = false;
   }
 
-  int solve(long mostInverses, long &inversesOfStep) {
+  int solve(long mostContactMatrices, long &contactMatrices) {
     // Newton's method for tau. With friction it uses the linearised law (linearise()) and keeps the
-    // matrix near convergence and for the start of the next solve; after `agreeingFrom` matrices,
-    // and without friction, it is plain Newton with a line search. inversesOfStep counts the
+    // matrix near convergence and for the start of the next solve; after `lineSearchFrom` matrices,
+    // and without friction, it is plain Newton with a line search. contactMatrices counts the
     // matrices of the step with friction. Returns the number of iterations, -1 on failure.
     const int hasFriction = law.slips > 0;
     newton.made = newton.fits(B);
@@ -319,17 +318,17 @@ class Problem {
     roundOff = largest(x);
     const double close = 1e-13 + (hasFriction ? 1e-15 * roundOff / (law.dt * law.slipVelocity) : 0);
     sigma.resize(0);
-    inverses = 0;
-    for (int it = 0; inverses < 60 && inversesOfStep <= mostInverses; it++) {
+    matrices = 0;
+    for (int it = 0; matrices < 60 && contactMatrices <= mostContactMatrices; it++) {
       const double scale = largest(t) + largest(tau), error = largest(unbalance);
       if (it == 0) biggest = scale;
-      bool done = error <= close * scale || scale == 0 || unbalance.norm() <= enough;
+      bool done = error <= close * scale || scale == 0 || unbalance.norm() <= forceTolerance;
       if (!done) {
         if (!(error <= 1e6 * biggest)) return -1;   // divergence or nan
-        const bool searches = !hasFriction || inverses >= agreeingFrom;
+        const bool searches = !hasFriction || matrices >= lineSearchFrom;
         if (!hasFriction || error > (it == 0 ? 0.1 : 1e-3) * scale || error > 0.3 * errorBefore) {
-          inverses++;
-          if (hasFriction) inversesOfStep++;
+          matrices++;
+          if (hasFriction) contactMatrices++;
           if (!searches) linearise();
           stiffen();
           newton.make(B, slopes, S);
@@ -339,7 +338,7 @@ class Problem {
         if (!advance(searches)) { if (error <= 1e-9 * scale) done = true;  else return -1; }
       }
       if (done) {
-        if (updateStatuses() == 0) { B.push(tau, force);  return it; }
+        if (updateStatuses() == 0) { B.transposeTimes(tau, force);  return it; }
         errorBefore = 0;
       }
     }
@@ -359,9 +358,9 @@ class Problem {
   }
   void displace(const Vector &f, Vector &increment) const {   // increment = B C B^T f
     Vector g, y;
-    B.push(f, g);
-    symmetric(C, g, y);
-    B.pull(y, increment);
+    B.transposeTimes(f, g);
+    multiply(C, g, y);
+    B.times(y, increment);
   }
   void place() {   // x = x_w - B C B^T tau
     displace(tau, x);
@@ -428,9 +427,9 @@ class Problem {
     // Solves (S + K) y = B^T (t - tau) to a relative residual `share`. Increments: of the forces
     // step = t - tau - D B y, of gap and slip move = -B C B^T step.
     Vector f, y, change;
-    B.push(unbalance, f);
-    newton.solve(B, f, S, std::max(share * f.norm(), 1e-2 * enough), y);
-    B.pull(y, move);
+    B.transposeTimes(unbalance, f);
+    newton.solve(B, f, S, std::max(share * f.norm(), 1e-2 * forceTolerance), y);
+    B.times(y, move);
     B.slope(newton.D, move, change);
     step = unbalance - change;
     displace(step, move);
@@ -469,11 +468,11 @@ class Problem {
       Candidate &a = point[b];
       const double v = (law.slips == 1 ? std::abs(x[k * b + 1])
         : std::hypot(x[k * b + 1], x[k * b + 2])) / law.dt;
-      if (!(t[k * b] > 0) || turned[b] > mostStatusChanges
+      if (!(t[k * b] > 0) || statusChanges[b] > mostStatusChanges
           || !(a.sticks ? v >= law.slipVelocity : v < sticksBelow))
         continue;
-      turned[b]++;
-      if (a.sticks || turned[b] <= mostStatusChanges) { a.sticks = !a.sticks;  changed++; }
+      statusChanges[b]++;
+      if (a.sticks || statusChanges[b] <= mostStatusChanges) { a.sticks = !a.sticks;  changed++; }
     }
     if (changed > 0) evaluate(nullptr);
     return changed;

@@ -27,10 +27,11 @@ class Contact {
   Law &law = problem.law;
   bool jacobianFixed = false;                    // B never changes
   Vector diagonal;                               // explicit steps: A^-1 is diagonal, else empty
-  Indices candidates, unknowns;                  // of the active set
-  Indices orderedLast;                           // unknowns that A orders last
-  Vector last;                                   // candidateForces of the last solve
-  long inversesOfStep = 0, mostInverses = 1000000000;
+  Indices candidates;                            // of the active set
+  Indices unknowns;                              // of it or, if B changes, of all sets so far
+  Indices orderedLast;                           // unknowns that A orders lastForces
+  Vector lastForces;                                   // candidateForces of the lastForces solve
+  long contactMatrices = 0, mostContactMatrices = 1000000000;
 
   Contact(Factor &factorOfA, int &numberOfUnknowns) : factor(factorOfA), ndof(numberOfUnknowns) {}
 
@@ -53,7 +54,7 @@ class Contact {
       value[at] = script.value[e];
     }
     rowsChanged = true;
-    if (last.size() != rows) last = Vector::Zero(rows);
+    if (lastForces.size() != rows) lastForces = Vector::Zero(rows);
   }
 
   Vector move(const Vector &increment) const {   // B increment
@@ -96,7 +97,7 @@ class Contact {
   }
   void reset() {
     // Empties the active set and C, for a new A. orderedLast becomes the unknowns of the active
-    // candidates or, if rows change, all that were in the active set.
+    // candidates or, if B changes, all that were in an active set.
     computed = 0;
     if (jacobianFixed || diagonal.size() > 0) {
       index.assign(ndof, -1);
@@ -109,7 +110,7 @@ class Contact {
     clearActiveSet();
   }
   void beginStep() {
-    inversesOfStep = 0;
+    contactMatrices = 0;
     solvedSet = -1;
   }
   void update(const Vector &q, double distance) {
@@ -147,42 +148,42 @@ class Contact {
   }
   Vector comply(const Vector &f) const {         // C f
     Vector u;
-    symmetric(C, f, u);
+    multiply(C, f, u);
     return u;
   }
 
-  int solve(const Vector &freeGapSlip, const Vector &freeDisplacement, double enough, Vector &tau,
-            Vector &force) {
+  int solve(const Vector &freeGapSlip, const Vector &freeDisplacement, double forceTolerance,
+            Vector &tau, Vector &force) {
     // Solves the contact problem of the active set. Without contact forces gap and slip of all rows
     // are freeGapSlip, and the active unknowns are displaced by freeDisplacement from the state in
     // which the geometric terms exert no force. tau: forces of the active rows, in and out;
-    // force = B^T tau. `enough`: tolerance of the forces [N]. Returns the iterations, -1 if they do
-    // not converge.
+    // force = B^T tau. forceTolerance [N]: of the forces. Returns the iterations, -1 if they do not
+    // converge.
     Problem &p = problem;
     const int n = int(candidates.size()), gapRows = this->gapRows();
     if (solvedSet < 0) p.newton.forget();
     else if (solvedSet != setsMade) p.newton.made = false;
     solvedSet = setsMade;
-    p.enough = enough;
+    p.forceTolerance = forceTolerance;
     p.point.clear();
-    p.turned.clear();
-    p.B.pull(freeDisplacement, p.start);
+    p.statusChanges.clear();
+    p.B.times(freeDisplacement, p.start);
     p.tau = Vector::Zero(p.start.size());
     for (int i = 0; i < n; i++) {
       p.point.push_back(point(candidates[i]));
-      p.turned.push_back(int(script.statusChanges[candidates[i]]));
+      p.statusChanges.push_back(int(script.statusChanges[candidates[i]]));
       for (int c = 0; c < gapRows; c++) {
         p.start[gapRows * i + c] = freeGapSlip[c * ns() + candidates[i]];
         p.tau[gapRows * i + c] = tau[c * n + i];
       }
     }
-    const int iterations = p.solve(mostInverses, inversesOfStep);
+    const int iterations = p.solve(mostContactMatrices, contactMatrices);
     if (iterations < 0) return -1;
     for (int i = 0; i < n; i++) {
       for (int c = 0; c < gapRows; c++) tau[c * n + i] = p.tau[gapRows * i + c];
       if (law.slips == 0) continue;
       script.sticks[candidates[i]] = p.point[i].sticks;
-      script.statusChanges[candidates[i]] = p.turned[i];
+      script.statusChanges[candidates[i]] = p.statusChanges[i];
     }
     force = p.force;
     return iterations;
@@ -192,19 +193,19 @@ class Contact {
     // chooseStatuses() of candidate-forces.idp; no status has changed yet.
     const Vector moved = move(motion);
     script.statusChanges.numbers().setZero();
-    for (long s = 0; s < ns(); s++) if (!(last[s] > 0)) {
+    for (long s = 0; s < ns(); s++) if (!(lastForces[s] > 0)) {
       const double speed = law.slips == 1 ? std::abs(moved[ns() + s])
         : std::hypot(moved[ns() + s], moved[2 * ns() + s]);
       script.sticks[s] = speed < law.slipVelocity;
     }
   }
-  void remember(const Vector &tau) {             // `last` of the active rows
+  void remember(const Vector &tau) {             // `lastForces` of the active rows
     const int n = int(candidates.size());
-    for (int i = 0; i < tau.size(); i++) last[candidates[i % n] + i / n * ns()] = tau[i];
+    for (int i = 0; i < tau.size(); i++) lastForces[candidates[i % n] + i / n * ns()] = tau[i];
   }
 
   template<class Archive> void archive(Archive &archive) {
-    archive(candidates);  archive(unknowns);  archive(orderedLast);  archive(last);
+    archive(candidates);  archive(unknowns);  archive(orderedLast);  archive(lastForces);
   }
   void restore() {
     // The active set from its candidates and unknowns.
@@ -226,7 +227,7 @@ class Contact {
   std::vector<char> active;                      // (ns) 1: in the active set
   Indices index;                                 // (ndof) position in `unknowns`, or -1
   size_t computed = 0;                           // number of unknowns in C
-  long setsMade = 0, solvedSet = -1;             // active sets so far; the last one solved
+  long setsMade = 0, solvedSet = -1;             // active sets so far; the lastForces one solved
   Vector C;                                      // full, or the diagonal
 
   Candidate point(long s) const {
@@ -268,13 +269,13 @@ class Contact {
       for (int c = 0; c < gapRows(); c++)
         for (int r = s + c * ns(), e = first[r]; e < first[r + 1]; e++)
           if (value[e] != 0) B.entry(index[column[e]], c, value[e]);
-      B.endPoint();
+      B.endBlock();
     }
     for (long t = 0; t < script.termStiffness.size(); t++) {
       for (long e = 0; e < script.termOf.size(); e++)
         if (script.termOf[e] == t && script.termValue[e] != 0)
           B.entry(index[script.termUnknown[e]], 0, script.termValue[e]);
-      B.endPoint();
+      B.endBlock();
     }
     B.end(script.termStiffness.numbers());
     rowsChanged = false;

@@ -11,8 +11,8 @@
 // Momentum changes only by -h B^T tau, as the inner forces of free bodies sum to zero. B
 // annihilates rotations about the middle of (a), so angular momentum is exact, too. Energy:
 // (v+ M v+ - v- M v-)/2 = -(change of contact energy) - (friction work), exactly. The rest is the
-// error of
-// Verlet's method, which is bounded up to h = 2/omega_max, because the method is symmetric in time.
+// error of Verlet's method, which is bounded up to h = 2/omega_max, because the method is symmetric
+// in time.
 class ExplicitContact {
  public:
   using Vector = Eigen::VectorXd;
@@ -29,10 +29,10 @@ class ExplicitContact {
   long take(Eigen::Map<Vector> increment, const Vector &halfStepVelocity, double h,
             const Callback &gaps) {
     // Replaces the increment h v- of a substep without contact forces by that with them; v- is
-    // halfStepVelocity. Returns 0, or 1 without convergence. A B that changes with the increment is
-    // evaluated at the latest one, first with the forces of the last substep. Each pass reduces the
-    // error a thousandfold; the rest changes no momentum, and the energy by a thousandth of
-    // Verlet's error.
+    // halfStepVelocity. Returns 1 if the contact problem does not converge. A B that changes with
+    // the increment is evaluated at the latest one, first with the forces of the last substep. Each
+    // pass reduces the error a thousandfold; there are at most ten. The rest changes no momentum,
+    // and the energy by a thousandth of Verlet's error.
     const Vector free = increment;
     const long ns = contact.ns();
     double change = 1;
@@ -51,10 +51,10 @@ class ExplicitContact {
         contact.clearActiveSet();
       }
       contact.script.q1.numbers() = start.head(ns);
-      if (!contact.touches()) return part(increment, free, start);
+      if (!contact.touches()) return takeWithoutContact(increment, free, start);
       if (!solve(start, halfStepVelocity, back)) return 1;
       increment = free - back;
-      contact.last = contact.script.candidateForces.numbers();
+      contact.lastForces = contact.script.candidateForces.numbers();
       change = contact.jacobianFixed ? 0 : (before - increment).lpNorm<Eigen::Infinity>();
     }
     contact.script.q1.numbers() = contact.script.gapSlip.numbers().head(ns);
@@ -64,12 +64,12 @@ class ExplicitContact {
  private:
   contact::Contact &contact;
 
-  long part(Eigen::Map<Vector> &increment, const Vector &free, const Vector &start) {
+  long takeWithoutContact(Eigen::Map<Vector> &increment, const Vector &free, const Vector &start) {
     increment = free;
     contact.script.gapSlip.numbers() = start;
     contact.script.force.numbers().setZero();
     contact.script.candidateForces.numbers().setZero();
-    contact.last.setZero();
+    contact.lastForces.setZero();
     return 0;
   }
 
@@ -86,9 +86,9 @@ class ExplicitContact {
       Vector force;
       contact.update(q, 0);
       if (contact.law.jumps) contact.chooseStatus(halfStepVelocity);
-      Vector tau = contact.ofActive(contact.last),
+      Vector tau = contact.ofActive(contact.lastForces),
         still = Vector::Zero(long(contact.unknowns.size()));
-      contact.inversesOfStep = 0;
+      contact.contactMatrices = 0;
       if (contact.solve(start, still, 1e-8 * tau.norm(), tau, force) < 0) return false;
       const int n = int(contact.candidates.size());
       for (int i = 0; i < tau.size(); i++)

@@ -7,7 +7,6 @@
 // A must then be positive definite. Exports Factor.
 #pragma once
 #include <cholmod.h>
-#include <cstring>
 #ifdef __SSE__
 #include <xmmintrin.h>
 #endif
@@ -183,7 +182,7 @@ public:
     }
     if (L) cholmod_free_factor(&L, &common);
     cholmod_factor *analysis = cholmod_analyze(&A, &common);   // AMD, or METIS if AMD is poor
-    check(analysis, "there is not enough of it for the order of the matrix");
+    check(analysis, "the order of the matrix");
     ordered.assign((int *)analysis->Perm, (int *)analysis->Perm + n);
     cholmod_free_factor(&analysis, &common);
   }
@@ -206,7 +205,7 @@ public:
     if (!L->is_super) {
       cholmod_factorize(&A, L, &common);
       check(common.status == CHOLMOD_OK || common.status == CHOLMOD_NOT_POSDEF,
-            "there is not enough of it for the matrix");
+            "the matrix");
       if (common.status != CHOLMOD_OK || L->minor < L->n) return 1;
       takeColumns();
     }
@@ -235,7 +234,7 @@ public:
       rightSide.xtype = CHOLMOD_REAL;  rightSide.dtype = CHOLMOD_DOUBLE;
       check(cholmod_solve2(CHOLMOD_A, L, &rightSide, nullptr, &solution, nullptr, &work1, &work2,
                            &common),
-            "there is not enough of it to solve with the matrix");
+            "the solution with the matrix");
       std::copy((double *)solution->x, (double *)solution->x + n, x);
       return;
     }
@@ -330,7 +329,7 @@ private:
     common.method[0].ordering = CHOLMOD_GIVEN;
     common.postorder = 0;
     L = cholmod_analyze_p(&A, permutation.data(), nullptr, 0, &common);
-    check(L, "there is not enough of it for the pattern of the matrix");
+    check(L, "the pattern of the matrix");
     place.resize(n);
     for (int k = 0; k < n; k++) place[((int *)L->Perm)[k]] = k;
     blockOf.resize(n);

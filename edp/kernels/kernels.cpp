@@ -34,7 +34,7 @@ static contact::Contact touching(factor, body.ndof);
 static ImplicitStep step(body, factor, touching);
 static ExplicitContact substep(touching);
 static std::unique_ptr<pairs::AnyPairs> pairsOfBodies;
-static obstacles::Obstacles rigid;                   // the obstacles
+static obstacles::Obstacles sceneObstacles;                   // the obstacles
 
 static bodies::Triplets entries(Sparse A) {
   // The entries of a sparse matrix. The kernels take no half (symmetric) or 1-based storage.
@@ -57,14 +57,15 @@ static void addBodies() {
   add("kernelMaterial", +[](Reals lambda, Reals mu, Reals own, Reals eta, Reals zeta,
                            Reals relaxing, Reals relaxTime, Reals bulk, Reals dampingState,
                            Ints lawOfPoint, Ints volumeByTrace, Ints incompressible, Reals weight) {
-    // Arrays over the nq quadrature points; `own` has 8 stacked components.
+    // Arrays over the nq quadrature points; `own` has mostOwn stacked components.
     const long nq = weight.N();
+    ffassert(own.N() == laws::mostOwn * nq);
     body.weight = copied<double>(weight);
     arrays.damping = {&dampingState};
     for (long q = 0; q < nq; q++) {
       laws::Material m = {law[lawOfPoint[q]], lambda[q], mu[q], {}, eta[q], zeta[q], relaxing[q],
                           relaxTime[q], bulk[q], volumeByTrace[q], incompressible[q]};
-      for (int k = 0; k < 8; k++) m.own[k] = own[k * nq + q];
+      for (int k = 0; k < laws::mostOwn; k++) m.own[k] = own[k * nq + q];
       body.addPoint(m);
     }
   });
@@ -87,9 +88,9 @@ static void addBodies() {
     body.elements(copied<int>(elementOfPoint));
   });
   add("kernelForces", +[](Reals d, Reals inertiaKnown, Reals bodyForce, double massScale,
-                         double rate, long lawInstant, bool breaks, Reals residual) {
+                         double rate, long stressInstant, bool breaks, Reals residual) {
     return long(bodyNow().forces(d, inertiaKnown, bodyForce,
-      {massScale, rate, int(lawInstant), breaks, false}, deformation(), residual));
+      {massScale, rate, int(stressInstant), breaks, false}, deformation(), residual));
   });
   add("kernelStress", +[](Reals C, Reals S) { body.lawStresses(C, S); });
   add("kernelGradientCorrection", +[](Reals M, Reals H, Reals e) { body.corrections(M, H, e); });
@@ -145,19 +146,19 @@ static void addStep() {
                    {&counts}};
     step.translations = entries(translations);
   });
-  add("kernelSettings", +[](double tolerance, double momentumShare, bool breaks,
-                           bool refusesCollapse, bool newMatrix, bool allCandidates, bool damped,
-                           bool loads, long fallbackCost) {
-    step.settings = {tolerance, momentumShare, breaks, refusesCollapse, newMatrix, allCandidates,
-                     damped, loads, fallbackCost};
+  add("kernelSettings", +[](double tolerance, double correctionTolerance, double momentumShare,
+                           double leastVolumeRatio, bool breaks, bool newMatrix,
+                           bool allCandidates, bool damped, bool loads, long fallbackCost) {
+    step.settings = {tolerance, correctionTolerance, momentumShare, leastVolumeRatio, breaks,
+                     newMatrix, allCandidates, damped, loads, fallbackCost};
   });
   add("kernelStep", +[](double dt, double massScale, double stiffnessScale, long stressInstant,
                        long lawInstant, double searchDistance, double energyScale,
-                       double momentumScale, double roundOff, long mostInverses,
+                       double momentumScale, double roundOff, long mostContactMatrices,
                        double &residualWorkRatio, Callback gaps, Callback terms, Callback loads,
                        Callback search) {
     bodyNow();
-    touching.mostInverses = mostInverses;
+    touching.mostContactMatrices = mostContactMatrices;
     const long ended = step.take({dt, massScale, stiffnessScale, stressInstant, lawInstant,
       searchDistance, energyScale, momentumScale, roundOff}, {gaps, terms, loads, search},
       deformation());
@@ -165,7 +166,8 @@ static void addStep() {
     return ended;
   });
   add("kernelContactForces", +[](Reals d, double dt, long lawInstant) {
-    // Gap and slip, forces of candidates and contact force at d with the present rows.
+    // Gap and slip, forces of candidates and contact force at d with the present rows (for
+    // verification).
     touching.law.dt = dt;
     touching.law.lawInstant = int(lawInstant);
     touching.takeJacobian();
@@ -175,7 +177,7 @@ static void addStep() {
   add("kernelState", +[](Reals state) {
     // Stores in an array what step and obstacles remember from earlier steps.
     Archive archive;
-    rigid.archive(archive);
+    sceneObstacles.archive(archive);
     step.archive(archive);
     state.resize(long(archive.numbers.size()));
     std::copy(archive.numbers.begin(), archive.numbers.end(), (double *)state);
@@ -184,7 +186,7 @@ static void addStep() {
     Archive archive;
     archive.numbers = copied<double>(state);
     archive.reads = true;
-    rigid.archive(archive);
+    sceneObstacles.archive(archive);
     step.archive(archive);
     bodyNow();
     if (step.isFactorised()) step.restore();
@@ -198,7 +200,7 @@ static void addStep() {
                         gaps);
   });
   add("kernelLaw", +[](double exponent, double slipVelocity, double bridge, double sticksBelow,
-                      std::string &regularization, bool jumps, long slips) {
+                      std::string &regularization, bool jumps, long slips, long mostStatusChanges) {
     // Parameters of (10)-(13) that all contact points share; see Law and Problem.
     contact::Law &law = touching.law;
     law.exponent = exponent;
@@ -210,6 +212,7 @@ static void addStep() {
     law.jumps = jumps;
     law.slips = int(slips);
     touching.problem.sticksBelow = sticksBelow;
+    touching.problem.mostStatusChanges = int(mostStatusChanges);
   });
 }
 
@@ -222,7 +225,7 @@ static void addPairs() {
     pairs::Surface s = {facets, nodes, int(points), facets * int(points), int(obstacles),
       int(bodies), copied<int>(unknown), copied<int>(body), copied<double>(side),
       copied<double>(pointShape), copied<int>(selfContact), copied<double>(reference),
-      pairs::Shape(nodes, shape.M())};
+      pairs::ShapeCoefficients(nodes, shape.M())};
     for (int a = 0; a < nodes; a++) for (int j = 0; j < shape.M(); j++) s.shape(a, j) = shape(a, j);
     if (shape.M() == pairs::termsOf(2)) pairsOfBodies.reset(new pairs::Pairs<2>(s));
     else pairsOfBodies.reset(new pairs::Pairs<3>(s));
@@ -250,45 +253,45 @@ static void addObstacles() {
   add("kernelObstacle", +[](std::string &kind, long axes, Reals numbers, Reals velocity) {
     // Appends an obstacle.
     obstacles::Obstacle added;
-    added.shape.reset(shapes::make(long(rigid.obstacle.size()), kind, int(axes), numbers,
+    added.shape.reset(shapes::make(long(sceneObstacles.obstacle.size()), kind, int(axes), numbers,
                                    numbers.N()));
     added.velocity = spatial(velocity);
-    rigid.axes = int(axes);
-    rigid.obstacle.push_back(std::move(added));
+    sceneObstacles.axes = int(axes);
+    sceneObstacles.obstacle.push_back(std::move(added));
   });
   add("kernelDrive", +[](long k, Reals pivot, Reals axis) {
-    rigid.obstacle[k].driven = true;
-    rigid.obstacle[k].pivot = spatial(pivot);
-    rigid.obstacle[k].axis = spatial(axis);
+    sceneObstacles.obstacle[k].driven = true;
+    sceneObstacles.obstacle[k].pivot = spatial(pivot);
+    sceneObstacles.obstacle[k].axis = spatial(axis);
   });
   add("kernelDriveFunction", +[](long k, long c, Reals time, Reals value, Reals slope) {
     // Function c of the driven obstacle k: components 0 to 2 of the displacement, 3 the angle.
-    obstacles::Obstacle &driven = rigid.obstacle[k];
+    obstacles::Obstacle &driven = sceneObstacles.obstacle[k];
     (c < 3 ? driven.displacement[c] : driven.angle) =
       {copied<double>(time), copied<double>(value), copied<double>(slope)};
   });
   add("kernelContactPoints", +[](Reals places, Sparse traces) {
-    rigid.setPoints(places, entries(traces));
+    sceneObstacles.setPoints(places, entries(traces));
   });
   add("kernelObstacleStart", +[](Reals u0, double t, double searchDistance) {
-    return rigid.start(u0, t, searchDistance);
+    return sceneObstacles.start(u0, t, searchDistance);
   });
   add("kernelObstacleRows", +[](Reals d, double dt, Reals q0, Reals q1, Reals motion, Ints row,
                                Ints unknown, Reals normal, Reals slip) {
-    rigid.rows(d, dt, q0, q1, motion, {row, unknown, normal, slip});
+    sceneObstacles.rows(d, dt, q0, q1, motion, {row, unknown, normal, slip});
   });
   add("kernelObstacleIncrement", +[](Reals d, double dt, double &farthest) {
-    farthest = rigid.largestIncrement(d, dt);
+    farthest = sceneObstacles.largestIncrement(d, dt);
   });
-  add("kernelCountCrossings", +[](Ints crossed) { rigid.countCrossings(crossed); });
+  add("kernelCountCrossings", +[](Ints crossed) { sceneObstacles.countCrossings(crossed); });
   add("kernelObstacleGaps", +[](long k, Reals x, double t, Reals gap, Reals normal) {
     // Gaps (m) [m] and normals (axes m) of obstacle k at time t, for m positions x (axes m).
-    const obstacles::Pose pose = rigid.obstacle[k].pose(t);
-    const long m = gap.N(), axes = rigid.axes;
+    const obstacles::Pose pose = sceneObstacles.obstacle[k].pose(t);
+    const long m = gap.N(), axes = sceneObstacles.axes;
     for (long i = 0; i < m; i++) {
       obstacles::Point place = obstacles::Point::Zero();
       for (long c = 0; c < axes; c++) place[c] = x[c * m + i];
-      const shapes::Nearest closest = rigid.obstacle[k].shape->nearest(pose.frame(place));
+      const shapes::Nearest closest = sceneObstacles.obstacle[k].shape->nearest(pose.frame(place));
       const obstacles::Point n = pose.R * closest.normal;
       gap[i] = closest.gap;
       for (long c = 0; c < axes; c++) normal[c * m + i] = n[c];
@@ -296,12 +299,12 @@ static void addObstacles() {
   });
   add("kernelObstaclePoint", +[](long k, double t, Reals X, Reals x) {
     // Position x (3) in the scene at time t of the point X of the frame of obstacle k.
-    const obstacles::Point place = rigid.obstacle[k].pose(t).scene(spatial(X));
+    const obstacles::Point place = sceneObstacles.obstacle[k].pose(t).scene(spatial(X));
     for (int c = 0; c < 3; c++) x[c] = place[c];
   });
   add("kernelObstacleVelocity", +[](long k, double t, Reals x, Reals v, Reals spin) {
     // Velocity v (3) of obstacle k at the position x in the scene, and its spin (3), at time t.
-    const obstacles::Obstacle &moving = rigid.obstacle[k];
+    const obstacles::Obstacle &moving = sceneObstacles.obstacle[k];
     const obstacles::Point velocity = moving.velocityAt(t, spatial(x)), turning = moving.spin(t);
     for (int c = 0; c < 3; c++) { v[c] = velocity[c];  spin[c] = turning[c]; }
   });

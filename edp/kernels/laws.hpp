@@ -1,7 +1,8 @@
 // laws.hpp: the constitutive laws of edp/core/law at one quadrature point: energy, stress, moduli
 // and ellipticity, with damping, relaxation and the volume term. All tensors have three dimensions;
 // in plane strain F_33 = C_33 = 1. Stresses and moduli in Pa. A new law is a struct derived from
-// Conserving and one line in find(); the scripts of the same names define the symbols.
+// Conserving and one line in find(); svk.idp and neohookean.idp define the symbols,
+// laws.idp lists all laws.
 #pragma once
 #include <cstring>
 #include <map>
@@ -25,10 +26,11 @@ struct Moduli {
   }
 };
 
+constexpr int mostOwn = 8;                 // numbers of a law, as in material.idp
 struct Law;
 struct Material {
   const Law *law;
-  double lambda, mu, own[8];               // Lame's constants; further parameters of the law
+  double lambda, mu, own[mostOwn];             // Lame's constants; further parameters of the law
   double eta, zeta;                        // viscosities [Pa s]
   double relaxing, relaxTime;              // G [Pa], tau [s] of the Maxwell branch
   double bulk;                             // kappa [Pa]: part of lambda that acts on element means
@@ -39,8 +41,9 @@ struct Material {
 };
 
 // Interface of a law. gradientCorrection() is the discrete-gradient correction
-// 2 [W(M+H) - W(M-H) - S(M):H] [J/m3]. ellipticity() has the sign of the smallest eigenvalue of the
-// acoustic tensor, relative to mu, over directions in the plane of the mesh or (spatial) in space.
+// 2 [W(M+H) - W(M-H) - S(M):H] [J/m3]. ellipticity() is, where it is negative, the smallest
+// eigenvalue over mu of the acoustic tensor over directions in the plane of the mesh or (spatial)
+// in space; of ogden a number of the same sign, of mooney-rivlin a lower bound.
 struct Law {
   virtual ~Law() {}
   virtual Symmetric stress(const Material &m, const Symmetric &C) const = 0;   // (4): S = g(E)
@@ -109,10 +112,10 @@ inline double atanhRest(double x) {
   return rest * y * x;
 }
 
-// The logarithmic volume term W = -m ln J + l/2 (ln J)^2, as volumeStress(), volumeCorrection() and
-// volumeModuli() of neohookean.idp. The results are nan for det C <= 0. algorithmicStress() calls
-// stress() and gradientCorrection() with the same C. They are inlined, and ln() is declared free of
-// side effects, so that the compiler evaluates the logarithm once for both.
+// The logarithmic volume term W = -m ln J + l/2 (ln J)^2, as neohookeanStress(), volumeCorrection()
+// and volumeModuli() of neohookean.idp. The results are nan for det C <= 0. algorithmicStress()
+// calls stress() and gradientCorrection() with the same C. They are inlined, and ln() is declared
+// free of side effects, so that the compiler evaluates the logarithm once for both.
 __attribute__((const, noinline)) inline double ln(double x) { return std::log(x); }
 #define SHARED __attribute__((always_inline)) inline
 struct Logarithm {

@@ -65,8 +65,8 @@ struct Obstacle {
     return s;
   }
   Pose pose(double t) const {
-    const double turned = driven ? angle.at(t) - angle.at(0) : 0;
-    return {pivot, shift(t), Eigen::AngleAxisd(turned, axis).toRotationMatrix()};
+    const double angleNow = driven ? angle.at(t) - angle.at(0) : 0;
+    return {pivot, shift(t), Eigen::AngleAxisd(angleNow, axis).toRotationMatrix()};
   }
   Point spin(double t) const { return angle.rate(t) * axis; }   // angular velocity [rad/s]
   Point velocityAt(double t, const Point &x) const {   // at the position x in the scene [m/s]
@@ -97,9 +97,9 @@ struct StepMotion {
   }
   double intoScene(const Point &middle, Point &b) const {
     // Replaces b by Rm b; returns `motion`.
-    const Point turned = change * b;
+    const Point changed = change * b;
     b = Rm * b;
-    return turned.dot(middle - centre) - b.dot(shift);
+    return changed.dot(middle - centre) - b.dot(shift);
   }
 };
 
@@ -131,7 +131,7 @@ class Obstacles {
     trace.resize(traces.n, traces.m);
     trace.setFromTriplets(entries.begin(), entries.end());
     placeInFrame = Places::Zero(candidates(), 3);
-    bound = Eigen::VectorXd::Constant(candidates(), -1e30);
+    bound = Eigen::VectorXd::Constant(candidates(), -tensors::infinity);
   }
 
   long start(const double *u0, double time, double searchDistance) {
@@ -185,7 +185,7 @@ class Obstacles {
     // configuration of start(). Only of the candidates of obstacles; q = -infinity for those that
     // are not near.
     const long ns = motion.N() / axes;
-    for (long s = 0; s < candidates(); s++) q0[s] = q1[s] = -1e30;
+    for (long s = 0; s < candidates(); s++) q0[s] = q1[s] = -tensors::infinity;
     for (int c = 0; c < axes; c++) for (long s = 0; s < candidates(); s++) motion[c * ns + s] = 0;
     long entries = 0;
     for (const Near &now : near) for (int c = 0; c < axes; c++)

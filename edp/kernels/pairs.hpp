@@ -31,11 +31,11 @@ inline void monomials(const Vector<2> &r, Terms<3> &p, Slopes<3> &slope) {
   slope.col(1) << 0, 0, 1, 0, r[0], 2 * r[1];
 }
 
-// The closest point y of a facet to a point x: its parameters r, the gap vector arm = y - x, and
+// The closest point y of a facet to a point x: its parameters r, gapVector = y - x, and
 // the tangents y_,l there.
 template<int A> struct ClosestPoint {
   Vector<A - 1> r;
-  Vector<A> arm;
+  Vector<A> gapVector;
   Eigen::Matrix<double, A, A - 1> tangents;
 };
 
@@ -48,7 +48,7 @@ template<int A> void evaluate(const Patch<A> &patch, ClosestPoint<A> &closestPoi
   Terms<A> p;
   Slopes<A> slope;
   monomials(closestPoint.r, p, slope);
-  closestPoint.arm = patch * p;
+  closestPoint.gapVector = patch * p;
   closestPoint.tangents = patch * slope;
 }
 
@@ -104,7 +104,7 @@ inline void closest(const Patch<3> &patch, ClosestPoint<3> &closestPoint) {
   Convergence steps;
   for (int it = 0; it < 20 && steps.going(); it++) {
     evaluate<3>(patch, closestPoint);
-    const Vector<3> &y = closestPoint.arm;
+    const Vector<3> &y = closestPoint.gapVector;
     const Vector<2> g = closestPoint.tangents.transpose() * y;
     Eigen::Matrix2d H = closestPoint.tangents.transpose() * closestPoint.tangents, curved = H;
     curved(0, 0) += 2 * y.dot(patch.col(3));
@@ -161,7 +161,8 @@ inline Eigen::Matrix<double, 3, 2> turning(const ClosestPoint<3> &closestPoint, 
   return c;
 }
 
-typedef Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> Shape;   // at most 6 x 6
+// at most 6 x 6
+typedef Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> ShapeCoefficients;
 
 // The surface of the bodies, set once; arrays as in pair.idp.
 struct Surface {
@@ -171,7 +172,7 @@ struct Surface {
   std::vector<double> side, pointShape;    // sign of the normal; N_a at point p at a np + p
   std::vector<int> selfContact;            // (bodies) 1 if it may come into contact with itself
   std::vector<double> reference;           // nodal positions in the reference
-  Shape shape;                             // N_a = shape(a, :) . monomials
+  ShapeCoefficients shape;                             // N_a = shape(a, :) . monomials
 };
 
 struct AnyPairs {
@@ -197,8 +198,8 @@ public:
   }
 
   long search(const double *x, double searchDistance) {
-    // Finds the candidates whose point is within searchDistance [m] of a facet of the counter-body
-    // at the nodal positions x, and these facets. Returns their number.
+    // Finds the candidates whose point is within searchDistance [m] of the bounding box of a facet
+    // of the counter-body at the nodal positions x, and these facets. Returns their number.
     const Surface &s = surface;
     this->searchDistance = searchDistance;
     std::vector<std::pair<long, int>> hits;   // candidate, facet
@@ -231,21 +232,22 @@ public:
   }
 
   long start(const double *x, long unknowns) {
-    // Gaps at the start of a step, at the nodal positions x. In space, candidates and facets beyond
-    // the search distance are dropped. Returns the number of candidates.
+    // Gaps at the start of a step, at the nodal positions x. In space, candidates with a gap
+    // above searchDistance are dropped, and facets farther than |gap| + 2 searchDistance. Returns
+    // the number of candidates.
     double size = 0;
     for (long j = 0; j < unknowns; j++) size = std::max(size, std::abs(x[j]));
     roundOff = 1e-13 * size;
     patches(x, patchAtStart);
-    startGap.clear();  startUnseen.clear();
+    startGap.clear();  excludedAtStart.clear();
     std::vector<long> candidates;
     std::vector<int> firsts = {0}, facets;
     std::vector<Patch<A>> kept;
     for (size_t k = 0; k < candidate.size(); k++) {
-      const Place place = project(patchAtStart, int(k));
+      const Projection place = project(patchAtStart, int(k));
       if (A == 3 && place.gap > searchDistance) continue;   // the box search finds more
       for (int e = first[k]; e < first[k + 1]; e++)
-        if (A == 2 || closestPoints[e - first[k]].arm.norm()
+        if (A == 2 || closestPoints[e - first[k]].gapVector.norm()
             <= std::abs(place.gap) + 2 * searchDistance) {
           facets.push_back(facet[e]);
           kept.push_back(patchAtStart[e]);
@@ -253,7 +255,7 @@ public:
       candidates.push_back(candidate[k]);
       firsts.push_back(int(facets.size()));
       startGap.push_back(gapOf(int(k), place));
-      startUnseen.push_back(place.unseen);
+      excludedAtStart.push_back(place.excluded);
     }
     candidate.swap(candidates);  first.swap(firsts);  facet.swap(facets);  patchAtStart.swap(kept);
     before.assign(candidate.size(), {-1, 0, 0, Vector<A>::Zero()});
@@ -272,9 +274,9 @@ public:
     now.resize(n);
     for (int k = 0; k < n; k++) {
       now[k] = project(middle, k);
-      const Place last = project(end, k);
-      const double endGap = gapOf(k, last);
-      const bool seen = !startUnseen[k] && !now[k].unseen && !last.unseen;
+      const Projection atEnd = project(end, k);
+      const double endGap = gapOf(k, atEnd);
+      const bool seen = !excludedAtStart[k] && !now[k].excluded && !atEnd.excluded;
       if (seen) { q0[candidate[k]] = -startGap[k];  q1[candidate[k]] = -endGap; }
       row(k, n, seen, endGap - startGap[k], rows);
     }
@@ -284,14 +286,14 @@ public:
                       Ints unknown, Reals value, Reals stiffness) {
     // Geometric contact stiffness at vertices in the plane for the normal forces t of the
     // candidates: stiffness c, at most `limit`, of each term and the triplets (termOf, unknown,
-    // value) of its row T, T delta = t.rho. Returns the number of terms.
+    // value) of its row T, T delta = e.rho, e the tangent. Returns the number of terms.
     const Surface &s = surface;
     const int n = int(candidate.size()), blocks = A * s.nodes;
     if (A == 3) return 0;
     std::vector<int> at;
     std::vector<double> c;
     for (int k = 0; k < n; k++) {
-      const double geometric = std::min(turned(k, t[candidate[k]]), limit[candidate[k]]);
+      const double geometric = std::min(vertexStiffness(k, t[candidate[k]]), limit[candidate[k]]);
       if (geometric > 0) { at.push_back(k);  c.push_back(geometric); }
       before[k] = {facet[now[k].pick], now[k].closestPoint.r[0],
                    now[k].closestPoint.tangents.col(0).norm(), now[k].n};
@@ -300,7 +302,7 @@ public:
     stiffness.resize(terms);  termOf.resize(2 * blocks * terms);
     unknown.resize(2 * blocks * terms);  value.resize(2 * blocks * terms);
     for (int i = 0; i < terms; i++) {
-      const Place &place = now[at[i]];
+      const Projection &place = now[at[i]];
       const double slip[2] = {place.n[1], -place.n[0]};
       stiffness[i] = c[i];
       entriesOf(at[i], place,
@@ -316,10 +318,10 @@ public:
 
 private:
   // Closest-point projection of a candidate in one configuration: position of the closest facet in
-  // `facet`, closest point, facet normal m, gap and its normal n. unseen: no contact is possible
+  // `facet`, closest point, facet normal m, gap and its normal n. excluded: no contact is possible
   // (onEdge()).
-  struct Place {
-    int pick;  ClosestPoint<A> closestPoint;  Vector<A> m, n;  double gap;  bool unseen;
+  struct Projection {
+    int pick;  ClosestPoint<A> closestPoint;  Vector<A> m, n;  double gap;  bool excluded;
   };
   // State at the previous evaluation of the step: facet (-1: there was none), r, |y_,r|, normal.
   struct Before { int facet;  double r, length;  Vector<A> n; };
@@ -347,10 +349,11 @@ private:
   // end
   std::vector<Patch<A>> patchAtStart, step, middle, end;
   std::vector<double> startGap;
-  std::vector<bool> startUnseen;
-  std::vector<Vector<A>> middleOf, outward;   // of facets in contact with their own body, as are
-  std::vector<double> radiusOf;               // their sizes (describeFacets())
-  std::vector<Place> now;                  // in the middle configuration
+  std::vector<bool> excludedAtStart;
+  // of all facets, if some body may come into contact with itself (describeFacets())
+  std::vector<Vector<A>> middleOf, outward;
+  std::vector<double> radiusOf;
+  std::vector<Projection> now;                  // in the middle configuration
   std::vector<Before> before;
   std::vector<ClosestPoint<A>> closestPoints;   // on the facets of the present candidate
   std::vector<bool> tied;                  // facets that share the vertex or edge with the closest
@@ -410,8 +413,8 @@ private:
       evaluate<A>(patch, centre);
       double radius = 0;
       for (int a = 0; a < A; a++)
-        radius = std::max(radius, 2.5 * (nodePlace(x, c, a) - centre.arm).norm());
-      middleOf.push_back(centre.arm);
+        radius = std::max(radius, 2.5 * (nodePlace(x, c, a) - centre.gapVector).norm());
+      middleOf.push_back(centre.gapVector);
       outward.push_back(normalOf(centre, surface.side[c]));
       radiusOf.push_back(radius);
     }
@@ -432,7 +435,7 @@ private:
     return !shared && (angled || distance > radiusOf[c] + radiusOf[e]) ? 1 : 0;
   }
 
-  double gapOf(int k, const Place &place) const {
+  double gapOf(int k, const Projection &place) const {
     // The gap of candidate k [m]. For a point inside its own body the sign is reversed, so that
     // there is no contact, unless the facets face each other or the penetration is at most a tenth
     // of the distance in the reference (nor beyond searchDistance).
@@ -480,7 +483,7 @@ private:
     }
   }
 
-  Place project(const std::vector<Patch<A>> &patch, int k) {
+  Projection project(const std::vector<Patch<A>> &patch, int k) {
     // The closest point of candidate k on all its facets.
     const int m = first[k + 1] - first[k];
     const double nearer = A == 3 ? 1 - 2e-13 : 1;   // of faces at the same distance, take the first
@@ -488,8 +491,8 @@ private:
     closestPoints.resize(m);
     for (int e = 0; e < m; e++) {
       closest(patch[first[k] + e], closestPoints[e]);
-      const double off = closestPoints[e].arm.squaredNorm()
-        - nearer * closestPoints[pick].arm.squaredNorm();
+      const double off = closestPoints[e].gapVector.squaredNorm()
+        - nearer * closestPoints[pick].gapVector.squaredNorm();
       if (off < 0 || (A == 2 && off == 0)) pick = e;   // (9): min d(x1, x2) over the facets
     }
     Vector<A - 1> r = closestPoints[pick].r;
@@ -501,15 +504,15 @@ private:
         if (tied[e] && (A == 3 ? e < pick : closestPoints[e].r[0] == 1)) pick = e;
       r = closestPoints[pick].r;
     }
-    Place place;
+    Projection place;
     const bool edge = onBoundary(r);
     place.pick = first[k] + pick;
     place.closestPoint.r = r;
     evaluate<A>(patch[place.pick], place.closestPoint);
     place.m = place.n = normalOf(place.closestPoint, surface.side[facet[place.pick]]);
-    place.gap = -place.closestPoint.arm.dot(place.n);
-    place.unseen = false;
-    if (edge) onEdge(place, k, closestPoints[pick].arm);
+    place.gap = -place.closestPoint.gapVector.dot(place.n);
+    place.excluded = false;
+    if (edge) onEdge(place, k, closestPoints[pick].gapVector);
     // Beyond the search distance the side is not known; there is no contact.
     if (A == 3 && std::abs(place.gap) > searchDistance) place.gap = std::abs(place.gap);
     return place;
@@ -537,9 +540,9 @@ private:
     }
   }
 
-  void onEdge(Place &place, int k, const Vector<A> &arm) {
+  void onEdge(Projection &place, int k, const Vector<A> &gapVector) {
     // Gap and normal at a vertex or edge: n along x - y, outward by the mean normal of the tied
-    // facets. With a single facet the candidate is unseen if x is more than 45 degrees off its
+    // facets. With a single facet the candidate is excluded if x is more than 45 degrees off its
     // normal.
     Vector<A> mean = Vector<A>::Zero();
     int count = 0;
@@ -550,13 +553,14 @@ private:
       }
     }
     mean.normalize();
-    const double distance = arm.norm(), side = -arm.dot(mean);
+    const double distance = gapVector.norm(), side = -gapVector.dot(mean);
     place.gap = side < 0 ? -distance : distance;
-    place.n = distance <= roundOff ? mean : Vector<A>(-1 / place.gap * arm);
-    place.unseen = count == 1 && std::abs(side) < std::sqrt(0.5) * distance && distance > roundOff;
+    place.n = distance <= roundOff ? mean : Vector<A>(-1 / place.gap * gapVector);
+    place.excluded =
+      count == 1 && std::abs(side) < std::sqrt(0.5) * distance && distance > roundOff;
   }
 
-  template<class Function> void entriesOf(int k, const Place &place, Function entry) const {
+  template<class Function> void entriesOf(int k, const Projection &place, Function entry) const {
     // Calls entry(block, unknown, component, N, N_a,l) for every entry of a row of candidate k. N
     // is the factor in rho: N_a at the contact point, -N_a on the facet. N_a,l is 0 at the point.
     const Surface &s = surface;
@@ -576,7 +580,7 @@ private:
     //   S_j delta = t_j.rho + c_jl.(N_a,l delta y_a),  a = G d,  s_j = S_j d,
     //   B = -[G + kappa (a G + s_j S_j)],  kappa = (change - a)/(a^2 + s_j s_j).
     // By the discrete-gradient correction kappa, B d is minus the `change` of the gap in the step.
-    const Place &p = now[k];
+    const Projection &p = now[k];
     const long entries = 2 * A * surface.nodes * n;
     typedef Eigen::Matrix<double, A, A - 1> Frame;
     const Frame t = tangentsOf(p.n);
@@ -585,13 +589,13 @@ private:
     Vector<A - 1> s;
     ClosestPoint<A> motion;
     motion.r = p.closestPoint.r;
-    evaluate<A>(step[p.pick], motion);     // arm: -rho, tangents: N_a,l delta y_a, of d
+    evaluate<A>(step[p.pick], motion);     // gapVector: -rho, tangents: N_a,l delta y_a, of d
     for (int j = 0; j < A - 1; j++) {
       f[j + 1] = t.col(j);
       c[j + 1] = turning(p.closestPoint, p.n, p.m, f[j + 1], p.gap);
-      s[j] = c[j + 1].cwiseProduct(motion.tangents).sum() - f[j + 1].dot(motion.arm);
+      s[j] = c[j + 1].cwiseProduct(motion.tangents).sum() - f[j + 1].dot(motion.gapVector);
     }
-    const double a = -p.n.dot(motion.arm),
+    const double a = -p.n.dot(motion.gapVector),
       largest = std::max(std::abs(a), s.template lpNorm<Eigen::Infinity>()),
       kappa = largest <= 10 * roundOff ? 0 : (change - a) / (a * a + s.squaredNorm());
     f[0] = -(1 + kappa * a) * p.n;
@@ -611,11 +615,12 @@ private:
     });
   }
 
-  double turned(int k, double t) const {
+  double vertexStiffness(int k, double t) const {
     // Geometric contact stiffness c of candidate k with the normal force t: t/(2 |g|) at a vertex;
     // t theta/(2 (w + |g| theta)) if the closest point has passed a vertex since the previous
-    // evaluation, theta the rotation of n, w its path along the edges; else 0 (pair.idp).
-    const Place &p = now[k];
+    // evaluation, theta the rotation of n, w its path along the edges; else 0. At a vertex n is
+    // along the gap vector of the middle configuration, so it rotates by t.rho/(2 |g|).
+    const Projection &p = now[k];
     const Before &was = before[k];
     const int own = facet[p.pick];
     const double r = p.closestPoint.r[0];

@@ -66,7 +66,8 @@ class Polyline : public Shape {
       const Point edge = vertex[(j + 1) % n] - vertex[j];
       const double length = edge.norm();
       side.push_back({edge / length, Point(-edge[1], edge[0], 0) / length,
-                      !closed && j == 0 ? -1e30 : 0, !closed && j == count - 1 ? 1e30 : length});
+                      !closed && j == 0 ? -tensors::infinity : 0,
+                      !closed && j == count - 1 ? tensors::infinity : length});
     }
   }
   Nearest nearest(const Point &x) const override {

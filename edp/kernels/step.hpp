@@ -12,14 +12,13 @@
 
 // Numbers that do not change in a run. `newMatrix`: factorise in every iteration.
 struct Settings {
-  double tolerance = 1e-8, momentumShare = 1e-10;   // of energy (10^-8: default), of momentum
-  bool breaks = true, refusesCollapse = true, newMatrix = false, allCandidates = false,
-    damped = false, loads = false;
-  long fallbackCost = 2;                         // of a factorisation, in iterations
+  double tolerance, correctionTolerance, momentumShare, leastVolumeRatio;   // newton.idp
+  bool breaks, newMatrix, allCandidates, damped, loads;
+  long fallbackCost;                             // of a factorisation, in iterations
 };
 // Numbers of a step, as setIntegrator() of integrators.idp sets them; scales of energy [J/m; J] and
 // momentum; search distance of contact [m]; residual force [N/m; N] that is round-off.
-struct Motion {
+struct StepParameters {
   double dt, massScale, stiffnessScale;
   long stressInstant, lawInstant;
   double searchDistance, energyScale, momentumScale, roundOff;
@@ -40,21 +39,21 @@ class ImplicitStep {
  public:
   using Vector = Eigen::VectorXd;
   StepArrays script;
-  Settings settings;
+  Settings settings = {};
   bodies::Triplets translations = {};            // (ndof x 3 bodies)
-  double residualWorkRatio = 0;                       // work of the residual over energyScale
+  double residualWorkRatio = 0;                  // work of the residual over energyScale
 
   ImplicitStep(bodies::Bodies &allBodies, Factor &factorOfA, contact::Contact &contactOfStep)
     : body(allBodies), factor(factorOfA), contact(contactOfStep) {}
 
-  int take(const Motion &stepMotion, const Scripts &stepScripts,
+  int take(const StepParameters &parameters, const Scripts &stepScripts,
            const bodies::Deformation &arrays) {
-    // Finds d from the prediction in d. Returns fine, or the reason of the failure (bodies.hpp).
-    begin(stepMotion, stepScripts, arrays);
+    // Finds d from the prediction in d. Returns succeeded, or the reason of failure (bodies.hpp).
+    begin(parameters, stepScripts, arrays);
     evaluatePrediction();
-    const int failed = status != bodies::fine ? status : iterate();
+    const int failed = status != bodies::succeeded ? status : iterate();
     script.counts[iterationsMade] = iterations;
-    script.counts[inverses] = contact.inversesOfStep;
+    script.counts[contactMatrices] = contact.contactMatrices;
     return failed;
   }
 
@@ -80,11 +79,11 @@ class ImplicitStep {
   bodies::Bodies &body;
   Factor &factor;
   contact::Contact &contact;
-  Motion motion = {};
+  StepParameters motion = {};
   const Scripts *scripts = nullptr;
   bodies::Deformation at = {};
   Anderson history;
-  int status = bodies::fine;
+  int status = bodies::succeeded;
   // A: its massScale (-1: there is none), F, S and pressures at which it was assembled
   double massScaleOfA = -1;
   Vector FofA, SofA, pOfA;
@@ -109,10 +108,10 @@ class ImplicitStep {
     ~Timed() { sum += double(std::clock() - start) / CLOCKS_PER_SEC; }
   };
   enum { assembly, factorisation, solution, contacts };   // entries of `seconds`
-  enum { iterationsMade, evaluations, factorisations, inverses };   // entries of `counts`
+  enum { iterationsMade, evaluations, factorisations, contactMatrices };   // entries of `counts`
   double &seconds(int phase) { return script.seconds[phase]; }
 
-  bool inMean() const { return !body.cell.empty(); }
+  bool projected() const { return !body.cell.empty(); }
   Eigen::Map<const Vector> ofPoints(const double *values, long n) const { return {values, n}; }
   Eigen::Map<Vector> mapped(std::vector<double> &v) const { return {v.data(), long(v.size())}; }
   void setD(const Vector &next) { script.d.numbers() = d = next; }
@@ -136,7 +135,7 @@ class ImplicitStep {
         if (scripts->search() == 0) return accept();
         if (!contact.jacobianFixed) contact.clearActiveSet();
         evaluate();
-        if (status != bodies::fine) return status;
+        if (status != bodies::succeeded) return status;
         consecutive = false;
         continue;
       }
@@ -144,15 +143,15 @@ class ImplicitStep {
         ? 0.1 : std::sqrt(contraction * residualNow / residualBefore);
       if (wearsOut(contraction)) {
         const int failed = renew();
-        if (failed != bodies::fine) return failed;
+        if (failed != bodies::succeeded) return failed;
       }
     }
     return bodies::diverged;
   }
 
-  void begin(const Motion &stepMotion, const Scripts &stepScripts,
+  void begin(const StepParameters &parameters, const Scripts &stepScripts,
              const bodies::Deformation &arrays) {
-    motion = stepMotion;
+    motion = parameters;
     scripts = &stepScripts;
     at = arrays;
     contact.law.dt = motion.dt;
@@ -163,18 +162,18 @@ class ImplicitStep {
     script.counts.numbers().setZero();
     iterations = renewed = renewedAt = 0;
     consecutive = false;
-    if (!inMean())
+    if (!projected())
       pressureResidual = pressureResidualBefore = pressureDirection = pressureBack = Vector();
     searchDistance = (contact.jacobianFixed
       ? motion.dt * script.v.numbers().lpNorm<Eigen::Infinity>() : motion.searchDistance) / 5;
-    if (settings.allCandidates) searchDistance = 1e30;
+    if (settings.allCandidates) searchDistance = tensors::infinity;
   }
 
   void evaluatePrediction() {
-    // Evaluates at the prediction, which is halved, up to six times, while it inverts elements.
+    // Evaluates at the prediction, which is halved, up to six times, while its evaluation fails.
     const Eigen::Map<const Vector> start(script.pressureStart, script.pressureStart.size());
     evaluateAt(d, start);
-    for (int cut = 0; status != bodies::fine && cut < 6; cut++) {
+    for (int cut = 0; status != bodies::succeeded && cut < 6; cut++) {
       for (int j = 0; j < d.size(); j++) if (body.free[j] != 0) d[j] /= 2;
       evaluateAt(d, start);
     }
@@ -183,7 +182,7 @@ class ImplicitStep {
   void evaluateAt(const Vector &increment, const Vector &pressures) {
     // Evaluates the residual at an increment with the carried pressures of the elements.
     setD(increment);
-    if (inMean()) {
+    if (projected()) {
       mapped(body.volume.dBase) = d;
       mapped(body.volume.carried) = pressures;
     }
@@ -192,7 +191,7 @@ class ImplicitStep {
 
   void evaluate() {
     evaluateBodies();
-    if (status == bodies::fine) evaluateContact();
+    if (status == bodies::succeeded) evaluateContact();
   }
   void evaluateBodies() {
     // Residual of the bodies, with 0 at held unknowns; heldResidual is that before.
@@ -201,17 +200,17 @@ class ImplicitStep {
     bodyResidual.resize(d.size());
     status = body.forces(d.data(), script.inertiaKnown, script.bodyForce,
       {motion.massScale, settings.damped ? 1 / motion.dt : 0, int(motion.stressInstant),
-       settings.breaks, inMean()}, at, bodyResidual.data());
-    if (settings.loads && status == bodies::fine) {
+       settings.breaks, projected()}, at, bodyResidual.data());
+    if (settings.loads && status == bodies::succeeded) {
       scripts->loads();
       bodyResidual -= script.loadForce.numbers();
     }
     if (script.heldResidual.size() > 0) {
       script.heldResidual.numbers() = bodyResidual;
-      if (inMean()) script.heldResidual.numbers() += mapped(body.volume.pressureRemainder);
+      if (projected()) script.heldResidual.numbers() += mapped(body.volume.pressureRemainder);
     }
     bodyResidual = bodyResidual.cwiseProduct(mapped(body.free));
-    if (inMean()) mapped(body.volume.pressureRemainder).array() *= mapped(body.free).array();
+    if (projected()) mapped(body.volume.pressureRemainder).array() *= mapped(body.free).array();
   }
   void evaluateContact() {
     const Timed timed(seconds(contacts));
@@ -236,7 +235,7 @@ class ImplicitStep {
         trial += solved(contact.script.force.numbers());
     }
     else if (!contact.jacobianFixed) trial = d;
-    if (inMean()) pressureResidual = script.pressureStar.numbers() - mapped(body.volume.now);
+    if (projected()) pressureResidual = script.pressureStar.numbers() - mapped(body.volume.now);
     if (consecutive) history.learn(searchDirection, correction - correctionBefore,
                                pressureDirection + pressureResidual - pressureResidualBefore);
     correctionBefore = searchDirection = correction;
@@ -259,22 +258,22 @@ class ImplicitStep {
     const bool fresh = renewed > 0 && iterations == renewedAt;   // A was factorised at dBack
     const Eigen::Matrix<long, Eigen::Dynamic, 1> sticks = contact.script.sticks.numbers(),
       changes = contact.script.statusChanges.numbers();
-    if (inMean()) pressureBack = mapped(body.volume.now);
+    if (projected()) pressureBack = mapped(body.volume.now);
     consecutive = false;
     residualBefore = residualNow;
-    for (int cut = 0; cut < 7 && !consecutive; cut++) {
+    for (int cut = 0; cut < 7; cut++) {
       // B and forces of the iterate, not of the try
       if (cut > 0 && !contact.jacobianFixed) evaluateAt(dBack, pressureBack);
       const Vector tried = trial + scale * searchDirection;
-      if (inMean()) {
+      if (projected()) {
         mapped(body.volume.carried) = pressureBack + scale * pressureDirection;
         mapped(body.volume.dBase) = dBack;
       }
       solveForContact(tried);
-      if (status == bodies::fine) {
+      if (status == bodies::succeeded) {
         evaluate();
         const bool falls = residualNow < 1.2 * std::min(residualBefore, residualFirst);
-        consecutive = status == bodies::fine && (falls || (iterations == 0 && cut == 0));
+        consecutive = status == bodies::succeeded && (falls || (iterations == 0 && cut == 0));
       }
       if (consecutive) {
         if (contact.jacobianFixed) trial = tried;
@@ -301,13 +300,13 @@ class ImplicitStep {
     Vector highest = contact.script.q0.numbers().cwiseMax(contact.script.q1.numbers()),
       contactDisplacement = Vector::Zero(w.size());
     if (highest.maxCoeff() <= 0) highest = gapSlip.head(ns);
-    const bool last = work() < 1e3 * settings.tolerance * motion.energyScale;
-    status = bodies::fine;
+    const bool mayEnd = work() < 1e3 * settings.tolerance * motion.energyScale;
+    status = bodies::succeeded;
     bool more = highest.maxCoeff() > 0;
     for (int pass = 0; pass < 20 && more; pass++) {
       contact.update(highest, searchDistance);
       Vector force;
-      if (!solveContact(w, gapSlip, last, force)) { status = bodies::diverged;  return; }
+      if (!solveContact(w, gapSlip, mayEnd, force)) { status = bodies::diverged;  return; }
       factor.respond(contact.unknowns, force.data(), contactDisplacement.data());
       highest = gapSlip.head(ns) - contact.move(contactDisplacement).head(ns);
       more = contact.penetrates(highest);
@@ -315,24 +314,25 @@ class ImplicitStep {
     if (more) status = bodies::diverged;
     else setD(w - contactDisplacement);
   }
-  bool solveContact(const Vector &w, const Vector &gapSlip, bool last, Vector &force) {
-    // force: contact forces on the active unknowns for the trial state w. If B changes, w contains
-    // the last ones already, and force is their change.
+  bool solveContact(const Vector &w, const Vector &gapSlip, bool mayEnd, Vector &force) {
+    // force: contact forces on the active unknowns for the trial state w. If B changes, w is d,
+    // which contains the last contact forces already, and force is their change.
     const Vector acting = contact.script.force.numbers()(contact.unknowns);
     Vector tau = contact.ofActive(contact.script.candidateForces.numbers()), freeGapSlip = gapSlip,
       freeDisplacement = (w - d)(contact.unknowns);
-    if (!contact.jacobianFixed) {                // w lacks the displacement A^-1 B^T t
+    if (!contact.jacobianFixed) {                // without contact forces: adds A^-1 B^T t
       const Vector moved = contact.comply(acting);
       freeDisplacement += moved;
       freeGapSlip += contact.move(contact.onUnknowns(moved));
     }
     const bool exact = tau.size() <= std::min(200L, 2L * long(contact.unknowns.size()) + 1);
     // the prediction's forces are less accurate
-    if (contact.jacobianFixed && iterations == 0 && !exact) tau = contact.ofActive(contact.last);
+    if (contact.jacobianFixed && iterations == 0 && !exact)
+      tau = contact.ofActive(contact.lastForces);
     // The error becomes part of the next residual: 1/500 of the last one is accurate enough. If the
     // step may end with this iteration: 1e-10 of the contact force, as momentum has to be exact.
     const double enough = exact ? 0
-      : last ? 1e-10 * contact.script.force.numbers().norm() : 2e-3 * residual.norm();
+      : mayEnd ? 1e-10 * contact.script.force.numbers().norm() : 2e-3 * residual.norm();
     if (contact.solve(freeGapSlip, freeDisplacement, enough, tau, force) < 0) return false;
     if (contact.jacobianFixed) contact.remember(tau); else force -= acting;
     return true;
@@ -346,16 +346,16 @@ class ImplicitStep {
     // the last correction, quadratic. Both may vanish by chance, so the residual must not change
     // the momentum of any body, either. A residual that no longer halves is taken for round-off.
     const Vector moved = d - dBack;
-    if (inMean()) residual += mapped(body.volume.pressureRemainder);
+    if (projected()) residual += mapped(body.volume.pressureRemainder);
     residualWorkRatio = work() / motion.energyScale;
-    const double scale = 1e-2 * settings.tolerance * motion.energyScale;
+    const double scale = settings.correctionTolerance * motion.energyScale;
     convergence = std::max(residualWorkRatio / settings.tolerance,
                            std::sqrt(std::abs(residual.dot(moved)) / scale));
     const double off = largestResultant();
     if (residualNow < residualBefore / 2 && off > motion.roundOff)
       convergence = std::max(convergence,
                              off * motion.dt / (settings.momentumShare * motion.momentumScale));
-    if (inMean()) residual -= mapped(body.volume.pressureRemainder);
+    if (projected()) residual -= mapped(body.volume.pressureRemainder);
   }
   double largestResultant() const {   // of the residual on a body [N/m; N]
     Vector sum = Vector::Zero(translations.m);
@@ -366,21 +366,22 @@ class ImplicitStep {
   bool collapses() const {
     // Whether a point loses four fifths of its volume in the step. An implicit step has more than
     // one solution, and this one is no motion that it can follow: a smaller step is taken.
-    if (!settings.refusesCollapse) return false;
-    for (int q = 0; q < body.nq; q++) if (at.jacobian1[q] < 0.2 * script.jacobian0[q]) return true;
+    for (int q = 0; q < body.nq; q++)
+      if (at.jacobian1[q] / script.jacobian0[q] < settings.leastVolumeRatio) return true;
     return false;
   }
   int accept() {
     fewestIterations = std::min(fewestIterations, long(iterations));
     surplusIterations += iterations - fewestIterations;
-    return bodies::fine;
+    return bodies::succeeded;
   }
 
   long cost() const {                            // of a factorisation, in iterations
     return factor.renewalCost() > 0 ? factor.renewalCost() : settings.fallbackCost;
   }
   bool wearsOut(double contraction) const {
-    // Whether to renew A, which then contracts to about a thirtieth.
+    // Whether to factorise A anew. A new A is assumed to reduce the residual to 1/30 in an
+    // iteration.
     const int age = iterations - renewedAt;
     const double saved = contraction < 0.97
       ? -std::log(convergence) * (1 / std::log(contraction) + 1 / std::log(30.)) : 1000;
@@ -388,18 +389,19 @@ class ImplicitStep {
       || age >= 40;
   }
   int renew() {
-    // Factorises A anew, at the previous iterate if the line search failed. Returns fine, or why
-    // the step fails.
+    // Factorises A anew, at the previous iterate if the line search failed. Returns succeeded, or
+    // why the step fails.
     const int failed = std::max<int>(status, bodies::diverged);
     if (!consecutive) {
       evaluateAt(dBack, pressureBack);
-      if (status != bodies::fine || (iterations - renewedAt == 1 && renewed > 0)) return failed;
+      const bool again = iterations - renewedAt == 1 && renewed > 0;
+      if (status != bodies::succeeded || again) return failed;
     }
     if ((renewed >= 12 && !settings.newMatrix) || !factorise()) return failed;
     renewed++;
     renewedAt = iterations;
     consecutive = false;
-    return bodies::fine;
+    return bodies::succeeded;
   }
   bool factorise() {
     // Assembles and factorises A at the last evaluation. If the geometric stiffness makes it
@@ -408,18 +410,18 @@ class ImplicitStep {
     for (int pass = 0; pass < 2; pass++) {
       FofA = ofPoints(at.Fs, body.sizeOfF());
       SofA = ofPoints(at.Ss, body.sizeOfC());
-      pOfA = inMean() ? Vector(mapped(body.volume.now)) : Vector::Zero(1);
+      pOfA = projected() ? Vector(mapped(body.volume.now)) : Vector::Zero(1);
       if (pass == 1) { SofA.setZero();  pOfA.setZero(); }
       massScaleOfA = motion.massScale;
       { const Timed timed(seconds(assembly));  assemble(); }
       const Timed timed(seconds(factorisation));
       script.counts[factorisations]++;
       if (factor.factorise(contact.orderedLast) != 0) continue;
-      if (inMean()) {                            // pressureRemainder belonged to the previous A
+      if (projected()) {                         // pressureRemainder belonged to the previous A
         residual += mapped(body.volume.pressureRemainder);
         mapped(body.volume.pressureRemainder).setZero();
       }
-      history.forget(d.size(), inMean() ? script.pressureStart.size() : 0);
+      history.forget(d.size(), projected() ? script.pressureStart.size() : 0);
       fewestIterations = 1000;
       surplusIterations = 0;
       return true;

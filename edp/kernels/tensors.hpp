@@ -2,13 +2,15 @@
 // plane strain F_33 = C_33 = 1. A symmetric tensor is the vector of its components 11, 22, 33, 12,
 // 23, 13.
 #pragma once
-// Arrays of them need no more alignment than memory has anyway.
+// 16 bytes, as `new` aligns, suffice for arrays of tensors.
 #define EIGEN_MAX_STATIC_ALIGN_BYTES 16
 #include <algorithm>
 #include <cmath>
 #include <eigen3/Eigen/Dense>
 
 namespace tensors {
+
+const double infinity = 1e30;              // no end, or absent, as in kernels.idp
 
 // Where in the step stress and contact law are evaluated, as in normal.idp.
 enum Instant { stepMean, stepMiddle, stepEnd };
