@@ -7,7 +7,7 @@
 //     the size `extent` [m]
 //   fields: name, label and range low ... high of each field, in the unit of its label
 //   values (states, n), by name of the field: uint8 fractions of low ... high
-//   obstacles: id and velocity [m/s] of each obstacle
+//   obstacles: id of each obstacle, and its model matrices (states, 16), none if it is at rest
 //   cursor: left and right end of the time axis as fractions of the figure's width, and their times
 //     start and end [s]
 // Each array consists of the compressed differences between successive states.
@@ -60,15 +60,14 @@ function show() {
   const json = world.ObjectsListJson[RUN.id];
   const color_range = [field.low, field.high];
   Object.assign(json, { vertices: places(state), attribute: values(field, state), color_range });
-  K3DInstance.reload(json, null, true).then(() => K3DInstance.render());
+  const reloads = [K3DInstance.reload(json, null, true)];
   for (const one of RUN.obstacles) {
-    if (!one.velocity.some((v) => v)) continue;
+    if (one.matrices.length === 0) continue;
     const obstacle = world.ObjectsListJson[one.id];
-    const [x, y, z] = one.velocity.map((v) => v * t);
-    const matrix = [1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z, 0, 0, 0, 1];
-    obstacle.model_matrix = { data: new Float32Array(matrix), shape: [4, 4] };
-    K3DInstance.reload(obstacle, null, true);
+    obstacle.model_matrix = { data: new Float32Array(one.matrices[state]), shape: [4, 4] };
+    reloads.push(K3DInstance.reload(obstacle, null, true));
   }
+  Promise.all(reloads).then(() => K3DInstance.render());
   clock.textContent = `${(1e3 * t).toPrecision(4)} ms`;
   legend.innerHTML = `${field.low.toPrecision(3)} <i></i> ${field.high.toPrecision(3)}`;
   const { left, right, start, end } = RUN.cursor;

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import base64
 import io
+import itertools
 import json
 import zlib
 from dataclasses import dataclass
@@ -132,10 +133,13 @@ def view(
     plot += body
     obstacles = []
     for obstacle in obstacles_of(result.scene):
-        if drawn := _obstacle(k3d, obstacle, states.kind, low, high):
+        moved = [obstacle.matrix(t) for t in states.times] if obstacle.moves else []
+        if drawn := _obstacle(k3d, obstacle, states.kind, *_region(low, high, moved)):
             plot += drawn
-            moving = np.r_[obstacle.velocity, np.zeros(3 - len(obstacle.velocity))]
-            obstacles.append({"id": drawn.id, "velocity": moving.tolist()})
+            # the matrix of a k3d object takes its own coordinates to the start
+            at_start = np.reshape(drawn.model_matrix, (4, 4))
+            matrices = [(matrix @ at_start).ravel().tolist() for matrix in moved]
+            obstacles.append({"id": drawn.id, "matrices": matrices})
     plot.camera_fov = 20
     plot.camera = _camera(states.kind, low, high)
     picture, cursor = _figure(result)
@@ -351,12 +355,24 @@ def _text(array: np.ndarray) -> str:
 # ---- obstacles, camera and figure
 
 
-def _obstacle(k3d: Any, obstacle: Obstacle, kind: str, low: np.ndarray, high: np.ndarray) -> Any:
-    """Returns an obstacle at t = 0 as a k3d object: a line in the plane, else a surface. Returns
-    None if it is not visible.
+def _region(
+    low: np.ndarray, high: np.ndarray, moved: list[np.ndarray]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Returns the corners of the region in which an obstacle is drawn: around the box of the bodies
+    and, if it moves by the matrices `moved`, all that comes into it.
     """
     margin = 0.25 * (high - low).max()
     lower, upper = low - margin, high + margin
+    corners = np.array([[*corner, 1.0] for corner in itertools.product(*zip(lower, upper))])
+    back = [corners @ np.linalg.inv(matrix).T for matrix in moved]
+    whole = np.concatenate([corners, *back])[:, :3]
+    return whole.min(axis=0), whole.max(axis=0)
+
+
+def _obstacle(k3d: Any, obstacle: Obstacle, kind: str, lower: np.ndarray, upper: np.ndarray) -> Any:
+    """Returns an obstacle at t = 0 as a k3d object: a line in the plane, else a surface. Returns
+    None if it is not visible.
+    """
     count = 3 if obstacle.kind == "plane" else GRID  # the gap to a plane is linear
     x, y, z = (np.linspace(a, b, count) for a, b in zip(lower, upper))
     if kind == "plane":
@@ -371,7 +387,7 @@ def _obstacle(k3d: Any, obstacle: Obstacle, kind: str, low: np.ndarray, high: np
         return k3d.line(
             _three(longest).astype(np.float32),
             shader="mesh",
-            width=LINE * (high - low).max(),
+            width=LINE * (upper - lower).max(),
             color=0x606060,
         )
     zs, ys, xs = np.meshgrid(z, y, x, indexing="ij")

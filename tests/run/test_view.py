@@ -81,6 +81,23 @@ def test_the_picture_follows_slider_and_field(result, tmp_path, browser):
     wait(browser, f"return document.body.dataset.state !== '{last // 2}'")
 
 
+def test_a_moving_obstacle_moves(tmp_path, browser):
+    """The grey pixels of a plane that comes up are higher in the picture at the end."""
+    ball = ff.Ball(**BALL, position=(0, 0.051, 0))
+    plane = ff.Plane(normal=(0, 1, 0), point=(0, -0.02, 0), motion=(0, "4*t", 0))
+    scene = ff.Scene(bodies=[ball], obstacles=[plane], end_time=0.01, fields=10)
+    result = ff.run(scene, accuracy=0.3, estimate=False, out=tmp_path / "out")
+    browser.get(result.view(tmp_path / "impact.html").as_uri())
+    wait(browser, "return Number(document.body.dataset.state) > 0")
+    rows = []
+    for state in (0, len(result.fields.times) - 1):
+        move(browser, "state", state)
+        image = seen(browser).astype(int)
+        grey = (np.ptp(image, axis=2) < 5) & (image[..., 0] < 245)
+        rows.append(np.median(np.nonzero(grey)[0]))
+    assert rows[1] < rows[0] - 10
+
+
 def wait(browser, script, seconds=30):
     """Waits until a script of the page returns true."""
     end = time.monotonic() + seconds

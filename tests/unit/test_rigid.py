@@ -1,8 +1,11 @@
 """Rigid bodies: exact rigid motions, and the limit of stiff bodies."""
 
+import numpy as np
 import pytest
 
 from ffimpact.__main__ import main
+from ffimpact.input import dimension, models
+from ffimpact.scenes import obstacles
 from tests.support.rigid import DISC, FLOOR, ROLLER
 
 
@@ -38,3 +41,17 @@ def test_wrong_motions(tmp_path, capsys, entries, named):
     assert main(["run", str(file), "--out", str(tmp_path / "out")]) == 10
     message = capsys.readouterr().err
     assert named in message and message.count("\n") == 1
+
+
+@pytest.mark.parametrize("motion", [
+    {"velocity": [0.3, -0.2]}, {"motion": [0, "-0.04*sin(pi*t/0.03)"], "rotation": "-2000*t", "pivot": [0.1, 0.05]}])
+def test_the_matrix_of_an_obstacle_takes_it_along(motion):
+    """Points of the surface at the start are on the surface at a later time; at the start nothing
+    has moved. Pictures and the player use the matrix."""
+    scene = {"dimension": "2d", "obstacle": [{"kind": "polyline", "vertices": [[-0.1, -0.1], [-0.1, 0], [0.2, 0.05], [0.2, -0.1]], "closed": True, **motion}]}
+    (obstacle,) = obstacles.read(models.tables(scene, "obstacle", dimension.PLANE_STRAIN), dimension.PLANE_STRAIN, 0.05, None)
+    side = np.linspace([-0.1, 0], [0.2, 0.05], 5)
+    assert obstacle.moves and np.array_equal(obstacle.matrix(0.0), np.eye(4))
+    moved = np.pad(side, [(0, 0), (0, 1)]) @ obstacle.matrix(0.02)[:3, :3].T + obstacle.matrix(0.02)[:3, 3]
+    assert abs(moved[:, :2] - side).max() > 1e-3
+    assert obstacle.gap_in_plane(moved[:, :2], 0.02) == pytest.approx(0, abs=1e-12)

@@ -347,7 +347,7 @@ def shapes(
     rigid = obstacles_of(scene)
     x_min, x_max, y_min, y_max = view = down_the_slope(limits(bodies), rigid)
     columns = 3 if x_max - x_min < 3 * (y_max - y_min) else 2
-    moves = any(obstacle.velocity.any() for obstacle in rigid)
+    moves = any(obstacle.moves for obstacle in rigid)
     label += (
         " in the plane z = 0"
         if scene["script"] in (dimension.SOLID.script, *dimension.SOLID.cases)

@@ -250,7 +250,7 @@ class PlaneStage(Stage):
 
     def _move(self, t: float) -> None:
         body, line = self.motion.at(t)
-        if any(obstacle.velocity.any() for obstacle in self.rigid):
+        if any(obstacle.moves for obstacle in self.rigid):
             for artist in self.drawn:
                 artist.remove()
             self.drawn = bodies.draw_obstacles(self.above, self.rigid, self.view, t)

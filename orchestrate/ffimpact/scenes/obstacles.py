@@ -77,6 +77,25 @@ class Obstacle:
         return self.drive is not None
 
     @property
+    def moves(self) -> bool:
+        """Whether the obstacle has a velocity or follows functions of time."""
+        return self.driven or bool(self.velocity.any())
+
+    def matrix(self, t: float) -> np.ndarray:
+        """Returns the homogeneous matrix (4, 4) that takes points of the obstacle at the start to
+        their positions at the time t [s].
+        """
+        axes = len(self.velocity)
+        matrix = np.eye(4)
+        if self.drive:
+            matrix[:3, :3] = self.drive.rotation(t)
+            pivot = self.drive.pivot
+            matrix[:axes, 3] = pivot + self.drive.shift(t) - matrix[:axes, :axes] @ pivot
+        else:
+            matrix[:axes, 3] = self.velocity * t
+        return matrix
+
+    @property
     def carried_along(self) -> "Obstacle":
         """The obstacle as if its motion took it to its farthest position at constant velocity."""
         if not self.drive:
@@ -297,9 +316,16 @@ class Drive:
         at the start.
         """
         axes = points.shape[1]
-        translation = np.array([function(t) - function(0.0) for function in self.translation])
-        back = tumbling.rotation(-self.axis * float(self.turn(t) - self.turn(0.0)))[:axes, :axes]
-        return self.pivot + (points - self.pivot - translation) @ back.T
+        turned = self.rotation(t)[:axes, :axes]
+        return self.pivot + (points - self.pivot - self.shift(t)) @ turned
+
+    def shift(self, t: float) -> np.ndarray:
+        """The displacement (axes,) [m] at the time t [s] since the start."""
+        return np.array([function(t) - function(0.0) for function in self.translation])
+
+    def rotation(self, t: float) -> np.ndarray:
+        """The rotation matrix (3, 3) at the time t [s] since the start."""
+        return tumbling.rotation(self.axis * float(self.turn(t) - self.turn(0.0)))
 
 
 def read(tables: list[models.Obstacle], dimension: Dimension, end_time: float, folder: Path) -> list[Obstacle]:
