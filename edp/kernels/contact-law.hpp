@@ -56,12 +56,8 @@ struct Law {
     }
   }
 
-  void muPhiAt(double v, const Candidate &a, double &muPhi, double &slope) const {
-    // mu_f phi [-] (12), (13) and its derivative [s/m] at the velocity v [m/s]. With a jump, either
-    // status is continued beyond epsilon (friction.idp).
-    const double pi = 3.14159265358979323846, vOverEps = std::abs(v) / slipVelocity,
-      low = a.muStatic * (1 - bridge) / 2, rise = (a.muDynamic - low) / bridge;
-    double phi = 0, dPhi = 0, mu = a.sticks ? a.muStatic : a.muDynamic, dMu = 0;
+  void regularise(double vOverEps, double &phi, double &dPhi) const {
+    // phi (13) and its derivative at |v|/eps, as regularise() of friction.idp.
     switch (regularization) {
       case sqrtOf:
         phi = vOverEps / std::sqrt(vOverEps * vOverEps + 1);
@@ -74,6 +70,15 @@ struct Law {
           : std::min(1., (1 - bridge) / 2 + (vOverEps - 1 + bridge) * (1 + bridge) / (2 * bridge));
         dPhi = vOverEps < 1 - bridge ? 0.5 : (vOverEps < 1 ? (1 + bridge) / (2 * bridge) : 0);
     }
+  }
+
+  void muPhiAt(double v, const Candidate &a, double &muPhi, double &slope) const {
+    // mu_f phi [-] (12), (13) and its derivative [s/m] at the velocity v [m/s]. With a jump, either
+    // status is continued beyond epsilon (friction.idp).
+    const double pi = 3.14159265358979323846, vOverEps = std::abs(v) / slipVelocity,
+      low = a.muStatic * (1 - bridge) / 2, rise = (a.muDynamic - low) / bridge;
+    double phi = 0, dPhi = 0, mu = a.sticks ? a.muStatic : a.muDynamic, dMu = 0;
+    regularise(vOverEps, phi, dPhi);
     if (!jumps) {   // mu_f falls smoothly from mu_e at eps to mu_d at 2 eps, as a half cosine
       const double half = (a.muStatic - a.muDynamic) / 2;
       mu = a.muDynamic + half * (1 + std::cos(pi * std::max(0., std::min(1., vOverEps - 1))));

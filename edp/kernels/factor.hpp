@@ -139,47 +139,10 @@ public:
 
   void pattern(const bodies::Bodies &B) {
     // Sets the sparsity pattern of A from the node pairs of B, and CHOLMOD's order of the unknowns.
-    struct Entry { int row, column; size_t from; };
-    std::vector<Entry> entries;
-    int D = B.D;
-    for (size_t p = 0; p < B.pairA.size(); p++)
-      for (int i = 0; i < D; i++)
-        for (int k = 0; k < D; k++) {
-          int r = B.unknown[B.pairA[p] * D + i], c = B.unknown[B.pairB[p] * D + k];
-          if (B.pairA[p] == B.pairB[p] && r < c) continue;   // upper half of a diagonal block
-          entries.push_back({std::max(r, c), std::min(r, c), p * D * D + i * D + k});
-        }
-    std::sort(entries.begin(), entries.end(), [](const Entry &a, const Entry &b) {
-      return a.column != b.column ? a.column < b.column : a.row < b.row;
-    });
     n = B.ndof;
-    column.assign(n + 1, 0);
-    row.clear();  from.clear();
-    for (const Entry &e : entries) {
-      column[e.column + 1]++;  row.push_back(e.row);  from.push_back(e.from);
-    }
-    for (int j = 0; j < n; j++) column[j + 1] += column[j];
-    value.assign(row.size(), 0.);
-    A = cholmod_sparse();
-    A.nrow = A.ncol = n;
-    A.nzmax = row.size();
-    A.p = column.data();  A.i = row.data();  A.x = value.data();
-    A.stype = -1;                          // the lower triangle
-    A.itype = CHOLMOD_INT;  A.xtype = CHOLMOD_REAL;  A.dtype = CHOLMOD_DOUBLE;
-    A.sorted = A.packed = 1;
-    firstOf.assign(n + 1, 0);
-    for (const Entry &e : entries) {
-      firstOf[e.row + 1]++;
-      if (e.row != e.column) firstOf[e.column + 1]++;
-    }
-    for (int j = 0; j < n; j++) firstOf[j + 1] += firstOf[j];
-    beside.resize(firstOf[n]);
-    std::vector<int> next(firstOf.begin(), firstOf.end() - 1);
-    for (size_t e = 0; e < entries.size(); e++) {
-      beside[next[entries[e].row]++] = {entries[e].column, int(e)};
-      if (entries[e].row != entries[e].column)
-        beside[next[entries[e].column]++] = {entries[e].row, int(e)};
-    }
+    const std::vector<Entry> entries = entriesOf(B);
+    storeColumns(entries);
+    storeNeighbours(entries);
     if (L) cholmod_free_factor(&L, &common);
     cholmod_factor *analysis = cholmod_analyze(&A, &common);   // AMD, or METIS if AMD is poor
     check(analysis, "the order of the matrix");
@@ -315,6 +278,58 @@ private:
   std::vector<float> singles;              // L by blocks, in `doubles` or `singles`
   std::vector<char> marked;                // (blocks) needed for the solutions of columns()
   static const size_t lanes = 8;           // right-hand sides solved for at once
+
+  struct Entry { int row, column;  size_t from; };   // of the lower triangle; its number in B
+
+  static std::vector<Entry> entriesOf(const bodies::Bodies &B) {
+    // The entries of A by columns.
+    std::vector<Entry> entries;
+    int D = B.D;
+    for (size_t p = 0; p < B.pairA.size(); p++)
+      for (int i = 0; i < D; i++)
+        for (int k = 0; k < D; k++) {
+          int r = B.unknown[B.pairA[p] * D + i], c = B.unknown[B.pairB[p] * D + k];
+          if (B.pairA[p] == B.pairB[p] && r < c) continue;   // upper half of a diagonal block
+          entries.push_back({std::max(r, c), std::min(r, c), p * D * D + i * D + k});
+        }
+    std::sort(entries.begin(), entries.end(), [](const Entry &a, const Entry &b) {
+      return a.column != b.column ? a.column < b.column : a.row < b.row;
+    });
+    return entries;
+  }
+  void storeColumns(const std::vector<Entry> &entries) {
+    // A as a matrix of CHOLMOD.
+    column.assign(n + 1, 0);
+    row.clear();  from.clear();
+    for (const Entry &e : entries) {
+      column[e.column + 1]++;  row.push_back(e.row);  from.push_back(e.from);
+    }
+    for (int j = 0; j < n; j++) column[j + 1] += column[j];
+    value.assign(row.size(), 0.);
+    A = cholmod_sparse();
+    A.nrow = A.ncol = n;
+    A.nzmax = row.size();
+    A.p = column.data();  A.i = row.data();  A.x = value.data();
+    A.stype = -1;                          // the lower triangle
+    A.itype = CHOLMOD_INT;  A.xtype = CHOLMOD_REAL;  A.dtype = CHOLMOD_DOUBLE;
+    A.sorted = A.packed = 1;
+  }
+  void storeNeighbours(const std::vector<Entry> &entries) {
+    // `beside`: the entries of each row of the whole matrix, from firstOf on.
+    firstOf.assign(n + 1, 0);
+    for (const Entry &e : entries) {
+      firstOf[e.row + 1]++;
+      if (e.row != e.column) firstOf[e.column + 1]++;
+    }
+    for (int j = 0; j < n; j++) firstOf[j + 1] += firstOf[j];
+    beside.resize(firstOf[n]);
+    std::vector<int> next(firstOf.begin(), firstOf.end() - 1);
+    for (size_t e = 0; e < entries.size(); e++) {
+      beside[next[entries[e].row]++] = {entries[e].column, int(e)};
+      if (entries[e].row != entries[e].column)
+        beside[next[entries[e].column]++] = {entries[e].row, int(e)};
+    }
+  }
 
   void order(const std::vector<int> &w) {
     // Sets the order of the unknowns, CHOLMOD's with w at the end, and the pattern of L.
