@@ -410,7 +410,7 @@ def settled(
             continue
         if growth > FARTHEST:
             raise BadInput(
-                f"{path}.distance: is 0 nowhere within {growth * half:.3g} m of the bodies (accepted: an expression that is 0 "
+                f"{path}.distance: no zero was found within {growth * half:.3g} m of the bodies (accepted: an expression that is 0 "
                 f"on a surface there)"
             )
         middle, growth = centre, 2 * growth

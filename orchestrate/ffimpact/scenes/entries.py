@@ -88,7 +88,7 @@ def release(content: dict, names: list[str]) -> tuple[str, ...]:
                     and where.startswith("body.")
                 )
             ]
-            if changed_names and table[key] not in ("auto", 0):
+            if changed_names and table[key] not in ("auto", 0, "none"):
                 value, name = table.pop(key), f"{path}.{key}".lstrip(".")
                 fixed = f"{value:g}" if isinstance(value, float) else brief(value)
                 messages.append(
