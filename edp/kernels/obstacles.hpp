@@ -128,6 +128,7 @@ class Obstacles {
     std::vector<Eigen::Triplet<double>> entries;
     for (size_t e = 0; e < traces.size; e++)
       entries.emplace_back(traces.row[e], traces.column[e], traces.value[e]);
+    place = reference;
     trace.resize(traces.n, traces.m);
     trace.setFromTriplets(entries.begin(), entries.end());
     placeInFrame = Places::Zero(candidates(), 3);
@@ -228,7 +229,8 @@ class Obstacles {
   }
 
   template<class Archive> void archive(Archive &archive) {
-    archive(bound);  archive(placeInFrame);  archive(watched);  archive(watchedState);
+    archive(t);  archive(bound);  archive(placeInFrame);  archive(watched);  archive(watchedState);
+    for (Point &x : place) for (int c = 0; c < 3; c++) archive(x[c]);
   }
 
  private:

@@ -98,6 +98,23 @@ def test_bodies_go_on_to_the_last_bit(tmp_path, script, flags):
     assert results.read_summary(out)["resumed_at"] > 0 and (out / "history.csv").read_bytes() == (tmp_path / "straight/history.csv").read_bytes()
 
 
+def test_a_restart_beside_obstacles_that_move(tmp_path):
+    """The same bytes from six checkpoints of a disc with friction between a plane that oscillates
+    and a circle that turns."""
+    disc = {"shape": "disc", "radius": 0.05, "position": [0, 0.052], "velocity": [3, -3], "mesh_size": 0.01, "contact_mesh_size": 0.006}
+    plane = {"kind": "plane", "point": [0, 0], "normal": [0, 1], "motion": [0, "0.001*sin(2000*t)"]}
+    circle = {"kind": "circle", "centre": [0.13, 0.06], "radius": 0.05, "rotation": "-100000*t"}
+    flags = prepared(tmp_path, COARSE | {"young": 7e6, "density": 1722, "end_time": 0.006, "dt": 2e-5, "body": [disc], "obstacle": [plane, circle],
+                                         "contact": {"friction_static": 0.3, "slip_velocity": 0.05}, "checkpoint_every": 10})
+    assert direct(flags, tmp_path / "straight", "bodies").communicate(timeout=120)
+    straight = (tmp_path / "straight/history.csv").read_bytes()
+    for rows in (60, 110, 150, 170, 190, 230):
+        out = tmp_path / f"out{rows}"
+        kill_at(direct(flags, out, "bodies"), out / "checkpoint", rows)
+        assert direct(flags | {"restart": out / "checkpoint"}, out, "bodies").communicate(timeout=120)
+        assert (out / "history.csv").read_bytes() == straight, rows
+
+
 # ---- repeated command
 
 SET = dict(law="neohookean", nu=0.4, accuracy=0.1, dt=2e-5, fields=2, checkpoint_every=10)
