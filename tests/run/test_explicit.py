@@ -110,3 +110,17 @@ def test_pairs_of_points_are_softened_too(tmp_path):
         assert f"in place of the requested {penalty:g} Pa/m".replace("e+", "e+") in words
     first, second = summaries.values()
     assert first["impulse"] == pytest.approx(second["impulse"], rel=1e-9) and first["impulse"] > 0
+
+
+def test_an_obstacle_has_its_own_penalty(tmp_path):
+    """The scene's penalty does not limit that of an obstacle, which may be stiffer: a plane with
+    1e10 is the same whether the scene has 1e9 or 1e10."""
+    depths = []
+    for own, common in (({"penalty": 1e10}, 1e9), ({}, 1e10)):
+        content = {"law": "neohookean", "young": 7e6, "nu": 0.4, "density": 1722, "end_time": 2e-3, "dt": 2e-5, **EXPLICIT, "contact": {"penalty": common},
+                   "body": [{"shape": "disc", "radius": 0.05, "position": [0, 0.0501], "velocity": [0, -4], "mesh_size": 0.012, "contact_mesh_size": 0.006}],
+                   "obstacle": [{"kind": "plane", "point": [0, 0], "normal": [0, 1], **own}]}
+        result = run.run(scene.read(content, tmp_path, "own"), {}, tmp_path / f"out{common:g}", estimate=False)
+        depths.append(result.summary["max_penetration"])
+        assert not any(words.startswith("explicit penalty: ") for words in result.summary["warnings"])
+    assert depths[0] == pytest.approx(depths[1], rel=1e-9) and depths[0] > 1e-5

@@ -356,10 +356,11 @@ def _contact(e: Evidence) -> Iterator[Sentence]:
             )
             yield warn(f"no contact: {none} have not come into contact by the end_time")
         return
-    used, requested = facts["penalty_used"], facts["penalty"]
-    if facts["explicit"] and used < requested * (1 - 1e-9):
+    used = facts["penalty_used"]
+    limit, requested = facts["penalty_limit"], facts["stiffest_penalty"]
+    if facts["explicit"] and limit < requested * (1 - 1e-9):
         yield warn(
-            f"explicit penalty: {rounded(used)} Pa/m are used in place of the requested "
+            f"explicit penalty: {rounded(limit)} Pa/m are used in place of the requested "
             f"{rounded(requested)} Pa/m: with a stiffer penalty single nodes "
             "bounce faster than the waves in the bodies: take "
             f"{e.finer('a smaller contact_mesh_size')}, or integrator=energy-momentum"
