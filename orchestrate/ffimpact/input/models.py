@@ -766,7 +766,10 @@ class Polyline(Obstacle):
     only = {"closed": (PLANE_STRAIN,)}
     vertices: Annotated[list[list[float]], Points(2, "corners [m]")]
     closed: Annotated[bool | None, Flag("whether the last joins the first")] = None
-    rounding: Annotated[float | None, number(0.0, LONGEST, "m", "of convex corners")] = None
+    rounding: Annotated[
+        float | None,
+        number(0.0, LONGEST, "m", "of convex corners; sides lie as far outside the vertices"),
+    ] = None
 
 
 class Surface(Obstacle):
