@@ -139,6 +139,16 @@ def test_a_box_spins_freely_in_space(tmp_path):
     assert np.abs(spin - spin[0]).max() > 1
 
 
+@pytest.mark.parametrize("turn, warns", [(0.1, False), (0.3, True)])
+def test_a_driven_obstacle_must_not_turn_far_in_a_step(tmp_path, turn, warns):
+    """Above 0.2 rad in a step of a given dt there is a warning, with the dt that is small enough.
+    Automatic steps are small enough."""
+    text = ROLLER.format(f'rotation = "{math.degrees(turn) / 1e-4:.6f}*t"')
+    for dt, expected in ((1e-4, warns), (0, False)):
+        words = [words for words in run(tmp_path, text, f"dt{dt:g}", dt=dt, end_time=2e-3)[0]["warnings"] if words.startswith("driven obstacle: ")]
+        assert bool(words) == expected and all("take a dt of at most 6.7e-05" in line for line in words)
+
+
 def test_an_obstacle_works_exactly_what_the_body_gains(tmp_path):
     """A polygonal roller moves down and rotates: its work is the energy, its impulse the momentum.
     """

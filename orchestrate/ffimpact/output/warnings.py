@@ -667,6 +667,13 @@ def _discretisation(e: Evidence) -> Iterator[Sentence]:
             f"by {percent(spun)}{e.request}: take without=flight, "
             "which integrates the flight in time"
         )
+    turn, largest = facts["driven_turn"], facts["most_driven_turn"]
+    if turn > largest * (1 + 1e-9):
+        yield warn(
+            f"driven obstacle: it turns by {turn:.2g} rad in a step, which makes its forces about "
+            f"{percent(turn**2 / 8)} too small: take a dt of at most "
+            f"{rounded(facts['dt_largest'] * largest / turn)}"
+        )
     # At a constant strain rate steps of dt give the viscosity G dt (1/theta - 1/2) of
     # kernels/laws.hpp in place of G tau.
     excess = 0.0
