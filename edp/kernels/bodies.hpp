@@ -187,7 +187,7 @@ public:
     dispatch([&](auto stored) { this->template inertia<stored.D>(); });
     for (int i = 0; i < nodes * D; i++)   // nodalForces: P : Grad w + rho0 A, of unknown i
       residual[unknown[i]] =
-        nodalForces[i] - bodyForce[unknown[i]];   // (1): Div P + rho0 b = rho0 A
+        nodalForces[i] - bodyForce[unknown[i]];   // (1): Div P + rho0 b = rho0 A, weak, times -1
     return succeeded;
   }
 
@@ -391,8 +391,9 @@ private:
 
   template<class T> void addPointForces(int q, int n, const double *N, const Tensor &F,
                                 const Symmetric &S, double *force) const {
-    // force += G^T (w F S): forces on the n nodes, with shapes N, of the stress S at point q.
-    const Tensor weightedP = weight[q] * F * laws::full(S);   // (2), (3): P = F S
+    // force += G^T (w F S): forces on the n nodes, with shapes N, of the stress S at point q, the
+    // first term of (2): Div (F S) + rho0 b = rho0 A.
+    const Tensor weightedP = weight[q] * F * laws::full(S);   // (2), (3): P = F S = J sigma F^-T
     for (int a = 0; a < n; a++, N += T::derivatives) {
       for (int i = 0; i < T::D; i++)
         for (int J = 0; J < T::D; J++) force[a * T::D + i] += N[J] * weightedP(i, J);
@@ -412,7 +413,7 @@ private:
       const Symmetric C0 = tensorAt<T>(at.C0, q),
         C1 = laws::rightCauchyGreen(whole<T>(step.stressInstant == stepMiddle ? at.Fs : at.F1, q));
       Symmetric S = step.stressInstant == stepMean ? m.law->algorithmicStress(m, C0, C1)
-        : m.law->stress(m, C1);            // (4): S = g(E)
+        : m.law->stress(m, C1);            // (4): S = g(E), C = I + 2 E
       if (step.rate > 0) {
         const Symmetric A = m.relaxing > 0 ? tensorAt<T>(damping, q) : laws::identity;
         S += laws::dampingStress(m, C0, laws::rightCauchyGreen(whole<T>(at.F1, q)), A, step.rate);
@@ -455,7 +456,7 @@ private:
       if (slopeKnown) pressed.p += slope[g] * alongG0(g);
     }
     if (m.incompressible)
-      star = pressed.p + m.bulk / 2 * (theta1 - 1);   // (6): for J = 1, p in place of lambda ln J
+      star = pressed.p + m.bulk / 2 * (theta1 - 1);   // (6): J = 1: S = mu (I - C^-1) + p C^-1
     pressed.rest = star - pressed.p;
     volume.star[cell[g]] = star;
     volume.now[cell[g]] = pressed.p;

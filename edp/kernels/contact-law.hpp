@@ -36,7 +36,7 @@ struct Law {
       const bool stays = std::min(vN0, vN1) > 0, moves = std::abs(vN1 - vN0) > 0.02 * (vN0 + vN1);
       const double r = (vN1 - vN0) / (vN0 + vN1), r2 = r * r;
       if (!stays) t = k * (std::pow(std::max(vN0, vN1), m + 1) / (m + 1) / std::abs(vN1 - vN0));
-      else if (m == 1) t = k * middle;     // (10): t_N = k v_N^m, its mean over the step
+      else if (m == 1) t = k * middle;     // m = 1: mean of (10) over the step
       else if (moves)
         t = k * ((std::pow(vN1, m + 1) - std::pow(vN0, m + 1)) / (m + 1) / (vN1 - vN0));
       else t = k * (std::pow(middle, m)
@@ -51,7 +51,7 @@ struct Law {
       stiff = k * m / 2 * std::pow(middle, m - 1);
     }
     if (lawInstant == stepEnd && vN1 > 0) {
-      t = k * std::pow(vN1, m);
+      t = k * std::pow(vN1, m);   // (10): t_N = -t_cN = k v_N^m if v_N > 0, else 0
       stiff = k * m * std::pow(vN1, m - 1);
     }
   }
@@ -64,7 +64,10 @@ struct Law {
         dPhi = std::pow(vOverEps * vOverEps + 1, -1.5);
         break;
       case tanhOf: phi = std::tanh(vOverEps);  dPhi = 1 - phi * phi;  break;
-      case linear: phi = std::min(vOverEps, 1.);  dPhi = vOverEps < 1;  break;   // (13): phi3
+      case linear:
+        phi = std::min(vOverEps, 1.);      // (13): phi3, v/eps below eps (printed: v/(2 eps))
+        dPhi = vOverEps < 1;
+        break;
       case linearPrinted:
         phi = vOverEps < 1 - bridge ? vOverEps / 2
           : std::min(1., (1 - bridge) / 2 + (vOverEps - 1 + bridge) * (1 + bridge) / (2 * bridge));
@@ -129,7 +132,7 @@ struct Law {
     for (int i = 0; i < slips; i++) for (int j = 0; j < slips && linearisedAt; j++)
       muPhi[i] += slope[i][j] * (v[j] - vOfLaw[j]);
     for (int i = 0; i < slips; i++) {
-      f.t[1 + i] = muPhi[i] * f.t[0];   // (11), (12): -t_T = mu_f phi(v_T) |t_N|
+      f.t[1 + i] = muPhi[i] * f.t[0];   // (11), (12): -t_T = mu_f phi(v_T) |t_N|; |t_T| <= mu_f t_N
       f.slope[1 + i][0] = muPhi[i] * f.slope[0][0];
       f.slope[0][1 + i] = 0;
       for (int j = 0; j < slips; j++) f.slope[1 + i][1 + j] = slope[i][j] * f.t[0] / dt;

@@ -80,7 +80,7 @@ class Contact {
         const long r = c * ns() + s;
         script.candidateForces[r] = f.t[c];
         for (int e = first[r]; e < first[r + 1]; e++)
-          script.force[column[e]] += value[e] * f.t[c];   // (15): sum over points, or pairs
+          script.force[column[e]] += value[e] * f.t[c];   // (15): sum of dv_N/du t, t = -w a
       }
     }
   }

@@ -40,7 +40,7 @@ struct Material {
   bool operator==(const Material &m) const { return std::memcmp(this, &m, sizeof m) == 0; }
 };
 
-// Interface of a law. gradientCorrection() is the discrete-gradient correction
+// Interface of a law; C = I + 2 E. gradientCorrection() is the discrete-gradient correction
 // 2 [W(M+H) - W(M-H) - S(M):H] [J/m3]. ellipticity() is, where it is negative, the smallest
 // eigenvalue over mu of the acoustic tensor over directions in the plane of the mesh or (spatial)
 // in space; of ogden a number of the same sign, of mooney-rivlin a lower bound.
@@ -152,7 +152,8 @@ struct Logarithm {
 struct NeoHookean : Conserving<NeoHookean> {
   static Logarithm rest(const Material &m) { return {m.lambda, m.mu}; }
   Symmetric stress(const Material &m, const Symmetric &C) const {
-    return rest(m).stress(C) + m.mu * identity;   // (6): rest gives (lambda ln J - mu) C^-1
+    return rest(m).stress(C)
+      + m.mu * identity;                   // (6): S = mu (I - C^-1) + lambda ln J C^-1
   }
   double gradientCorrection(const Material &m, const Symmetric &M, const Symmetric &H) const {
     return rest(m).gradientCorrection(M, H);

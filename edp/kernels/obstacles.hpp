@@ -202,7 +202,7 @@ class Obstacles {
       double work[3], gap1;
       directions(now, motionOf[now.obstacle], displacement(d, now.point), direction, work, gap1);
       q0[s] = -now.start.gap;
-      q1[s] = -gap1;                       // (7): v_N = -gap
+      q1[s] = -gap1;                       // (7): v_N = -gap <= 0, t_N >= 0, v_N t_N = 0
       for (int c = 0; c < axes; c++) motion[c * ns + s] = work[c];
       for (int c = 0; c < axes; c++)
         for (Trace::InnerIterator it(trace, c * points() + now.point); it; ++it, e++) {

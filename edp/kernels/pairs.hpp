@@ -214,7 +214,7 @@ public:
       for (int e : query.facets)
         if (s.body[c] != s.body[e] || (s.selfContact[s.body[c]] && sightOf(c, e) > 0)) {
           join(x, c, e, hits);
-          join(x, e, c, hits);             // (8): each body is B1 once and B2 once
+          join(x, e, c, hits);             // (8): d(x1, x2) <= 0 and d(x2, x1) <= 0
         }
     }
     std::sort(hits.begin(), hits.end());
@@ -493,7 +493,7 @@ private:
       closest(patch[first[k] + e], closestPoints[e]);
       const double off = closestPoints[e].gapVector.squaredNorm()
         - nearer * closestPoints[pick].gapVector.squaredNorm();
-      if (off < 0 || (A == 2 && off == 0)) pick = e;   // (9): min d(x1, x2) over the facets
+      if (off < 0 || (A == 2 && off == 0)) pick = e;   // (9): min |x1 - x2|; d = v_N = -gap
     }
     Vector<A - 1> r = closestPoints[pick].r;
     // Of several facets that meet at the closest point, take the edge that ends there, or the first

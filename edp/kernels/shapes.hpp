@@ -30,7 +30,7 @@ class Plane : public Shape {
   Plane(const double *numbers, int axes)   // a point [m], the outward normal
     : point(pointOf(numbers, axes)), normal(pointOf(numbers + axes, axes).normalized()) {}
   Nearest nearest(const Point &x) const override {
-    return {normal.dot(x - point), normal, 1};   // (7): v_N = -n.(x_B - x_R), regularised by (10)
+    return {normal.dot(x - point), normal, 1};   // v_N = -gap
   }
 
  private:
