@@ -100,7 +100,7 @@ def test_bodies_go_on_to_the_last_bit(tmp_path, script, flags):
 
 def test_a_restart_beside_obstacles_that_move(tmp_path):
     """The same bytes from six checkpoints of a disc with friction between a plane that oscillates
-    and a circle that turns."""
+    and a circle that rotates."""
     disc = {"shape": "disc", "radius": 0.05, "position": [0, 0.052], "velocity": [3, -3], "mesh_size": 0.01, "contact_mesh_size": 0.006}
     plane = {"kind": "plane", "point": [0, 0], "normal": [0, 1], "motion": [0, "0.001*sin(2000*t)"]}
     circle = {"kind": "circle", "centre": [0.13, 0.06], "radius": 0.05, "rotation": "-100000*t"}

@@ -215,7 +215,7 @@ def _sines(a: Interval, shift: float = 0.0) -> Interval:
     return np.where(bottom, -1.0, np.minimum(*ends)), np.where(top, 1.0, np.maximum(*ends))
 
 
-# Each operation on intervals a (and b) returns bounds of its values, infinite if they are not known.
+# Each operation on intervals a (and b) returns bounds of its values, infinite if not known.
 RANGES = {
     4: lambda a, b: (a[0] + b[0], a[1] + b[1]),
     5: lambda a, b: (a[0] - b[1], a[1] - b[0]),
@@ -250,7 +250,7 @@ def _bound(code: Sequence[float], points: np.ndarray, limit: float) -> np.ndarra
 
 
 def _parts(code: Sequence[float]) -> list[Sequence[float]]:
-    """The programs of a, b, ... of an expression min(a, b, ...), else the whole: the surfaces of solids
+    """The programs of a, b, ... of an expression min(a, b, ...), else the whole: surfaces of solids
     whose union is the obstacle.
     """
     first, depth, entries = 0, 0, enumerate(code[:-1])

@@ -670,7 +670,7 @@ def _discretisation(e: Evidence) -> Iterator[Sentence]:
     turn, largest = facts["driven_turn"], facts["most_driven_turn"]
     if turn > largest * (1 + 1e-9):
         yield warn(
-            f"driven obstacle: it turns by {turn:.2g} rad in a step, which makes its forces about "
+            f"driven obstacle: it rotates by {turn:.2g} rad in a step, which makes its forces about "
             f"{percent(turn**2 / 8)} too small: take a dt of at most "
             f"{rounded(facts['dt_largest'] * largest / turn)}"
         )

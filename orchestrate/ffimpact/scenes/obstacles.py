@@ -147,7 +147,8 @@ class Plane(Obstacle):
 
     def regions(self, seen_from: Callable, bounding_radius: float) -> Iterator[list[Polynomial]]:
         axes = len(self.velocity)
-        yield [seen_from(np.array(self.numbers[:axes])) @ np.array(self.numbers[axes:]) - bounding_radius]
+        point, normal = np.array(self.numbers[:axes]), np.array(self.numbers[axes:])
+        yield [seen_from(point) @ normal - bounding_radius]
 
 
 class Circle(Obstacle):
@@ -219,8 +220,8 @@ class Polyline(Obstacle):
 
 
 class Implicit(Obstacle):
-    """The surface D(x) = 0. `numbers`: the validity limit and the program of D (implicit.py); 1 before
-    settled().
+    """The surface D(x) = 0. `numbers`: the validity limit and the program of D (implicit.py); the
+    limit is 1 before settled().
     """
 
     kind = "implicit"
@@ -339,7 +340,10 @@ def settled(obstacles: list[Obstacle], centre: np.ndarray, half: float) -> list[
     """Returns the obstacles with the largest gradient and curvature of implicit ones in a box about
     `centre` of half size `half` [m], in which the bodies lie.
     """
-    return [replace(obstacle, numbers=implicit.settled(f"obstacle.{k}", obstacle.numbers[1:], centre, half))
+    def numbers(k: int, code: tuple[float, ...]) -> tuple[float, ...]:
+        return implicit.settled(f"obstacle.{k}", code, centre, half)
+
+    return [replace(obstacle, numbers=numbers(k, obstacle.numbers[1:]))
             if isinstance(obstacle, Implicit) else obstacle for k, obstacle in enumerate(obstacles, 1)]
 
 
