@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 __all__ = ["Fields", "Result", "compare", "load"]
 
 # The numbers that `Result.table` lists, in this order.
-SHOWN = (*report.MAIN, "thresholded_contact_time", "energy_initial", "energy_final")
+SHOWN = (*report.main_rows(), "thresholded_contact_time", "energy_initial", "energy_final")
 
 
 class Result:
@@ -163,7 +163,7 @@ class Result:
             f"  {name:<26}{row['value']:>12.5g}{_bar(row['error'])} {_unit(row['unit'])}".rstrip()
             for name, row in self.table.iterrows()
         ]
-        warnings = [line for line in report.notices(self.summary) if line.startswith("  warning")]
+        warnings = report.warning_lines(self.summary)
         more = (
             [f"  and {len(rows) - report.MOST} more: result.table"]
             if len(rows) > report.MOST

@@ -118,7 +118,9 @@ def test_scenes_of_the_paper_have_no_warning_or_the_one_that_a_reader_must_know(
     assert [line.split()[1] for line in lines if line.startswith("  warning ")] == [f"{word}:" for word in names]
     footnotes = [line for line in lines if line.startswith("  [")]
     assert all(len(line) <= 100 and not line.endswith("...") for line in footnotes + [line for line in lines if line.startswith("  warning")])
-    assert any(re.match(r"  peak force +\S+( ± \S+)? kN(/m)? \[1\]( |$)", line) for line in lines) and footnotes[0].startswith("  [1]       peak force: ")
+    mark = next(match[3] for line in lines if (match := re.match(r"  peak force +\S+( ± \S+)? kN(/m)? (\[\d\])( |$)", line)))
+    assert list(dict.fromkeys(line[2:5] for line in footnotes)) == [mark for line in lines for mark in re.findall(r" (\[\d\])(?: |$)", line) if line[2] != "["]
+    assert any(line.startswith(f"  {mark}       peak force: ") for line in footnotes)
     assert all(sentence in whole for sentence in result.summary["notes"] + result.summary["warnings"])
     assert len(lines) < 30
 

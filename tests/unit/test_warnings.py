@@ -37,3 +37,19 @@ def test_warnings_are_counted_by_name():
     """The most frequent warning is first. Without warnings the text is empty."""
     assert study.warned(["penalty: a; creep: b", "", "creep: c"]) == "creep in 2, penalty in 1 of 3 runs"
     assert study.warned(["", ""]) == ""
+
+
+def test_footnotes_are_numbered_in_the_order_of_their_numbers():
+    """The first mark of the table is [1], whatever the order of the notes in the summary. If the
+    report is verbose, notes about numbers without a row follow; otherwise they are left out."""
+    sentences = ["touches again: c", "peak force: a", "contact time: b", "contact points: d"]
+    keys = ["contact_time", "peak_force"]
+    brief = notes.footnotes(sentences, keys)
+    assert brief == {"contact_time": ["contact time: b"], "peak_force": ["peak force: a", "contact points: d"]}
+    assert list(notes.footnotes(sentences, keys, verbose=True)) == [*keys, "contact_intervals"]
+
+
+def test_several_numbers_in_one_row():
+    """Each has its own error estimate, the last one none."""
+    row = report.Quantity("first_restitutions", "first restitutions", "1")
+    assert row.text([0.7, 0.65, 0.6], [0.01, 0.02]) == "0.7 ± 0.01, 0.65 ± 0.02, 0.6 1"

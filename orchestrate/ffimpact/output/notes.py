@@ -6,11 +6,11 @@ warning whose cause or effect another warning reports already. The summary holds
 screen shows one line for each.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from ..failure import shortened
 
-__all__ = ["BEHIND", "WIDEST", "line", "name", "number", "settled"]
+__all__ = ["BEHIND", "WIDEST", "footnotes", "line", "name", "number", "settled"]
 
 WIDEST = 100  # columns of a printed line
 CAUSES = ("contact points", "steps")  # warnings about causes of estimated errors
@@ -50,6 +50,21 @@ def name(sentence: str) -> str:
 def number(note: str) -> str:
     """Returns the key of summary.json that a note is about."""
     return NUMBERS.get(name(note), name(note).replace(" ", "_"))
+
+
+def footnotes(
+    sentences: Iterable[str], keys: Sequence[str], verbose: bool = False
+) -> dict[str, list[str]]:
+    """Returns the notes about each number that has some, by key. The printed numbers `keys` come
+    first, in their order; if `verbose` all others follow.
+    """
+    of_number: dict[str, list[str]] = {}
+    for sentence in sentences:
+        of_number.setdefault(number(sentence), []).append(sentence)
+    order = [key for key in keys if key in of_number]
+    if verbose:
+        order += [key for key in of_number if key not in order]
+    return {key: of_number[key] for key in order}
 
 
 def line(kind: str, sentence: str) -> str:

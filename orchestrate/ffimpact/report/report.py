@@ -2,10 +2,11 @@
 scene.
 """
 
-import re
 import shlex
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import zip_longest
 
 from ..input import dimension
 from ..input.parameters import Value
@@ -15,46 +16,44 @@ from ..output.results import Record, body_names, suffixes
 from ..places import shown
 from . import literature
 
-__all__ = ["MAIN", "MOST", "Quantity", "draw", "marks", "report", "rows", "stiffness", "notices"]
+__all__ = ["MOST", "Quantity", "draw", "main_rows", "report", "rows", "stiffness", "warning_lines"]
 
-LEFT_OUT_AT_ZERO = (
-    "external_work",
-    "friction_work",
-    "creep_work",
-    "rotation_energy",
-    "impulse_ratio",
-    "rebound_vx",
-    "rebound_vz",
-    "rebound_spin_x",
-    "rebound_spin_y",
-    "rebound_spin",
-    "sliding_time",
-    "sticking_time",
-    "reverse_slip_time",
-    "unsolved_jumps",
-)
-# The numbers that are printed for every run, in order of importance; at most MOST of them.
-MAIN = (
-    "contact_time",
-    "peak_force",
-    "impulse",
-    "restitution",
-    "rebound_vx",
-    "rebound_vy",
-    "rebound_vz",
-    "rebound_spin",
-    "vibration_energy",
-    "friction_work",
-    "contact_intervals",
-    "energy_drift",
-)
-MOST = 10
+MOST = 10  # largest number of rows of a report that is not verbose
+EXACT_ZERO = 1e-9  # largest size of a number that is zero to round-off
+
+# A number of the summary, or several that share a row.
+Numbers = float | list[float]
+# Whether the report of a run has the row of this key.
+Condition = Callable[[Record, str], bool]
+
+
+def _always(result: Record, key: str) -> bool:
+    return True
+
+
+def _never(result: Record, key: str) -> bool:
+    return False
+
+
+def _nonzero(result: Record, key: str) -> bool:
+    return abs(result.summary[key]) >= EXACT_ZERO
+
+
+def _to_rest(result: Record, key: str) -> bool:
+    return result.scene.get("until") == "rest"
+
+
+def _single(result: Record, key: str) -> bool:
+    return not _to_rest(result, key)
 
 
 @dataclass(frozen=True)
 class Quantity:
     """A row of the report: a key of summary.json, its label, the displayed unit, the factor from SI
     units to that unit, and the number format.
+
+    A run that has the number has the row if `when` holds, and the report that is not verbose has it
+    if `main` holds, too.
     """
 
     key: str
@@ -62,11 +61,22 @@ class Quantity:
     unit: str = ""
     factor: float = 1.0
     digits: str = ".4g"
+    main: Condition = _never
+    when: Condition = _always
 
-    def text(self, value: float, error: float | None = None) -> str:
-        """Returns the value with its error estimate (both passed in SI units) and its unit."""
-        bar = "" if error is None else f" ± {self.factor * error:.2g}"
-        return f"{self.factor * value:{self.digits}}{bar} {self.unit}".rstrip()
+    def text(self, value: Numbers, error: Numbers | None = None) -> str:
+        """Returns the value, or several values in one row, with error estimates (all in SI units)
+        and the unit.
+        """
+        values, errors = (
+            numbers if isinstance(numbers, list) else [numbers] for numbers in (value, error)
+        )
+        texts = (
+            f"{self.factor * number:{self.digits}}"
+            + ("" if bar is None else f" ± {self.factor * bar:.2g}")
+            for number, bar in zip_longest(values, errors)
+        )
+        return f"{', '.join(texts)} {self.unit}".rstrip()
 
     def beside(self, number: dict) -> str:
         """Returns a published number with its error bar, if it has one, and its source."""
@@ -76,39 +86,42 @@ class Quantity:
 
 
 def rows(per: str) -> list[Quantity]:
-    """Returns all key figures. `per` is the suffix for the units of forces, impulses and energies,
-    see dimension.per_metre().
+    """Returns all rows in the order of the report. `per` is the suffix for the units of forces,
+    impulses and energies, see dimension.per_metre().
     """
     return [
-        Quantity("contact_time", "contact time", "ms", 1e3),
+        Quantity("contact_time", "contact time", "ms", 1e3, main=_single),
         Quantity("thresholded_contact_time", "  above 1 % of the peak", "ms", 1e3),
-        Quantity("contact_intervals", "contact intervals", digits=".0f"),
-        Quantity("peak_force", "peak force", f"kN{per}", 1e-3),
-        Quantity("impulse", "impulse", f"N s{per}", digits=".5g"),
-        Quantity("rebound_vx", "rebound velocity, x", "m/s"),
-        Quantity("rebound_vy", "rebound velocity, y", "m/s"),
-        Quantity("rebound_vz", "rebound velocity, z", "m/s"),
-        Quantity("rebound_spin_x", "rebound spin about x", "rad/s"),
-        Quantity("rebound_spin_y", "rebound spin about y", "rad/s"),
-        Quantity("rebound_spin", "rebound spin", "rad/s"),
-        Quantity("restitution", "restitution"),
+        Quantity("bounces", "bounces", digits=".0f", main=_to_rest),
+        Quantity("first_restitutions", "first restitutions", digits=".3g", main=_to_rest),
+        Quantity("rest_time", "at rest from", "s", main=_to_rest),
+        Quantity("peak_force", "peak force", f"kN{per}", 1e-3, main=_always),
+        Quantity("impulse", "impulse", f"N s{per}", digits=".5g", main=_always),
+        Quantity("restitution", "restitution", main=_always),
         Quantity("restitution_tangential", "  tangential"),
-        Quantity("impulse_ratio", "  impulse ratio"),
+        Quantity("impulse_ratio", "  impulse ratio", when=_nonzero),
         Quantity("angle_in", "angle of incidence", "degrees"),
         Quantity("angle_out", "  of reflection", "degrees"),
-        Quantity("sliding_time", "load slides for", "ms", 1e3),
-        Quantity("reverse_slip_time", "  of it backwards", "ms", 1e3),
-        Quantity("sticking_time", "load sticks for", "ms", 1e3),
-        Quantity("energy_initial", "energy at the start", f"J{per}"),
-        Quantity("external_work", "external work", f"J{per}"),
-        Quantity("translation_energy", "left in translation", f"J{per}"),
-        Quantity("rotation_energy", "  in rotation", f"J{per}"),
-        Quantity("vibration_energy", "  left in vibration", f"J{per}"),
-        Quantity("friction_work", "lost to friction", f"J{per}"),
-        Quantity("creep_work", "  of it in creep", f"J{per}"),
+        *_velocities("rebound", "rebound"),
+        *_velocities("final", "final"),
+        Quantity("vibration_energy", "left in vibration", f"J{per}", main=_always),
+        Quantity("translation_energy", "  in translation", f"J{per}"),
+        Quantity("rotation_energy", "  in rotation", f"J{per}", when=_nonzero),
+        Quantity("friction_work", "lost to friction", f"J{per}", main=_always, when=_nonzero),
+        Quantity("creep_work", "  of it in creep", f"J{per}", when=_nonzero),
         Quantity("viscous_work", "lost to viscosity", f"J{per}"),
+        Quantity("energy_initial", "energy at the start", f"J{per}"),
+        Quantity("external_work", "external work", f"J{per}", when=_nonzero),
+        Quantity("contact_intervals", "contact intervals", digits=".0f", main=_single),
+        Quantity("sliding_time", "load slides for", "ms", 1e3, when=_nonzero),
+        Quantity("reverse_slip_time", "  of it backwards", "ms", 1e3, when=_nonzero),
+        Quantity("sticking_time", "load sticks for", "ms", 1e3, when=_nonzero),
         Quantity(
-            "energy_drift", "energy drift", "of the energy at the start or at contact", digits=".1e"
+            "energy_drift",
+            "energy drift",
+            "of the energy at the start or at contact",
+            digits=".1e",
+            main=_always,
         ),
         Quantity("max_penetration", "largest penetration", "mm", 1e3, ".3g"),
         Quantity("min_jacobian", "smallest det F", digits=".3f"),
@@ -125,6 +138,7 @@ def rows(per: str) -> list[Quantity]:
             "unsolved jumps",
             "steps of points in a jump of the friction law",
             digits=".0f",
+            when=_nonzero,
         ),
         Quantity("resumed_at", "resumed at", "ms", 1e3),
         Quantity("steps", "steps", digits=".0f"),
@@ -132,6 +146,34 @@ def rows(per: str) -> list[Quantity]:
         Quantity("total_seconds", "wall time", "s", digits=".2f"),
         Quantity("wall_seconds", "  of it this run", "s", digits=".2f"),
     ]
+
+
+def _velocities(kind: str, word: str) -> list[Quantity]:
+    """Returns the rows of velocities and spins at the end of contact (`kind` rebound) or of the run
+    (final).
+    """
+    return [
+        *(
+            Quantity(
+                f"{kind}_v{axis}",
+                f"{word} velocity, {axis}",
+                "m/s",
+                main=_single,
+                when=_always if axis == "y" else _nonzero,
+            )
+            for axis in "xyz"
+        ),
+        *(
+            Quantity(f"{kind}_spin_{axis}", f"{word} spin about {axis}", "rad/s", when=_nonzero)
+            for axis in "xy"
+        ),
+        Quantity(f"{kind}_spin", f"{word} spin", "rad/s", main=_single, when=_nonzero),
+    ]
+
+
+def main_rows() -> list[str]:
+    """Returns the keys of the rows that a report which is not verbose may have, in its order."""
+    return [row.key for row in rows("") if row.main is not _never]
 
 
 def draw(result: Record) -> None:
@@ -200,30 +242,14 @@ def _friction(contact: dict[str, Value]) -> str:
     )
 
 
-def marks(summary: dict) -> dict[str, str]:
-    """Returns the footnote mark of each number that has a note, by key, in the order of the
-    notes.
-    """
-    return {
-        key: f" [{k}]"
-        for k, key in enumerate(dict.fromkeys(map(notes.number, summary.get("notes", []))), 1)
-    }
+def warning_lines(summary: dict, verbose: bool = False) -> list[str]:
+    """Returns a line for each warning, if `verbose` in full sentences."""
+    return [_sentence("warning", sentence, verbose) for sentence in summary["warnings"]]
 
 
-def notices(summary: dict, verbose: bool = False) -> list[str]:
-    """Returns a line for each warning, then a line for each note of a main number, with its mark.
-    If `verbose` it returns all notes, in full sentences.
-    """
-    mark = {key: text for key, text in marks(summary).items() if verbose or _bare(key) in MAIN}
-    footnotes = sorted(
-        (note for note in summary.get("notes", []) if notes.number(note) in mark),
-        key=lambda note: list(mark).index(notes.number(note)),
-    )
-    sentences = [("warning", sentence) for sentence in summary["warnings"]]
-    sentences += [(mark[notes.number(note)].strip(), note) for note in footnotes]
-    if verbose:
-        return [f"  {kind:<10}{sentence}" for kind, sentence in sentences]
-    return [notes.line(f"  {kind:<10}", sentence) for kind, sentence in sentences]
+def _sentence(kind: str, sentence: str, verbose: bool) -> str:
+    start = f"  {kind:<10}"
+    return start + sentence if verbose else notes.line(start, sentence)
 
 
 def _of_bodies(quantity: Quantity, scene: dict[str, Value], summary: dict) -> list[Quantity]:
@@ -243,11 +269,15 @@ def report(result: Record, verbose: bool = False) -> str:
     and full sentences.
     """
     summary, scene, folder = result.summary, result.scene, shown(result.folder)
+    printed = _rows(result, verbose)
+    footnotes = notes.footnotes(summary.get("notes", []), [row.key for row in printed], verbose)
+    marks = {key: f"[{k}]" for k, key in enumerate(footnotes, 1)}
     lines = [
         f"{folder}: " + ("finished earlier, same scene and code" if result.reused else "finished"),
         *_scene(scene),
-        *_numbers(result, verbose),
-        *notices(summary, verbose),
+        *_numbers(result, printed, marks),
+        *warning_lines(summary, verbose),
+        *(_sentence(marks[key], note, verbose) for key in footnotes for note in footnotes[key]),
     ]
     lines += [f"  released  {sentence}" for sentence in summary.get("released", [])]
     if summary.get("skipped"):
@@ -269,35 +299,35 @@ def report(result: Record, verbose: bool = False) -> str:
     return "\n".join(lines)
 
 
-def _numbers(result: Record, verbose: bool) -> list[str]:
-    """Returns a line for each number: label, value with error estimate, mark of its note, and
+def _rows(result: Record, verbose: bool) -> list[Quantity]:
+    """Returns the rows of the report of a run, in their order."""
+    summary, scene = result.summary, result.scene
+    printed = [
+        quantity
+        for row in rows(dimension.per_metre(summary["provenance"]["script"]))
+        if verbose or row.main(result, row.key)
+        for quantity in _of_bodies(row, scene, summary)
+        if summary.get(quantity.key) is not None and quantity.when(result, quantity.key)
+    ]
+    # Without a contact that is over, the velocities of the rebound are those at the end of the run.
+    if scene.get("end_time") and not any(row.key.startswith("final_") for row in printed):
+        printed = [replace(row, label=row.label.replace("rebound", "final")) for row in printed]
+    if verbose:
+        return printed
+    return [replace(row, label=row.label.strip()) for row in printed[:MOST]]
+
+
+def _numbers(result: Record, printed: list[Quantity], marks: dict[str, str]) -> list[str]:
+    """Returns a line for each row: label, value with error estimate, mark of its note, and
     published numbers of the same scene.
     """
     summary, scene = result.summary, result.scene
-    script = summary["provenance"]["script"]
-    mark, bars, published = marks(summary), errors(result), _published(summary, scene)
-    quantities = [
-        quantity
-        for row in rows(dimension.per_metre(script))
-        for quantity in _of_bodies(row, scene, summary)
-        if _is_told(quantity, summary)
-    ]
-    if not verbose:
-        quantities = sorted(
-            (quantity for quantity in quantities if _bare(quantity.key) in MAIN),
-            key=lambda quantity: MAIN.index(_bare(quantity.key)),
-        )[:MOST]
-        quantities = [replace(quantity, label=quantity.label.strip()) for quantity in quantities]
-    if scene.get("end_time"):  # the run may continue after the impact
-        quantities = [
-            replace(quantity, label=quantity.label.replace("rebound", "final"))
-            for quantity in quantities
-        ]
-    width, lines = max(24, *(len(quantity.label) + 1 for quantity in quantities)), []
-    for quantity in quantities:
+    bars, published = errors(result), _published(summary, scene)
+    width, lines = max(24, *(len(quantity.label) + 1 for quantity in printed)), []
+    for quantity in printed:
         text = quantity.text(summary[quantity.key], bars.get(quantity.key))
         beside = [quantity.beside(number) for number in published.get(quantity.key, [])] or [""]
-        marked = text + mark.get(quantity.key, "")
+        marked = f"{text} {marks.get(quantity.key, '')}".rstrip()
         lines.append(f"  {quantity.label:<{width}}{marked:<26}{beside[0]}".rstrip())
         lines += [f"  {'':<{width + 26}}{more}" for more in beside[1:]]
     return lines
@@ -311,14 +341,3 @@ def _published(summary: dict, scene: dict[str, Value]) -> dict[str, list[dict]]:
     if provenance.get("mesh") and not provenance.get("gmsh"):
         return {}
     return literature.references(provenance["script"], scene)
-
-
-def _is_told(quantity: Quantity, summary: dict) -> bool:
-    """Returns whether the run has the number and whether the number is informative."""
-    value = summary.get(quantity.key)
-    return value is not None and (abs(value) >= 1e-9 or _bare(quantity.key) not in LEFT_OUT_AT_ZERO)
-
-
-def _bare(key: str) -> str:
-    """Returns the name of a number without the suffix of its body."""
-    return re.sub("_[0-9]+$", "", key)
