@@ -20,6 +20,7 @@ from ffimpact.scene import load, read as read_scene
 from ffimpact.scenes import assembly
 from tests.support.bodies_3d import BALL, BLOCK, FLOOR, SCENE, prism, read
 from tests.support.direct import call
+from verification.measure import bodies as measure_bodies
 
 SCRIPT = "bodies-3d"
 
@@ -346,3 +347,38 @@ def test_a_ball_on_a_free_block(tmp_path):
 
 def found_columns(result) -> list[str]:
     return load(str(result.folder / "scene.toml")).columns
+
+
+@pytest.mark.parametrize("kind, lengths, mirror_axes", [
+    ("shell", [0.05, 0.04], (0, 2)), ("shell", [0.05, 0.01], ()), ("tube", [0.05, 0.03, 0.08], (2,))])
+def test_hollow_solids_are_meshed_on_both_surfaces(kind, lengths, mirror_axes):
+    """All corners on curved faces lie on their sphere or cylinder, the cavity of a shell never
+    comes into contact, and the volume converges to the exact one."""
+    shape = solids.MADE[kind](*lengths)
+    turn = np.eye(3) if kind == "shell" else tumbling.rotation(np.radians([90, 0, 0]))
+    off = []
+    for size in (0.02, 0.01):
+        sizes = mesh.Sizes(size, size, np.empty((0, 3)), 0.0)
+        made = solid_mesh.mesh_shape(kind, np.array(lengths), turn, mirror_axes, sizes, 0.01)
+        own = np.unique(made.faces[np.isin(made.labels, (mesh.FREE, made.NEVER))])
+        assert abs(shape.gap(made.points[own] @ turn)).max() < 1e-12
+        middle = np.linalg.norm(made.points[made.faces].mean(axis=1), axis=1)
+        if kind == "shell":
+            inner = (middle < sum(lengths) / 2) & np.isin(made.labels, (mesh.FREE, made.NEVER))
+            assert ((made.labels == made.NEVER) == inner).all()
+        off.append(made.volumes.sum() * 2 ** len(mirror_axes) / shape.volume - 1)
+    assert abs(off[1]) < abs(off[0]) < 0.1
+
+
+def test_a_hollow_ball_with_gas_as_in_revolution(tmp_path):
+    """A thick shell with gas hits a plane: in space, a quarter of it, as the body of revolution,
+    to 1 % of impulse and rebound on coarse meshes."""
+    shell = {"shape": "shell", "radius": 0.03, "inner_radius": 0.02, "mesh_size": 0.01, "contact_mesh_size": 0.006,
+             "load": [{"where": "inner", "gas": {"gauge_pressure": 2e4, "exponent": 1.4}}]}
+    entries = SCENE | {"young": 1e6, "density": 1000, "dt": 1e-4, "contact": {"penalty": 3e9}}
+    flat = entries | {"dimension": "axisymmetric", "body": [shell | {"position": 0.0305, "velocity": -3}],
+                      "obstacle": [FLOOR | {"point": [0, 0], "normal": [0, 1]}]}
+    solid = entries | {"body": [shell | {"position": [0, 0.0305, 0], "velocity": [0, -3, 0]}], "obstacle": [FLOOR | {"point": [0, 0, 0]}]}
+    first, second = (measure_bodies(tmp_path / name, scene).summary for name, scene in (("flat", flat), ("solid", solid)))
+    for name in ("impulse", "rebound_vy"):
+        assert second[name] == pytest.approx(first[name], rel=0.01)

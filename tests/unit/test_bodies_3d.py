@@ -20,6 +20,8 @@ SHAPES = {
     "ball": (solids.ball(0.3), 4 / 3 * math.pi * 0.027, 4 * math.pi * 0.09),
     "box": (solids.box(np.array([0.4, 0.1, 0.2])), 0.008, 2 * (0.04 + 0.02 + 0.08)),
     "cylinder": (solids.cylinder(0.2, 0.5), math.pi * 0.02, 2 * math.pi * 0.2 * 0.7),
+    "shell": (solids.shell(0.3, 0.2), 4 / 3 * math.pi * 0.019, 4 * math.pi * 0.13),
+    "tube": (solids.tube(0.2, 0.1, 0.5), math.pi * 0.015, 2 * math.pi * (0.3 * 0.5 + 0.03)),
 }
 
 
@@ -30,9 +32,14 @@ def test_shapes_know_their_surface(name):
     shape, volume, area = SHAPES[name]
     assert shape.volume == pytest.approx(volume) and shape.area == pytest.approx(area)
     points = shape.sampled(0.02)
-    assert abs(shape.gap(points)).max() < 1e-12 and shape.gap(np.zeros((1, 3)))[0] < 0
+    hollow = {"shell": 0.2, "tube": 0.1}.get(name)
+    centre = shape.gap(np.zeros((1, 3)))[0]
+    assert abs(shape.gap(points)).max() < 1e-12
+    assert centre == pytest.approx(hollow) if hollow else centre < 0
     assert 0.3 < len(points) * 0.02**2 / area < 3
-    assert shape.gap(np.array([[0, 10.0, 0]]))[0] == pytest.approx(10 - shape.extent[1] / 2)
+    assert shape.gap(np.array([[0.15, 10.0, 0]]))[0] == pytest.approx(
+        math.hypot(0.15, 10) - 0.3 if name in ("ball", "shell") else 10 - shape.extent[1] / 2
+    )
     assert np.linalg.norm(points, axis=1).max() == pytest.approx(shape.reach, rel=1e-6)
 
 
@@ -69,13 +76,13 @@ def test_places_turns_and_motions():
 
 
 def test_moments_of_inertia():
-    """Moments of inertia of a box by the formula and by its triangles; of a ball and a cylinder by
-    points inside."""
+    """Moments of inertia of a box by the formula and by its triangles; of other shapes by points
+    inside."""
     sides = np.array([0.05, 0.1, 0.2])
     made = solid_mesh.mesh_shape("box", sides, np.eye(3), (), mesh.Sizes(0.1, 0.1, np.empty((0, 3)), 0.0), 0.025)
     assert solids.surface(made.points[made.faces]).moments == pytest.approx(solids.box(sides).moments, rel=1e-9, abs=1e-15)
     x = np.random.default_rng(1).uniform(-1, 1, (400000, 3))
-    for shape in (solids.ball(1.0), solids.cylinder(0.7, 1.6)):
+    for shape in (solids.ball(1.0), solids.cylinder(0.7, 1.6), solids.shell(0.9, 0.6), solids.tube(0.8, 0.5, 1.2)):
         inside = x[shape.gap(x) < 0]
         square = inside.T @ inside * 8 / len(x)
         assert shape.moments == pytest.approx(np.trace(square) * np.eye(3) - square, abs=0.01 * shape.moments.max())
@@ -123,10 +130,11 @@ def test_obstacles_break_symmetry():
 # ---- what is refused
 
 BAD = [
+    ({"shape": "shell", "inner_radius": 0.05}, {}, "body.1.inner_radius: 0.05 m is no smaller than radius (accepted: below 0.05 m)"),
     ({"position": [0, 1]}, {}, "body.1.position: '[0, 1]' is no [x, y, z] (accepted: three numbers"),
     ({"velocity": [0, 1]}, {}, "body.1.velocity: '[0, 1]' is no [x, y, z]"),
     ({"turn": [0, 0, 1], "angle": 3}, {}, "body.1.angle: '3' stands beside turn"),
-    ({"shape": "disc"}, {}, "body.1.shape: 'disc' is not known (accepted: ball|box|cylinder|mesh)"),
+    ({"shape": "disc"}, {}, "body.1.shape: 'disc' is not known (accepted: ball|shell|box|cylinder|tube|mesh)"),
     ({"width": 3}, {}, "body.1.width: no such entry, set to '3'"),
     ({"speed": 3}, {}, "body.1.speed: no such entry, set to '3'"),
     ({"radius": 0.3}, {}, "body.1.position: 'ball' overlaps 'block' (body.2)"),

@@ -604,10 +604,10 @@ class Ball(Body):
 
 
 class Shell(Body):
-    """A hollow ball of revolution."""
+    """A hollow ball, of revolution or in space."""
 
     shape = "shell"
-    dimensions = (AXISYMMETRIC,)
+    dimensions = (AXISYMMETRIC, SOLID)
     radius: Annotated[float, number(meaning="outer radius")]
     inner_radius: Annotated[float, number(meaning="inner radius")]
 
@@ -630,10 +630,10 @@ class Cylinder(Body):
 
 
 class Tube(Body):
-    """A tube of revolution."""
+    """A tube about the y axis, of revolution or in space."""
 
     shape = "tube"
-    dimensions = (AXISYMMETRIC,)
+    dimensions = (AXISYMMETRIC, SOLID)
     radius: Annotated[float, number(meaning="outer radius")]
     inner_radius: Annotated[float, number(meaning="inner radius")]
     height: Annotated[float, number(meaning="height")]

@@ -514,10 +514,11 @@ def pieces(points: int, elements: np.ndarray) -> np.ndarray:
 def inner_outlines(points: np.ndarray, sides: np.ndarray) -> list[np.ndarray]:
     """For each hole of a body, the numbers of its sides among the boundary sides (f, axes).
 
-    The outline with the leftmost point is the outer one.
+    The outline with the rightmost point is the outer one. So `sides` may be those of the half at
+    x >= 0, without the sides on the axis or plane of symmetry.
     """
     piece = pieces(len(points), sides)[sides[:, 0]]
-    outer = piece[points[sides][:, :, 0].min(axis=1).argmin()]
+    outer = piece[points[sides][:, :, 0].max(axis=1).argmax()]
     return [np.flatnonzero(piece == inner) for inner in np.unique(piece) if inner != outer]
 
 

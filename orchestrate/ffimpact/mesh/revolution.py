@@ -26,6 +26,7 @@ from . import flat, mesh
 
 __all__ = [
     "boundary",
+    "check_radii",
     "closed_over_axis",
     "image",
     "mirrored",
@@ -59,7 +60,7 @@ def shape(body: Body, folder: Path) -> tuple[Outline, mesh.Mesh | None]:
         half = half.moved(-centre)
         return flat.mesh_outline(whole(half)), half
     if isinstance(body, Shell):
-        _check_radii(body)
+        check_radii(body)
         return Outline((circle_loop(body.radius), circle_loop(body.inner_radius))), None
     loop = _tube_loop(body) or _loop(body)
     if loop.polygon[:, 0].min() > 0:
@@ -85,7 +86,7 @@ def _loop(body: Body) -> Loop:
     return LOOPS[body.shape](*body.sizes)
 
 
-def _check_radii(body: Shell | Tube) -> None:
+def check_radii(body: Shell | Tube) -> None:
     """Raises BadInput if the wall of a hollow body has no thickness."""
     if not body.inner_radius < body.radius:
         raise BadInput(
@@ -105,7 +106,7 @@ def _tube_loop(body: Body) -> Loop | None:
             )
         return circle_loop(body.section).placed(np.array([body.radius, 0.0]), 0.0)
     if isinstance(body, Tube):
-        _check_radii(body)
+        check_radii(body)
         inner, outer, half = body.inner_radius, body.radius, body.height / 2
         return Loop(np.array([[inner, -half], [outer, -half], [outer, half], [inner, half]]))
     if isinstance(body, Polygon) and (right := np.array(body.vertices))[:, 0].min() > 0:

@@ -1,6 +1,6 @@
 """Meshes of tetrahedra: gmsh generates them, and they are written in Medit's format for FreeFEM.
 
-Balls, boxes and cylinders are meshed wholly, or reduced by symmetry. Labels of boundary faces:
+Balls, shells, boxes, cylinders and tubes are meshed wholly, or reduced by symmetry. Labels of boundary faces:
 1 may come into contact, 2 lies on the plane of symmetry x = 0, 3 lies on the plane of symmetry
 z = 0, 4 never comes into contact.
 """
@@ -135,14 +135,16 @@ def mesh_shape(
     sizes: Sizes,
     scale: float,
 ) -> SolidMesh:
-    """The mesh of a ball, box or cylinder about the origin, turned by the matrix `rotation`.
+    """The mesh of a shape about the origin, turned by the matrix `rotation`.
 
-    `lengths` [m] are the radius; width, height and depth; or radius and height, with the axis y.
-    `mirror_axes` contains the axes that are normal to planes of symmetry: only the part on the positive
-    side of these planes is meshed. `scale` [m] is about the size of the body. Lengths are divided
-    by it, because gmsh's tolerances are absolute.
+    `lengths` [m] by `kind`: radius of a ball; outer and inner radius of a shell; width, height and
+    depth of a box; radius and height of a cylinder; outer and inner radius and height of a tube.
+    Cylinders and tubes have the axis y. `mirror_axes` contains the axes that are normal to planes
+    of symmetry: only the part on the positive side of these planes is meshed. `scale` [m] is about
+    the size of the body. Lengths are divided by it, because gmsh's tolerances are absolute.
     """
-    bulk = min(sizes.bulk, LARGEST * lengths[0]) if kind == "ball" else sizes.bulk
+    spherical = kind in ("ball", "shell")
+    bulk = min(sizes.bulk, LARGEST * lengths[0]) if spherical else sizes.bulk
     inside = Sizes(
         *(
             np.round(size / scale, mesh.DIGITS)
@@ -152,27 +154,22 @@ def mesh_shape(
     sides = np.round(lengths / scale, 12)  # 12 decimals: the accuracy of the corners
 
     def build(gmsh) -> None:
-        occ, (a, *more) = gmsh.model.occ, map(float, sides)
-        if kind == "ball":
-            tag = occ.addSphere(0, 0, 0, a)
-        elif kind == "cylinder":
-            tag = occ.addCylinder(0, -more[0] / 2, 0, 0, more[0], 0, a)
-        else:
-            tag = occ.addBox(-a / 2, -more[0] / 2, -more[1] / 2, a, *more)
-        if kind == "ball":
-            occ.rotate([(3, tag)], 0, 0, 0, 1, 0, 0, np.pi / 2)  # puts the poles on the axis y
+        occ = gmsh.model.occ
+        volume = [(3, _occ_shape(occ, kind, list(map(float, sides))))]
+        if spherical:
+            occ.rotate(volume, 0, 0, 0, 1, 0, 0, np.pi / 2)  # puts the poles on the axis y
         else:
             occ.affineTransform(
-                [(3, tag)], [*np.column_stack([rotation, np.zeros(3)]).ravel(), 0, 0, 0, 1]
+                volume, [*np.column_stack([rotation, np.zeros(3)]).ravel(), 0, 0, 0, 1]
             )
         if mirror_axes:
             far = 4 * np.linalg.norm(sides)
             corner = [0 if axis in mirror_axes else -far for axis in range(3)]
             half = occ.addBox(*corner, *(far - low for low in corner))
-            occ.intersect([(3, tag)], [(3, half)])
+            occ.intersect(volume, [(3, half)])
         occ.synchronize()
 
-    points, cells = generate(build, inside, rounding.TURN if kind == "cylinder" else 0)
+    points, cells = generate(build, inside, 0 if kind in ("ball", "box") else rounding.TURN)
     points = points * scale
     faces = mesh.boundary(cells)
     labels = np.full(len(faces), FREE)
@@ -182,17 +179,35 @@ def mesh_shape(
         points[np.unique(faces[on]), axis] = 0
     if kind == "box":
         return SolidMesh(points, cells, faces, labels)
-    round_one = Curved(
-        np.zeros(3), rotation[:, 1] if kind == "cylinder" else np.array([]), float(lengths[0])
-    )
-    ends = (
-        np.zeros(len(faces), dtype=bool)
-        if kind == "ball"
-        else np.ptp(points[faces] @ rotation[:, 1], axis=1) < 1e-7 * scale
-    )
-    side = np.unique(faces[(labels == FREE) & ~ends])
-    points[side] = round_one.onto(points[side])
-    return SolidMesh(points, cells, faces, labels, (round_one,))
+    axis = np.array([]) if spherical else rotation[:, 1]
+    radii = lengths[: 2 if kind in ("shell", "tube") else 1]
+    patches = tuple(Curved(np.zeros(3), axis, float(radius)) for radius in radii)
+    round_faces = labels == FREE
+    if not spherical:
+        round_faces &= np.ptp(points[faces] @ axis, axis=1) >= 1e-7 * scale
+    away = np.linalg.norm(patches[0].arms(points[faces].mean(axis=1)), axis=1)
+    nearest = abs(away[:, None] - radii).argmin(axis=1)
+    for k, patch in enumerate(patches):
+        corners = np.unique(faces[round_faces & (nearest == k)])
+        points[corners] = patch.onto(points[corners])
+    if kind == "shell":
+        labels[round_faces & (nearest == 1)] = SolidMesh.NEVER
+    return SolidMesh(points, cells, faces, labels, patches)
+
+
+def _occ_shape(occ, kind: str, lengths: list[float]) -> int:
+    """Adds a shape of mesh_shape() to gmsh's OpenCASCADE model and returns its number."""
+    if kind == "ball":
+        return occ.addSphere(0, 0, 0, *lengths)
+    if kind == "box":
+        return occ.addBox(*(-length / 2 for length in lengths), *lengths)
+    if kind == "cylinder":
+        radius, height = lengths
+        return occ.addCylinder(0, -height / 2, 0, 0, height, 0, radius)
+    solid = "ball" if kind == "shell" else "cylinder"
+    outer, inner, *height = lengths
+    whole, hole = (_occ_shape(occ, solid, [radius, *height]) for radius in (outer, inner))
+    return occ.cut([(3, whole)], [(3, hole)])[0][0][1]
 
 
 def cells_of(model) -> tuple[np.ndarray, np.ndarray]:

@@ -16,8 +16,9 @@ from scipy.spatial import cKDTree
 
 from ..failure import BadInput
 from ..geometry import outlines, tumbling
-from ..input.models import Body, Mesh
+from ..input.models import Body, Mesh, Shell, Tube
 from . import curved, solid_file
+from .revolution import check_radii
 from .solid_mesh import MOST_CELLS, Sizes, SolidMesh, expected_cells, mesh_shape
 
 __all__ = [
@@ -31,13 +32,17 @@ __all__ = [
     "mesh_of",
     "motion",
     "shape",
+    "shell",
     "surface",
+    "tube",
 ]
 
 MADE = {
     "ball": lambda radius: ball(radius),
     "box": lambda *extent: box(np.array(extent)),
     "cylinder": lambda radius, height: cylinder(radius, height),
+    "shell": lambda radius, inner: shell(radius, inner),
+    "tube": lambda radius, inner, height: tube(radius, inner, height),
 }
 SAMPLES = 1500  # smallest number of points that represent a surface
 # Largest relative change of the volume of a geometry by flat elements on its roundings, relative to
@@ -50,8 +55,8 @@ AT_ONCE = 500_000  # largest number of pairs (point, triangle) in one array oper
 class Shape:
     """The shape of a solid, about its centre of volume and not rotated."""
 
-    kind: str  # ball, box, cylinder, or surface (of a mesh)
-    # [m], by kind: radius; width, height and depth; radius and height; empty for a surface
+    kind: str  # ball, shell, box, cylinder, tube, or surface (of a mesh)
+    # [m], as of solid_mesh.mesh_shape(); empty for a surface
     lengths: np.ndarray
     extent: np.ndarray  # (3,), along x, y, z [m]
     volume: float  # [m3]
@@ -155,6 +160,66 @@ def cylinder(radius: float, height: float) -> Shape:
         gap,
         sampled,
         lambda normal: abs(normal[1]) < 1e-12 or abs(normal[1]) > 1 - 1e-12,
+    )
+
+
+def shell(radius: float, inner: float) -> Shape:
+    """The shape of a hollow ball; outer and inner radius in m."""
+    return _hollow(
+        "shell",
+        np.array([radius, inner]),
+        ball(radius),
+        ball(inner),
+        lambda points: _outside(
+            abs(np.linalg.norm(points, axis=1) - (radius + inner) / 2)[:, None]
+            - (radius - inner) / 2
+        ),
+    )
+
+
+def tube(radius: float, inner: float, height: float) -> Shape:
+    """The shape of a tube with the axis y; outer and inner radius and height in m."""
+    made = _hollow(
+        "tube",
+        np.array([radius, inner, height]),
+        cylinder(radius, height),
+        cylinder(inner, height),
+        lambda points: _outside(
+            np.column_stack(
+                [
+                    abs(np.hypot(points[:, 0], points[:, 2]) - (radius + inner) / 2)
+                    - (radius - inner) / 2,
+                    abs(points[:, 1]) - height / 2,
+                ]
+            )
+        ),
+    )
+    # The ends of the two cylinders are not on the surface: their difference is.
+    return replace(made, area=2 * math.pi * (radius + inner) * (height + radius - inner))
+
+
+def _hollow(
+    kind: str,
+    lengths: np.ndarray,
+    outer: Shape,
+    inner: Shape,
+    gap: Callable[[np.ndarray], np.ndarray],
+) -> Shape:
+    """The shape between `outer` and `inner`, which have the same centre and symmetries."""
+
+    def sampled(spacing: float) -> np.ndarray:
+        points = np.vstack([outer.sampled(spacing), inner.sampled(spacing)])
+        return points[abs(gap(points)) <= 1e-9 * outer.reach]
+
+    return replace(
+        outer,
+        kind=kind,
+        lengths=lengths,
+        volume=outer.volume - inner.volume,
+        area=outer.area + inner.area,
+        moments=outer.moments - inner.moments,
+        gap=gap,
+        sampled=sampled,
     )
 
 
@@ -301,8 +366,8 @@ class Solid(outlines.Shape):
 
     @property
     def disc(self) -> tuple[np.ndarray, float] | None:
-        """The centre (3,) and radius [m] of a ball; None for all other solids."""
-        return (self.centre, self.shape.reach) if self.shape.kind == "ball" else None
+        """The centre (3,) and outer radius [m] of a ball or shell; None for all other solids."""
+        return (self.centre, self.shape.reach) if self.shape.kind in ("ball", "shell") else None
 
     @property
     def half_thickness(self) -> float:
@@ -413,6 +478,8 @@ def shape(body: Body, folder: Path) -> tuple[Solid, SolidMesh | None]:
     """The solid of a body about its centre of volume, and the mesh if a file contains one."""
     if isinstance(body, Mesh):
         return _of_file(body, folder)
+    if isinstance(body, Shell | Tube):
+        check_radii(body)
     return Solid(MADE[body.shape](*body.sizes), np.zeros(3), np.eye(3)), None
 
 

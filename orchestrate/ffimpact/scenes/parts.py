@@ -186,11 +186,9 @@ class _Surface:
                     abs(corners[:, :, axis] - extreme).max(axis=1) <= ON_SIDE * extent
                 )
         inner = np.zeros(len(on), dtype=bool)
-        if self.dimension is not AXISYMMETRIC or not (self.made.labels == mesh.AXIS).any():
-            for outline in mesh.inner_outlines(self.made.points, self.made.sides):
-                inner[outline] = True
-        elif self.dimension is AXISYMMETRIC:
-            inner = self._cavities()
+        surface = np.flatnonzero(on)
+        for outline in mesh.inner_outlines(self.made.points, self.made.sides[surface]):
+            inner[surface[outline]] = True
         sides |= {"all": on, "outer": on & ~inner, "inner": on & inner}
         if self.dimension is AXISYMMETRIC:
             sides["axis"] = self.made.labels == mesh.AXIS
@@ -199,25 +197,6 @@ class _Surface:
             name: on & np.isin(np.arange(len(on)), numbers) for name, numbers in groups.items()
         }
         return {name: np.flatnonzero(mask) for name, mask in sides.items() if mask.any()}
-
-    def _cavities(self) -> np.ndarray:
-        """Returns which elements (f,) of half a section bound cavities.
-
-        Elements on the axis do not count. The connected piece that extends farthest from the axis
-        is the outer outline, all others bound cavities.
-        """
-        surface = np.flatnonzero(self.made.labels != mesh.AXIS)
-        piece = mesh.pieces(len(self.made.points), self.made.sides[surface])[
-            self.made.sides[surface, 0]
-        ]
-        reach = {
-            number: self.made.points[self.made.sides[surface[piece == number]]][:, :, 0].max()
-            for number in np.unique(piece)
-        }
-        outer = max(reach, key=lambda number: reach[number])
-        inner = np.zeros(len(self.made.sides), dtype=bool)
-        inner[surface[piece != outer]] = True
-        return inner
 
     def fixed(self, support: Support, elements: np.ndarray) -> tuple[bool, ...]:
         """Returns which components a support fixes. For fix = "normal" this is the component normal
