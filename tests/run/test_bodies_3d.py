@@ -382,3 +382,11 @@ def test_a_hollow_ball_with_gas_as_in_revolution(tmp_path):
     first, second = (measure_bodies(tmp_path / name, scene).summary for name, scene in (("flat", flat), ("solid", solid)))
     for name in ("impulse", "rebound_vy"):
         assert second[name] == pytest.approx(first[name], rel=0.01)
+
+
+def test_a_solid_of_a_file_keeps_its_coordinates(tmp_path):
+    """A prism about the origin of its file: `position` moves the origin, or the centre."""
+    prism(6, tmp_path / "prism.mesh")
+    entries = {"shape": "mesh", "file": "prism.mesh", "placement": "as-drawn", "position": [0, 0.5, 0]}
+    body, = read(entries, folder=tmp_path).bodies
+    assert body.placed.points[:, 1].min() == pytest.approx(0.46)

@@ -24,6 +24,29 @@ def test_bodies_lie_where_the_file_says():
     assert body.placed.area_centre == pytest.approx([1, 2])
 
 
+@pytest.mark.parametrize("position, low", [(None, [2, 1]), ([1, 3], [3, 4])])
+def test_a_drawn_body_keeps_its_coordinates(position, low):
+    """`position` moves the origin of the drawing; the body turns about its centre of mass. Without
+    placement the position of the centre is required."""
+    entries = {"shape": "polygon", "vertices": [[2, 1], [5, 1], [2, 4]], "placement": "as-drawn"}
+    entries |= {"position": position} if position else {}
+    body, = read(SCENE | {"body": [entries]}).bodies
+    assert body.placed.points.min(axis=0) == pytest.approx(low)
+    turned, = read(SCENE | {"body": [entries | {"angle": 90}]}).bodies
+    for made in (body, turned):
+        assert made.position == pytest.approx(np.add(low, [1, 1]))
+    missing = {name: value for name, value in entries.items() if name not in ("placement", "position")}
+    with pytest.raises(BadInput, match="body.1.position: is missing"):
+        read(SCENE | {"body": [missing]})
+
+
+def test_a_drawn_section_keeps_its_coordinates():
+    """A cone of revolution with its base at y = 2 and its tip at y = 6: centre a quarter up."""
+    cone = {"shape": "polygon", "vertices": [[0, 2], [1, 2], [0, 6]], "placement": "as-drawn"}
+    body, = read(SCENE | {"dimension": "axisymmetric", "body": [cone]}).bodies
+    assert body.position == pytest.approx([0, 3])
+
+
 @pytest.mark.parametrize("entries, velocity", [({"velocity": [1, -2]}, [1, -2]), ({"speed": 3, "direction": -90}, [0, -3]),
                                                ({"speed": 2, "direction": 30}, [math.sqrt(3), 1]), ({}, [0, 0])])
 def test_velocity_or_speed_and_direction(entries, velocity):

@@ -7,6 +7,8 @@ from ffimpact.failure import BadInput
 from ffimpact.geometry import polyline
 
 SQUARE = [[0, 0], [0, 1], [1, 1], [1, 0]]  # clockwise
+# clockwise, with a thin neck
+NECK = [[0, 0], [0, 1], [1, 1], [1, 0.55], [2, 0.55], [2, 1], [3, 1], [3, 0], [2, 0], [2, 0.45], [1, 0.45], [1, 0]]
 POINTS = np.random.default_rng(1).uniform(-2, 3, (2000, 2))
 
 
@@ -35,6 +37,35 @@ def test_open_chains_go_straight_on_beyond_their_ends():
     corner = np.where((x < 0) & (y < 0), -np.hypot(x, y), np.minimum(x, y))
     assert distance([[0, 1], [0, 0], [1, 0]], False) == pytest.approx(corner, abs=1e-14)
     assert distance([[1, 0], [0, 0], [0, 1]], False) == pytest.approx(-corner, abs=1e-14)
+
+
+def filleted(vertices, closed, radius, points=POINTS):
+    moved = polyline.inset("fillet", np.array(vertices, float), closed, radius)
+    return polyline.gap(points, polyline.numbers(moved, closed, radius))
+
+
+def test_a_fillet_cuts_corners_and_leaves_the_sides():
+    """A block with rounded corners, in closed form; concave corners of a container stay. The
+    corner of an open chain is rounded at any radius."""
+    q = abs(POINTS - 0.5) - 0.5 + 0.2
+    block = np.hypot(*np.maximum(q, 0).T) + np.minimum(q.max(axis=1), 0) - 0.2
+    assert filleted(SQUARE, True, 0.2) == pytest.approx(block, abs=1e-14)
+    outside = square(POINTS) < 0
+    assert filleted(SQUARE[::-1], True, 0.2)[outside] == pytest.approx(-square(POINTS)[outside], abs=1e-14)
+    x, y = POINTS.T
+    for radius in (0.3, 20.0):
+        corner = np.where((x < radius) & (y < radius), radius - np.hypot(x - radius, y - radius), np.minimum(x, y))
+        assert filleted([[1, 0], [0, 0], [0, 1]], False, radius) == pytest.approx(-corner, abs=1e-12)
+
+
+@pytest.mark.parametrize("vertices, closed, radius, words", [
+    (SQUARE, True, 0.5, "fillet: 0.5 m is too large for the sides (accepted: below 0.5 m)"),
+    ([[-1, 0], [0, 0], [0, 0.1], [1, 0.1]], False, 0.1, "fillet: 0.1 m is too large for the sides (accepted: below 0.1 m)"),
+    (NECK, True, 0.1, "fillet: 0.1 m is too large for a solid as thin as this one (accepted: less)")])
+def test_fillets_that_do_not_fit(vertices, closed, radius, words):
+    with pytest.raises(BadInput) as refused:
+        polyline.inset("fillet", np.array(vertices, float), closed, radius)
+    assert str(refused.value) == words
 
 
 def test_numbers_are_those_of_the_scripts():

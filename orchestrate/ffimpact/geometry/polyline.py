@@ -15,7 +15,7 @@ import numpy as np
 from ..failure import BadInput
 from .outlines import cross
 
-__all__ = ["Sides", "check", "gap", "numbers", "radius_at", "sides_of"]
+__all__ = ["Sides", "check", "gap", "inset", "numbers", "radius_at", "sides_of"]
 
 # A vertex is a corner if the direction turns by more than this angle [rad]
 # (edp/core/contact/shapes.idp).
@@ -77,6 +77,43 @@ def check(path: str, vertices: np.ndarray, closed: bool) -> None:
             + ("" if closed else "; an open one goes straight on beyond its ends")
             + ")"
         )
+
+
+def inset(path: str, vertices: np.ndarray, closed: bool, radius: float) -> np.ndarray:
+    """The vertices (n, 2) of a chain with all sides moved into the solid by a radius [m].
+
+    With this radius as its rounding, that chain has the sides of the given one, and arcs that
+    touch them in place of convex corners. Raises BadInput, with the name of the entry `path`, if an
+    arc is larger than a side next to it, or if the solid is too thin for the arcs.
+    """
+    along = _sides(vertices, closed).along
+    before = np.roll(along, 1, axis=0) if closed else np.vstack([along[:1], along])
+    after = along if closed else np.vstack([along, along[-1:]])
+    # The moved sides at a corner that turns by t meet at -r (n1 + n2)/(1 + cos t), with the normals
+    # n1, n2 to the left of the directions.
+    normals = (before + after)[:, ::-1] * [-1, 1]
+    turns = 1 + np.sum(before * after, axis=1)
+    steps = normals / turns[:, None]
+    lengths = np.linalg.norm(
+        np.diff(vertices, axis=0, append=vertices[:1] if closed else np.empty((0, 2))), axis=1
+    )
+    arcs = np.maximum(cross(after, before), 0) / turns  # tan(t/2) of convex corners
+    shortened = (arcs + np.roll(arcs, -1))[: len(along)]
+    finite = slice(None) if closed else slice(1, -1)  # an open chain has no ends
+    largest = (lengths / np.maximum(shortened, NEAR))[finite].min(initial=np.inf)
+    if radius >= largest:
+        raise BadInput(
+            f"{path}: {radius:g} m is too large for the sides (accepted: below {largest:.6g} m)"
+        )
+    moved = vertices - radius * steps
+    if not closed:
+        moved[0] = moved[1] - lengths[0] * along[0]
+        moved[-1] = moved[-2] + lengths[-1] * along[-1]
+    if _crossing(_sides(moved, closed), np.ptp(moved, axis=0).max()):
+        raise BadInput(
+            f"{path}: {radius:g} m is too large for a solid as thin as this one (accepted: less)"
+        )
+    return moved
 
 
 def numbers(vertices: np.ndarray, closed: bool, rounding: float) -> tuple[float, ...]:

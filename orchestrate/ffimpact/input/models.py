@@ -52,6 +52,7 @@ __all__ = [
     "Contact",
     "Cylinder",
     "Disc",
+    "Drawn",
     "Ellipse",
     "Ellipsoid",
     "Entries",
@@ -93,6 +94,7 @@ __all__ = [
     "tables",
 ]
 
+PLACEMENTS = ("centroid", "as-drawn")
 MOST_PRESSURE = 1e15  # largest accepted pressure [Pa]
 MOST_TURN = 36000.0  # largest accepted angle [degrees]
 SIDES = ("left", "right", "bottom", "top", "back", "front", "all", "outer", "inner", "axis")
@@ -550,6 +552,29 @@ class Body(Entries):
         return {"shape": self.shape} | super().table()
 
 
+class Drawn(Body):
+    """A body whose shape is drawn: by vertices or in a file, with an origin of its own."""
+
+    position: Annotated[
+        Any, Place("of the centre of mass, or with placement = 'as-drawn' of the origin [m]")
+    ] = None
+    placement: Annotated[
+        str | None,
+        Parameter("", "word", None, "-", "what `position` places", words=PLACEMENTS),
+    ] = None
+
+    @property
+    def is_placed_as_drawn(self) -> bool:
+        """Whether `position` is that of the drawing's origin; raises BadInput if it is missing."""
+        as_drawn = self.placement == "as-drawn"
+        if self.position is None and not as_drawn:
+            raise BadInput(
+                f"{self.at('position')}: is missing (accepted: that of the centre of mass, or "
+                f"placement = 'as-drawn')"
+            )
+        return as_drawn
+
+
 class Disc(Body):
     """A disc in plane strain."""
 
@@ -582,7 +607,7 @@ class Ring(Body):
     inner_radius: Annotated[float, number(meaning="inner radius")]
 
 
-class Polygon(Body):
+class Polygon(Drawn):
     """A polygon in plane strain, or the section of a body of revolution.
 
     The section leads from the axis to the axis, or lies beside the axis.
@@ -590,7 +615,7 @@ class Polygon(Body):
 
     shape = "polygon"
     dimensions = (PLANE_STRAIN, AXISYMMETRIC)
-    only = Body.only | {"holes": (PLANE_STRAIN,)}
+    only = Drawn.only | {"holes": (PLANE_STRAIN,)}
     vertices: Annotated[list[list[float]], Points(3, "corners [m], each once, in order")]
     holes: Annotated[Any, Polygons("holes in it")] = None
 
@@ -658,7 +683,7 @@ class Box(Body):
     depth: Annotated[float, number(meaning="along z")]
 
 
-class Mesh(Body):
+class Mesh(Drawn):
     """A body from a mesh or a CAD file."""
 
     shape = "mesh"
@@ -769,6 +794,10 @@ class Polyline(Obstacle):
     rounding: Annotated[
         float | None,
         number(0.0, LONGEST, "m", "of convex corners; sides lie as far outside the vertices"),
+    ] = None
+    fillet: Annotated[
+        float | None,
+        number(0.0, LONGEST, "m", "radius that cuts convex corners; sides stay on the vertices"),
     ] = None
 
 

@@ -34,12 +34,15 @@ LOOPS = {
 }
 
 
-def shape(body: Body, folder: Path) -> tuple[Outline, mesh.Mesh | None]:
-    """The outline of a body, and its mesh if a file contains one, both about the centroid."""
+def shape(body: Body, folder: Path) -> tuple[Outline, mesh.Mesh | None, np.ndarray]:
+    """The outline of a body, its mesh if a file contains one, and the centroid (2,) [m].
+
+    Outline and mesh are about the centroid, which is in the coordinates of the drawing.
+    """
     body_mesh = mesh_file(body, folder, "disc-plane") if isinstance(body, Mesh) else None
     outline = mesh_outline(body_mesh) if body_mesh else _outline(body)
     centre = outline.area_centre
-    return outline.placed(-centre, 0.0), body_mesh and body_mesh.moved(-centre)
+    return outline.placed(-centre, 0.0), body_mesh and body_mesh.moved(-centre), centre
 
 
 def motion(body: Body) -> dict:
@@ -48,7 +51,7 @@ def motion(body: Body) -> dict:
     Raises BadInput if the velocity is over- or underdetermined.
     """
     return {
-        "position": np.array(body.position),
+        "position": np.array(body.position or [0.0, 0.0]),
         "angle": math.radians(body.angle or 0.0),
         "velocity": _velocity(body),
         "spin": body.spin or 0.0,

@@ -45,34 +45,37 @@ LOOPS = {
 }
 
 
-def shape(body: Body, folder: Path) -> tuple[Outline, mesh.Mesh | None]:
-    """The section of a body, and the mesh of its half x >= 0 if a file contains one.
+def shape(body: Body, folder: Path) -> tuple[Outline, mesh.Mesh | None, np.ndarray]:
+    """The section of a body, the mesh of its half x >= 0 if a file contains one, and the centre.
 
-    Both are about the centre of volume. Raises BadInput if the body is not accepted.
+    Both are about the centre of volume (2,) [m], which is in the coordinates of the drawing.
+    Raises BadInput if the body is not accepted.
     """
     if isinstance(body, Mesh):
         half = flat.mesh_file(body, folder, "ball-axisymmetric")
+        centre = np.array([0.0, _centre_of_volume(half.points[half.triangles])])
         if not (half.labels == mesh.AXIS).any():
-            return _tube_mesh(body, half)
+            return *_tube_mesh(body, half.moved(-centre)), centre
         # Vertices on the axis get x = 0 exactly; in a file they lie there to round-off.
         half.points[np.unique(half.edges[half.labels == mesh.AXIS]), 0] = 0.0
-        centre = np.array([0.0, _centre_of_volume(half.points[half.triangles])])
         half = half.moved(-centre)
-        return flat.mesh_outline(whole(half)), half
+        return flat.mesh_outline(whole(half)), half, centre
     if isinstance(body, Shell):
         check_radii(body)
-        return Outline((circle_loop(body.radius), circle_loop(body.inner_radius))), None
+        loops = (circle_loop(body.radius), circle_loop(body.inner_radius))
+        return Outline(loops), None, np.zeros(2)
     loop = _tube_loop(body) or _loop(body)
+    centre = np.array([0.0, _loop_centre(loop)])
     if loop.polygon[:, 0].min() > 0:
-        centre = np.array([0.0, _loop_centre(loop)])
-        return TubeOutline((loop.placed(-centre, 0.0), image(loop).placed(-centre, 0.0))), None
-    return Outline((loop.placed(np.array([0.0, -_loop_centre(loop)]), 0.0),)), None
+        both = (loop.placed(-centre, 0.0), image(loop).placed(-centre, 0.0))
+        return TubeOutline(both), None, centre
+    return Outline((loop.placed(-centre, 0.0),)), None, centre
 
 
 def motion(body: Body) -> dict:
     """The initial position (2,) [m] and velocity (2,) [m/s] of a body; angle and spin are 0."""
     return {
-        "position": np.array(body.position),
+        "position": np.array(body.position or [0.0, 0.0]),
         "angle": 0.0,
         "velocity": np.array(body.velocity or [0.0, 0.0]),
         "spin": 0.0,
@@ -132,7 +135,6 @@ def _tube_mesh(body: Mesh, half: mesh.Mesh) -> tuple[TubeOutline, mesh.Mesh]:
             f"{body.at('file')}: it lies down to x = {half.points[:, 0].min():g} m (accepted: to the right of the axis, "
             f"or with edges of the label {mesh.AXIS} on it)"
         )
-    half = half.moved(-np.array([0.0, _centre_of_volume(half.points[half.triangles])]))
     outline = flat.mesh_outline(half)
     if len(outline.loops) > 1:
         raise BadInput(

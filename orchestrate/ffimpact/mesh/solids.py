@@ -474,16 +474,19 @@ def _with_curves(made: SolidMesh) -> SolidMesh:
 # ---- tables
 
 
-def shape(body: Body, folder: Path) -> tuple[Solid, SolidMesh | None]:
-    """The solid of a body about its centre of volume, and the mesh if a file contains one."""
+def shape(body: Body, folder: Path) -> tuple[Solid, SolidMesh | None, np.ndarray]:
+    """The solid of a body, the mesh if a file contains one, and the centre of volume (3,) [m].
+
+    Solid and mesh are about this centre, which is in the coordinates of the file.
+    """
     if isinstance(body, Mesh):
         return _of_file(body, folder)
     if isinstance(body, Shell | Tube):
         check_radii(body)
-    return Solid(MADE[body.shape](*body.sizes), np.zeros(3), np.eye(3)), None
+    return Solid(MADE[body.shape](*body.sizes), np.zeros(3), np.eye(3)), None, np.zeros(3)
 
 
-def _of_file(body: Mesh, folder: Path) -> tuple[Solid, SolidMesh | None]:
+def _of_file(body: Mesh, folder: Path) -> tuple[Solid, SolidMesh | None, np.ndarray]:
     name, scale = body.file, body.scale or 1.0
     if not name:
         raise BadInput(
@@ -507,8 +510,8 @@ def _of_file(body: Mesh, folder: Path) -> tuple[Solid, SolidMesh | None]:
     shape = ball(sphere.radius) if sphere else surface(centred.points[centred.faces])
     if solid_file.is_geometry(path):
         geometry = solid_file.Geometry(path, scale, centre, centred)
-        return Solid(shape, np.zeros(3), np.eye(3), geometry), None
-    return Solid(shape, np.zeros(3), np.eye(3)), centred
+        return Solid(shape, np.zeros(3), np.eye(3), geometry), None, centre
+    return Solid(shape, np.zeros(3), np.eye(3)), centred, centre
 
 
 def motion(body: Body) -> dict:
@@ -524,7 +527,7 @@ def motion(body: Body) -> dict:
     none = [0.0, 0.0, 0.0]
     turn = [0.0, 0.0, body.angle] if body.angle is not None else body.turn or none
     return {
-        "position": np.array(body.position),
+        "position": np.array(body.position or none),
         "angle": np.radians(turn),
         "velocity": np.array(body.velocity or none),
         "spin": np.array(body.spin or none),

@@ -553,9 +553,9 @@ def _pairs(e: Evidence) -> Iterator[Sentence]:
         )
     else:
         yield warn(
-            f"sharp corner: {who} are in contact at a corner without a rounding: no mesh resolves "
+            f"sharp corner: {who} are in contact at a corner without a fillet: no mesh resolves "
             "it, and the corner passes between the contact "
-            f"points: take a rounding of at least {size} m, the size of an element"
+            f"points: take a fillet of at least {size} m, the size of an element"
         )
 
 

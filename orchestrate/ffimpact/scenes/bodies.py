@@ -136,7 +136,7 @@ def read(
 
 def _body(table: models.Body, top: models.Top, folder: Path, dimension: Dimension) -> Body:
     geometry: ModuleType = GEOMETRY[dimension]
-    outline, body_mesh = geometry.shape(table, folder)
+    outline, body_mesh, drawn_centre = geometry.shape(table, folder)
     if not outline.half_thickness >= SHORTEST:
         raise BadInput(
             f"{table.entry}: is {2 * outline.half_thickness:.3g} m thick (accepted: from {2 * SHORTEST:g} m)"
@@ -154,11 +154,14 @@ def _body(table: models.Body, top: models.Top, folder: Path, dimension: Dimensio
         )
     material = _rigid(table, top, dimension, outline) if table.rigid else _material(table, top)
     end_time = top.end_time or 0.0
+    motion = geometry.motion(table)
+    if isinstance(table, models.Drawn) and table.is_placed_as_drawn:
+        motion["position"] = motion["position"] + drawn_centre
     return Body(
         table.name or table.entry.replace(".", ""),
         outline,
         body_mesh,
-        **geometry.motion(table),
+        **motion,
         **material,
         mesh_size=bulk,
         contact_mesh_size=contact,

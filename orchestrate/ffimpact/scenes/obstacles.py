@@ -201,7 +201,11 @@ class Polyline(Obstacle):
         if dimension is AXISYMMETRIC:
             vertices, closed = mirrored(table.at("vertices"), vertices)
         polyline.check(table.entry, vertices, closed)
-        return polyline.numbers(vertices, closed, table.rounding or 0.0)
+        if table.rounding and table.fillet:
+            raise BadInput(f"{table.at('rounding')}: {table.rounding:g} m beside fillet (accepted: one of them)")
+        if table.fillet:
+            vertices = polyline.inset(table.at("fillet"), vertices, closed, table.fillet)
+        return polyline.numbers(vertices, closed, table.rounding or table.fillet or 0.0)
 
     def gap(self, points: np.ndarray) -> np.ndarray:
         return polyline.gap(points, self.numbers)
