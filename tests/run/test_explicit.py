@@ -100,6 +100,19 @@ def test_every_kind_of_scene_conserves(tmp_path, name, settings):
     conserves(run.run(scene.load(name), settings | EXPLICIT | {"accuracy": 0.2}, tmp_path / "out", estimate=False), 5e-3)
 
 
+def test_every_body_has_its_mass(tmp_path):
+    """The mass of a round and a straight body of revolution is that of the implicit run."""
+    content = {"dimension": "axisymmetric", "law": "neohookean", "young": 7e6, "nu": 0.4, "density": 1722, "accuracy": 0.1, "end_time": 1e-4,
+               "body": [{"shape": "ball", "radius": 0.05, "position": 0.0501, "velocity": -4},
+                        {"shape": "cylinder", "radius": 0.03, "height": 0.04, "position": -0.0201}]}
+    masses = []
+    for integrator in ("energy-momentum", "central-difference"):
+        read = scene.read(content | {"integrator": integrator}, tmp_path, integrator)
+        summary = run.run(read, {}, tmp_path / integrator, estimate=False).summary
+        masses += [[summary["mass_1"], summary["mass_2"]]]
+    assert masses[1] == pytest.approx(masses[0], rel=1e-13)
+
+
 def test_pairs_of_points_are_softened_too(tmp_path):
     """A penalty beyond what explicit steps take is the same one: with pairs of points as well, and the warning names the one in use and the requested one."""
     summaries = {}

@@ -2,13 +2,18 @@
 
 import json
 import math
+import re
 
 import numpy as np
 import pandas as pd
 import pytest
 
 from ffimpact.__main__ import main
+from ffimpact.failure import BadInput
 from ffimpact.output import vtu
+from ffimpact.running import run as solve
+from ffimpact.scene import load
+from ffimpact.scenes import scene as scenes
 from tests.support.rigid import DISC, FLOOR, ROLLER, run
 
 BLOCK = """
@@ -53,6 +58,43 @@ def test_it_is_the_limit_of_a_stiff_disc(tmp_path):
         apart = 0.005 * abs(stiff[name]) + max(summary["estimated_error"]["rebound"] for summary in (rigid, stiff)) * abs(stiff[name])
         assert abs(rigid[name] - stiff[name]) < apart, name
     assert rigid["energy_drift"] < 1e-9 and rigid["momentum_drift"] < 1e-10
+
+
+DROPPED = """
+accuracy = 0.02
+[[body]]
+shape = "rectangle"
+width = 0.2
+height = 0.1
+rigid = true
+density = 1000
+position = [0, 0.0501]
+velocity = [0, -3]
+""" + FLOOR.replace("1e7", "1e8")
+
+
+def test_a_block_dropped_flat_rebounds_as_a_mass_on_a_spring(tmp_path):
+    """It has its mass, keeps its speed, does not turn, and is in contact for half a period.
+
+    Its strain, which can keep energy, is 1e-5 of that of the penalty.
+    """
+    summary, _ = run(tmp_path, DROPPED)
+    mass, stiffness = 20, 1e8 * 0.2
+    assert summary["mass"] == pytest.approx(mass, rel=1e-12)
+    assert summary["rebound_vy"] == pytest.approx(3, rel=1e-5) and abs(summary["rebound_spin"]) < 1e-5
+    assert summary["contact_time"] == pytest.approx(math.pi * math.sqrt(mass / stiffness), rel=0.02)
+
+
+def test_explicit_steps_have_no_rigid_bodies(tmp_path, monkeypatch):
+    """A rigid body has no diagonal mass. Python and the scripts refuse it with the same line."""
+    file = tmp_path / "scene.toml"
+    file.write_text('integrator = "central-difference"\n' + DROPPED)
+    line = "integrator: 'central-difference' has no rigid bodies (accepted with them: energy-momentum|midpoint|newmark|backward-euler|bdf2|auto)"
+    with pytest.raises(BadInput, match=re.escape(line)):
+        load(str(file))
+    monkeypatch.setattr(scenes, "_refuse_integrator", lambda scene: None)
+    with pytest.raises(BadInput, match=re.escape(line)):
+        solve.run(load(str(file)), {}, tmp_path / "out", estimate=False)
 
 
 PUSHED = """

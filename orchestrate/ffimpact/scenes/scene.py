@@ -395,11 +395,18 @@ def _refuse_nu(entry: str, nu: float, law: str, values: Mapping[str, Value]) -> 
 
 
 def _refuse_integrator(scene: Scene) -> None:
-    """Raises BadInput if the work of supports and loads would not be exact with the integrator."""
+    """Raises BadInput if the work of supports and loads would not be exact with the integrator, or
+    if it needs a diagonal mass, which the few unknowns of a rigid body do not have.
+    """
     accepted, integrator = ("auto", "energy-momentum", "midpoint"), scene.values["integrator"]
     if integrator not in accepted and any(body.supports or body.loads for body in scene.bodies):
         raise BadInput(
             f"integrator: '{integrator}' has no supports and loads (accepted with them: {'|'.join(accepted)})"
+        )
+    if integrator == "central-difference" and any(body.rigid for body in scene.bodies):
+        words = (word for word in parameters.PARAMETERS["integrator"].words if word != integrator)
+        raise BadInput(
+            f"integrator: '{integrator}' has no rigid bodies (accepted with them: {'|'.join(words)})"
         )
 
 
