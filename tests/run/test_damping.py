@@ -5,10 +5,12 @@ Tested are exact decay, objectivity and the exact energy balance, in scripts and
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from ffimpact.failure import BadInput
 from ffimpact.freefem.describe import describe
 from ffimpact.places import ROOT
+from ffimpact.running import run
 from ffimpact.scene import read
 from ffimpact.scenes import assembly
 from verification.measure import bodies, disc, measure
@@ -154,3 +156,56 @@ def test_integrators_that_would_not_count_it_are_refused(tmp_path):
     """Damping requires an integrator that evaluates forces in the middle of a step."""
     with pytest.raises(Exception, match="integrator: newmark takes no viscosity"):
         disc(tmp_path, viscosity=1, integrator="newmark")
+
+
+# ---- stiffness in an impact
+
+BRANCH = {"dimension": "axisymmetric", "law": "mooney-rivlin", "law_parameters": "0.2", "young": 4455100, "nu": 0.49, "density": 1150,
+          "relaxation_modulus": 1e7, "relaxation_time": 1.087e-3, "accuracy": 0.02,
+          "body": [{"shape": "ball", "radius": 0.03, "position": [0, 0.03001], "velocity": [0, -3.8859]}],
+          "obstacle": [{"kind": "plane", "point": [0, 0], "normal": [0, 1]}]}
+
+
+def test_a_ten_times_stiffer_penalty_changes_restitution_within_its_error(tmp_path):
+    """The automatic penalty takes account of a branch that is 7 times as stiff as the law."""
+    results = [run.run(read(BRANCH, tmp_path, "branch"), {}, tmp_path / "automatic")]
+    stiffer = 10 * results[0].scene["contact"]["penalty"]
+    results.append(run.run(read(BRANCH | {"contact": {"penalty": stiffer}}, tmp_path, "branch"), {}, tmp_path / "stiffer"))
+    own, other = (result.summary["restitution"] for result in results)
+    assert abs(own - other) < results[0].summary["estimated_error"]["rebound"]
+    assert 0.6 < own < 0.65 and not any(words.startswith("penalty") for words in results[0].summary["warnings"])
+
+
+@pytest.mark.parametrize("script", ["disc-plane", "ball-axisymmetric"])
+def test_a_branch_that_does_not_relax_is_part_of_the_law(script):
+    """For nu = 0 G adds 2 G to young. Penalty, slip velocity and mesh are those of the stiffer law
+    without a branch; the loss of this branch is 1e-7."""
+    soft = describe({"young": 1e6, "nu": 0, "relaxation_modulus": 2e6, "relaxation_time": 1e4}, script)["used"]
+    stiff = describe({"young": 5e6, "nu": 0}, script)["used"]
+    for name in ("penalty", "slip_velocity", "mesh_size", "contact_mesh_size"):
+        assert soft[name] == pytest.approx(stiff[name], rel=1e-6), name
+
+
+def test_viscosity_stiffens_at_the_frequency_of_the_impact():
+    """The impact of a disc lasts T = 6.5 R/c with c^2 = E/rho: E = young |1 + i pi eta/(mu T)| for
+    nu = 0, to be solved for E. The half-width of contact, and with it the element size, is
+    proportional to E^(-1/4)."""
+    young, density, radius, eta = 1e6, 1000.0, 0.05, 2e3
+    rate = np.pi / 6.5 / radius * eta / (young / 2) / np.sqrt(density)
+    modulus = brentq(lambda E: E - young * np.sqrt(1 + rate**2 * E), young, 100 * young)
+    common = {"young": young, "nu": 0, "density": density, "radius": radius, "speed": 2}
+    plain, damped = (describe(common | {"viscosity": value})["used"]["contact_mesh_size"] for value in (0, eta))
+    assert damped / plain == pytest.approx((young / modulus) ** 0.25, rel=1e-9) and modulus > 1.9 * young
+
+
+def test_waves_are_faster_by_damping(tmp_path):
+    """A branch that does not relax adds 2 G to lambda + 2 mu, for the front of a flat strike and for
+    steps alike."""
+    box = {"shape": "rectangle", "width": 0.1, "height": 0.05, "position": [0, 0.026], "velocity": [0, -1]}
+    content = {"law": "neohookean", "nu": 0, "density": 1000, "accuracy": 0.1, "end_time": 1e-5, "body": [box], "obstacle": BRANCH["obstacle"]}
+    branch = {"young": 1e6, "relaxation_modulus": 2e6, "relaxation_time": 1e4}
+    scenes = [read(content | more, tmp_path, "box") for more in (branch, {"young": 5e6})]
+    speeds = [scene.bodies[0].wave_speed for scene in scenes]
+    assert speeds[0] == pytest.approx(np.sqrt(5e6 / 1000), rel=1e-6) == pytest.approx(speeds[1], rel=1e-6)
+    steps = [run.run(scene, {}, tmp_path / f"{k}", estimate=False).history["dt"].max() for k, scene in enumerate(scenes)]
+    assert steps[0] == pytest.approx(steps[1], rel=1e-6)

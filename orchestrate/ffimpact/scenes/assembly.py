@@ -49,7 +49,7 @@ __all__ = [
 ]
 
 ROUND = 0.5  # largest element size on a circle or ellipse, over its smaller semi-axis
-LIKE = ("radius", "young", "nu", "density", "speed", "angle", "spin")
+LIKE = ("radius", "young", "nu", "density", "speed", "angle", "spin", *DAMPING)
 # Width of an outline near contact, over that of a disc on a plane, below which elements are
 # smaller. Two equal discs have 0.71.
 NARROW = 0.6
@@ -151,19 +151,18 @@ def assemble(scene: Scene, rule: Rule | None = None, onsets: list[Onset] | None 
         onsets_of(scene) if onsets is None else onsets,
         rule or partial(describe, script=scene.dimension.like),
     )
+    scene = replace(
+        scene,
+        bodies=[
+            replace(body, viscosity=float(_of_body(k, ask, loss=body.loss)["viscosity"]))
+            if body.loss
+            else body
+            for k, body in enumerate(scene.bodies)
+        ],
+    )
+    ask = replace(ask, scene=scene)
     values = scene.values | contact_values(scene.bodies, scene.contact, ask, "contact")
-    bodies = [
-        replace(
-            body,
-            viscosity=float(
-                _of_body(k, ask, loss=body.loss, viscosity=body.viscosity)["viscosity"]
-            ),
-        )
-        if body.loss
-        else body
-        for k, body in enumerate(scene.bodies)
-    ]
-    scene = replace(scene, pairs=with_open_penalties(scene, ask), bodies=bodies)
+    scene = replace(scene, pairs=with_open_penalties(scene, ask))
     pairs = [pair_values(pair, ask, values) for pair in scene.pairs]
     sizes = [None if body.mesh else element_sizes(k, ask) for k, body in enumerate(scene.bodies)]
     meshes, centres, rounds = (_solids if scene.dimension is SOLID else _sections)(scene, sizes)
@@ -333,7 +332,7 @@ class Asker:
         along, across, pressing, pulling = self.largest
         along = max(along, self.pressed) if presses else along
         pressing = pressing if self.onsets else max(loaded_pull(body) for body in self.scene.bodies)
-        soft = min(bodies, key=lambda body: body.young)
+        soft = min(bodies, key=lambda body: body.moduli[1] * (1 + body.nu))
         request = {
             name: self.scene.values[name]
             for name in ("accuracy", "accuracy_of", "end_time", "until")
@@ -350,6 +349,7 @@ class Asker:
             "angle": 90.0,
             "spin": 0.0,
             "gravity": pressing,
+            **{name: getattr(soft, name) for name in DAMPING},
         }
         if slides:
             request |= {

@@ -5,6 +5,7 @@ Shapes and motions come from mesh/flat.py in plane strain, mesh/revolution.py fo
 revolution and mesh/solids.py in three dimensions.
 """
 
+import math
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -35,6 +36,9 @@ DAMPING = ("viscosity", "bulk_viscosity", "relaxation_modulus", "relaxation_time
 DAMPED = ("viscosity", "bulk_viscosity", "relaxation_modulus", "loss")
 # `young` of a rigid body over the largest of the others. Its strain is smaller by this factor.
 STIFF = 1e5
+# Largest nu in the speed of waves. The stiffness by a larger nu acts on the volume of elements
+# (docs/explanation/materials.md).
+STIFFEST = 0.45
 OPTIONAL = ("law_parameters", *DAMPING, "loss")
 SIZES = ("mesh_size", "contact_mesh_size")
 
@@ -78,6 +82,27 @@ class Body:
     @property
     def damped(self) -> bool:
         return any(getattr(self, name) for name in DAMPED)
+
+    @property
+    def moduli(self) -> tuple[float, float]:
+        """lambda + 2 mu and mu [Pa] in a wave across the body. Damping adds to them: they are
+        absolute values at omega = pi / transit (stiffen() of edp/core/input/sizes.idp).
+
+        The part of lambda above nu = STIFFEST acts on the volume of elements and not in waves.
+        """
+        nu = min(self.nu, STIFFEST)
+        mu, wave = self.young / (2 * (1 + nu)), self.young * (1 - nu) / ((1 + nu) * (1 - 2 * nu))
+        if not self.damped:
+            return wave, mu
+        turn = 1j * np.pi * math.sqrt(wave / self.density) / (2 * self.outline.half_thickness)
+        branch = self.relaxation_modulus * turn / (1 / (self.relaxation_time or 1) + turn)
+        shear = abs(mu + turn * self.viscosity + branch)
+        return abs(wave - 2 * mu + turn * self.bulk_viscosity) + 2 * shear, shear
+
+    @property
+    def wave_speed(self) -> float:
+        """The speed c [m/s] of a plane pressure wave, sqrt((lambda + 2 mu)/rho)."""
+        return math.sqrt(self.moduli[0] / self.density)
 
     @property
     def driven(self) -> bool:

@@ -21,7 +21,7 @@ from .approach import Onset
 from .bodies import Body
 from .scene import Scene
 
-__all__ = ["Front", "fronts", "wave_speed"]
+__all__ = ["Front", "fronts"]
 
 FLAT = 0.3  # smallest share of a body's width that lands while the front passes an element
 PER_ACCURACY = 5.0  # element size / (length along the normal * accuracy)
@@ -32,9 +32,6 @@ BRIEF = 30.0  # transits after a strike: in longer runs the front does not matte
 # unknowns of a body of area (volume) V with quadratic elements of size h, over V/h^2 (V/h^3); the
 # area (volume) of an element over h^2 (h^3).
 MOST_UNKNOWNS, UNKNOWNS, ELEMENT = {2: 40000, 3: 60000}, {2: 9.5, 3: 36.0}, {2: 0.43, 3: 0.12}
-# Largest nu in the wave speed. The stiffness by a larger nu acts on the volume of elements
-# (docs/explanation/materials.md).
-STIFFEST = 0.45
 
 
 @dataclass(frozen=True)
@@ -70,7 +67,7 @@ class Front:
 
     def _pressure(self, bodies: list[Body]) -> float:
         """Returns rho c v [Pa], with the impedances rho c of two bodies in series."""
-        impedances = [bodies[k].density * wave_speed(bodies[k]) for k in self.sizes]
+        impedances = [bodies[k].density * bodies[k].wave_speed for k in self.sizes]
         return self.onset.closing / sum(1 / impedance for impedance in impedances)
 
 
@@ -86,12 +83,6 @@ def fronts(scene: Scene, onsets: list[Onset]) -> list[Front]:
     return [front for front in landings if end <= front.onset.time + BRIEF * front.transit]
 
 
-def wave_speed(body: Body) -> float:
-    """Returns the speed c [m/s] of a plane pressure wave, sqrt((lambda + 2 mu)/rho)."""
-    nu = min(body.nu, STIFFEST)
-    return math.sqrt(body.young * (1 - nu) / ((1 + nu) * (1 - 2 * nu) * body.density))
-
-
 def _front(scene: Scene, onset: Onset) -> Front | None:
     """Returns the front at an onset of contact, None if no body lands flat."""
     bodies = {k: scene.bodies[k] for k in (onset.first, onset.second) if k >= 0}
@@ -101,9 +92,9 @@ def _front(scene: Scene, onset: Onset) -> Front | None:
     )
     if not crossed:
         return None
-    tau = min(sizes[k] / wave_speed(bodies[k]) for k in crossed)
-    transit = min(_length(onset, k) / wave_speed(bodies[k]) for k in crossed)
-    alike = {k: tau * wave_speed(body) for k, body in bodies.items()}
+    tau = min(sizes[k] / bodies[k].wave_speed for k in crossed)
+    transit = min(_length(onset, k) / bodies[k].wave_speed for k in crossed)
+    alike = {k: tau * body.wave_speed for k, body in bodies.items()}
     return Front(onset, tau, transit, alike, crossed)
 
 
@@ -142,7 +133,7 @@ def _lands_flat(onset: Onset, k: int, body: Body, size: float) -> bool:
     points, spacing = body.outline.samples(min(size, body.outline.half_thickness / 2))
     moved = body.outline.carried(_shape(onset, k), points)
     gaps = onset.gaps(k, moved)
-    landing = moved[gaps <= gaps.min() + onset.closing * size / wave_speed(body)]
+    landing = moved[gaps <= gaps.min() + onset.closing * size / body.wave_speed]
     walls = moved[moved[:, 0] > 0] if isinstance(body.outline, TubeOutline) else moved
     width = min(np.ptp(walls @ axis) for axis in _tangents(onset.normal))
     return len(landing) > 1 and bool(body.outline.width(landing, spacing) >= FLAT * width)
