@@ -34,8 +34,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Fields", "Result", "compare", "load"]
 
-# The numbers that `Result.table` lists, in this order.
-SHOWN = (*report.main_rows(), "thresholded_contact_time", "energy_initial", "energy_final")
+# Numbers that `Result.table` lists after those of the report.
+ALSO = ("thresholded_contact_time", "energy_initial", "energy_final")
 
 
 class Result:
@@ -142,15 +142,11 @@ class Result:
 
     @property
     def table(self) -> pd.DataFrame:
-        """The main numbers with value, error and unit. If the summary has a number for each of
-        several bodies, the table lists these.
+        """The main numbers with value, error and unit, in the order of the report. If the summary has
+        a number for each of several bodies, the table lists these.
         """
-        names = [
-            name
-            for name in self.keys()
-            if _bare(name) in SHOWN and self[name] is not None and f"{name}_1" not in self.summary
-        ]
-        names.sort(key=lambda name: SHOWN.index(_bare(name)))
+        rows = [row.key for row in report.rows_of(self.record)]
+        names = [name for name in (*rows, *ALSO) if name in self.keys()]
         columns = {
             "value": [self[name] for name in names],
             "error": [self.errors.get(name) for name in names],
@@ -209,11 +205,6 @@ class Result:
         from .view import view
 
         return view(self, path, field, revolved)
-
-
-def _bare(name: str) -> str:
-    """Returns the name of a number without the suffix of its body."""
-    return re.sub(r"_[0-9]+$", "", name)
 
 
 def _bar(error: float | None) -> str:

@@ -88,7 +88,7 @@ def test_tables(result):
     ) and result.history.normal_force.max() == pytest.approx(result["peak_force"])
     assert list(result.contacts.body) == [1] and "impulse" in result.table.index
     lines = repr(result).splitlines()
-    assert 5 < len(lines) <= 12 and any(
+    assert 5 < len(lines) <= 14 and any(
         "impulse" in line and "±" in line and "N s/m" in line for line in lines
     )
 

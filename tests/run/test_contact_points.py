@@ -112,7 +112,7 @@ def test_a_profile_is_a_line_alone():
     table = pd.DataFrame({"t": 1e-3, "s": [-1e-3, 0, 1e-3], "pressure": [1e5, 3e5, 1e5], "projected_pressure": [1e5, 2e5, 1e5]}).to_records()
     for line, drawn in (("-", ("-", "")), ("", ("None", "."))):
         figure, axes = plt.subplots()
-        contact.draw_profiles(axes, table, "along the outline", line)
+        contact.draw_profiles(axes, table, "along the outline", line, [1e-3])
         only, = axes.lines
         assert (only.get_linestyle(), only.get_marker()) == drawn
         plt.close(figure)

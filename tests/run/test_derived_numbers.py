@@ -13,6 +13,7 @@ from ffimpact.freefem import freefem
 from ffimpact.input.parameters import ROOT
 from ffimpact.mesh import gmsh_file, mesh
 from ffimpact.output.evaluate import evaluate
+from ffimpact.report import report
 from ffimpact.running import run
 from ffimpact.scene import read as read_scene
 
@@ -156,3 +157,22 @@ def test_a_spin_about_x_strains_too(tmp_path):
               "body": [ball], "obstacle": [{"kind": "plane", "point": [0, 0, 0], "normal": [0, 1, 0]}]}
     result = run.run(read_scene(tables, tmp_path, "ball"), {"fields": 0}, tmp_path / "out", estimate=False)
     assert any(warning.startswith("flight: ") and "by 30 %" in warning for warning in result.summary["warnings"])
+
+
+def test_velocities_at_the_end_of_contact_and_of_the_run(tmp_path):
+    """A disc that spins falls on a rough floor and flies on until end_time: at the end of contact it
+    has the rebound, at the end of the run g t less, and the same spin and velocity along the
+    floor but for the vibration. Without end_time the run does not go on."""
+    tables = {"law": "neohookean", "young": 7e6, "nu": 0.45, "density": 1722, "gravity": 9.81, "accuracy": 0.1,
+              "body": [{"name": "disc", "shape": "disc", "radius": 0.05, "position": [0, 0.06], "velocity": [1, -3], "spin": 50}],
+              "obstacle": [{"name": "floor", "kind": "plane", "point": [0, 0], "normal": [0, 1]}], "contact": {"friction_static": 0.3}}
+    result = run.run(read_scene(tables | {"end_time": 0.03}, ROOT, "on"), {"fields": 0}, tmp_path / "on", estimate=False)
+    s = result.summary
+    flown = 0.03 - s["contact_start"] - s["contact_time"]
+    assert flown > 0.01 and s["final_vy"] == pytest.approx(s["rebound_vy"] - 9.81 * flown, rel=1e-9)
+    assert s["final_vx"] == pytest.approx(s["rebound_vx"], rel=1e-9) and s["final_spin"] == pytest.approx(s["rebound_spin"], rel=0.02)
+    assert s["restitution"] == pytest.approx(s["rebound_vy"] / math.hypot(3, math.sqrt(2 * 9.81 * 0.01)), rel=1e-3)
+    lines = [line.split()[:3] for line in report.report(result).splitlines()]
+    assert ["rebound", "velocity,", "y"] in lines and ["final", "velocity,", "y"] in lines
+    single = run.run(read_scene(tables, ROOT, "single"), {"fields": 0}, tmp_path / "single", estimate=False)
+    assert single.summary["final_vy"] is None and single.summary["rebound_vy"] == pytest.approx(s["rebound_vy"], rel=1e-3)

@@ -12,6 +12,7 @@ from ffimpact import scene
 from ffimpact.__main__ import main
 from ffimpact.freefem import freefem
 from ffimpact.output import notes, results
+from ffimpact.output.errors import errors
 from ffimpact.report import drawing, report
 from ffimpact.running import run
 from ffimpact.sweeps import sweep
@@ -122,6 +123,7 @@ def test_scenes_of_the_paper_have_no_warning_or_the_one_that_a_reader_must_know(
     assert list(dict.fromkeys(line[2:5] for line in footnotes)) == [mark for line in lines for mark in re.findall(r" (\[\d\])(?: |$)", line) if line[2] != "["]
     assert any(line.startswith(f"  {mark}       peak force: ") for line in footnotes)
     assert all(sentence in whole for sentence in result.summary["notes"] + result.summary["warnings"])
+    assert errors(result)["peak_force"] >= 0.2 * result.summary["peak_force"] == result.summary["peak_uncertainty"] * result.summary["peak_force"]
     assert len(lines) < 30
 
 

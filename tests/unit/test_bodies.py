@@ -11,9 +11,11 @@ from ffimpact.failure import BadInput
 from ffimpact.geometry.outlines import ellipse_loop, polygon_loop, self_crossing
 from ffimpact.input.toml_text import to_toml
 from ffimpact.mesh import mesh
+from ffimpact.output.errors import zero_by_symmetry
 from ffimpact.scene import load, read as read_scene
 from ffimpact.scenes import assembly
 from ffimpact.scenes.entries import set_entry
+from ffimpact.scenes.mirror import symmetric_along
 from tests.support.bodies import FLOOR, SCENE, SQUARE, changed, read, with_body
 
 
@@ -212,3 +214,28 @@ def test_values_of_numpy_are_written_as_numbers():
     assert tomllib.loads(to_toml({"of": values})) == {"of": {"number": 1e-9, "whole": 3, "flag": True, "points": [[0.0, 1.0]]}}
     with pytest.raises(BadInput, match="is no text in UTF-8"):
         to_toml({"body": [{"surface": "\udcff.stl"}]})
+
+
+@pytest.mark.parametrize("entries, axes", [
+    ((), ["x"]),
+    ((("body.1.position", [0.3, 1.5]),), []),                  # off the axis of the block
+    ((("body.1.position", [0.3, 1.5]), ("body.2.position", [0.3, 0])), ["x"]),
+    ((("body.1.spin", 1.0),), []),
+    ((("body.1.velocity", [1e-3, -10]),), []),
+    ((("body.2.angle", 10.0), ("body.1.position", [0, 3]), ("obstacle.1.point", [0, -3])), []),
+    ((("body_force_x", 1.0),), []),
+    ((("gravity", 9.81),), ["x"]),
+    ((("obstacle.1.normal", [0.1, 1]), ("obstacle.1.point", [0, -3])), []),
+])
+def test_a_scene_is_symmetric_along_an_axis(entries, axes):
+    """If bodies, motions, forces and obstacles of a plane scene have a common mirror line, nothing
+    moves along its normal."""
+    assert symmetric_along(read(changed(*entries))) == axes
+
+
+def test_what_symmetry_makes_zero_has_no_error_estimate():
+    """A mirror plane normal to x keeps velocities along x and spins about y and z at zero, but for
+    the mesh. A number that is exactly zero is one of a half of the body."""
+    summary = {"rebound_vx_1": 1e-4, "final_vx_1": 1e-4, "rebound_vy_1": 2.0, "rebound_vy_2": 0, "rebound_spin_1": 1e-3, "rebound_spin_x_1": 1e-3, "impulse": 0}
+    assert zero_by_symmetry(summary) == {"rebound_vy_2"}
+    assert zero_by_symmetry(summary | {"symmetric_along": ["x"]}) == {"rebound_vx_1", "final_vx_1", "rebound_vy_2", "rebound_spin_1"}

@@ -49,3 +49,13 @@ def test_whole_bodies_in_three_dimensions_are_drawn(count, turn):
     if count == 2:
         assert list(np.ptp(np.asarray(maps[0].collections[0].get_offsets()), axis=0)) == pytest.approx([2, 2], rel=0.05)
     plt.close(figure)
+
+
+def test_a_contact_pair_is_shown_once():
+    """Three bodies in a row are shown by the two outer ones. A body that also lies on an obstacle is
+    shown, too."""
+    def shown(*pairs):
+        rows = np.rec.fromrecords([(body, partner, 1.0) for body, partner in pairs], names="body,partner,pressure")
+        return contact.representatives(rows)
+    row = (1, 2), (2, 1), (2, 3), (3, 2)
+    assert shown((1, 2), (2, 1)) == [1] and shown(*row) == [1, 3] and shown(*row, (2, -1)) == [1, 2, 3]

@@ -99,6 +99,24 @@ def test_a_body_at_rest_on_its_partner_has_no_restitution():
     assert list(pushed.get_xdata()) == [50] and list(pushed.get_ydata()) == [impacts.HIGHEST]
 
 
+def test_what_rolls_does_not_bounce():
+    """Intervals of contact without a normal restitution, as of a body that rolls over a step, are no
+    bounces, though they have a tangential one."""
+    rows = pd.DataFrame(dict(body=1, partner=-1, start=[0, 0.03, 0.05], end=[0.02, 0.04, 0.06], impulse=1.0, approach=[0.3, -0.9, 0.1], separation=0.2,
+                             restitution=[np.nan, np.nan, 0.5], restitution_tangential=[-0.7, -0.6, np.nan], slip_before=0.2))
+    assert impacts.draw(rows.to_records(), ["tyre"], ["road"]) is None
+
+
+def test_the_size_of_contact_is_zero_in_flight():
+    """A history has the onset of contact in the row that ends a flight. In the flight before it the
+    contact has no size."""
+    rows = {"t": [0.0, 1.0, 2.0], "dt": [0.0, 1.0, 1.0], "newton_iterations": [0, 0, 3], "normal_force": [0.0, 0.0, 5.0], "contact_half_width": [0.0, 0.1, 0.3],
+            "y": [2.0, 1.0, 0.0], "vy": [-1.0, -1.0, 0.0], "momentum_y": [-1.0, -1.0, 0.0], "kinetic": [1.0, 1.0, 0.0], "external_work": [0.0, 0.0, 0.0]}
+    filled = impacts.with_flights(results.Contents({name: np.array(column, float) for name, column in rows.items()}, Path("history.csv")))
+    inside = (filled["t"] > 0) & (filled["t"] < 1)
+    assert inside.sum() > 10 and not filled["contact_half_width"][inside].any() and filled["contact_half_width"][filled["t"] == 1] == 0.1
+
+
 # ---- section of a body in three dimensions
 
 def block(low: float, high: float, count: int) -> vtu.Solid:

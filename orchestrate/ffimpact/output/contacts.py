@@ -36,6 +36,7 @@ __all__ = [
     "Interval",
     "Motion",
     "along",
+    "at_both_ends",
     "impulse_ratio",
     "intervals_of",
     "is_impact",
@@ -106,6 +107,11 @@ CONTACT_COLUMNS = {
 # and thresholded_contact_time is that of the total normal force.
 RUN_NUMBERS = {
     "thresholded_contact_time": ("s", "between the crossings of 1 % of the largest force"),
+    "peak_uncertainty": (
+        "1",
+        "share of peak_force that penalty and mesh may change, as single contact points dominate "
+        "it or it oscillates on the penalty; null where its error estimate holds without it",
+    ),
     "bounces": (
         "",
         "impacts that are over: intervals of contact with a restitution (contacts.csv)",
@@ -338,6 +344,12 @@ def write_contacts(path: Path, intervals: list[Interval], damped: bool) -> None:
         row = interval.row()
         lines.append(",".join("" if row[name] is None else f"{row[name]:.12g}" for name in names))
     path.write_text("\n".join(lines) + "\n")
+
+
+def at_both_ends(name: str) -> list[str]:
+    """The names of a number of the record in the summary: of a velocity or spin `rebound_...` at
+    the end of contact also `final_...` at the end of the run."""
+    return [name, name.replace("rebound", "final")] if name.startswith("rebound_") else [name]
 
 
 def of_run(intervals: list[Interval]) -> dict[str, float | None]:

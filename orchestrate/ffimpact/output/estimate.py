@@ -167,6 +167,7 @@ TOUCHES_AGAIN = 2.5  # factor on these if there are several contact intervals
 # transit is RESOLVED times the rise time or more (front_errors()).
 SHARP, RESOLVED = {"impulse": 0.12, "rebound": 0.24, "energy": 0.48}, 7.5
 PROMISED = tuple(USUAL)[:6]
+AT_END = ("rebound", "final")  # velocities at the end of contact and of the run
 # Results that take the time history of another result.
 COURSE = {
     "thresholded_contact_time": "impulse",
@@ -419,8 +420,9 @@ def difference(
     free = [suffix for suffix in suffixes(fine) if suffix not in held]
     rebound = max(
         (
-            math.hypot(*(apart(f"rebound_v{axis}{suffix}", speed) for axis in "xyz"))
+            math.hypot(*(apart(f"{kind}_v{axis}{suffix}", speed) for axis in "xyz"))
             for suffix in free
+            for kind in AT_END
         ),
         default=0.0,
     )
@@ -429,13 +431,14 @@ def difference(
             math.hypot(
                 *(
                     apart(
-                        f"rebound_spin{about}{suffix}",
+                        f"{kind}_spin{about}{suffix}",
                         speed / (value(fine, f"reach{suffix}") or radius),
                     )
                     for about in ("", "_x", "_y")
                 )
             )
             for suffix in free
+            for kind in AT_END
         ),
         default=0.0,
     )

@@ -7,6 +7,8 @@ import os
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from . import contacts, warnings
 from .fields import write_fields
 from .modes import write_modes
@@ -52,9 +54,28 @@ def _summary(evidence: warnings.Evidence) -> dict[str, Any]:
     ok = evidence.record["status"] == "ok"
     sentences = warnings.sentences(evidence) if ok else {"warnings": [], "notes": []}
     numbers = {"thresholded_contact_time": lasted} | contacts.of_run(list(evidence.intervals))
+    numbers["peak_uncertainty"] = warnings.peak_uncertainty(evidence)
     summary: dict[str, Any] = {}
     for name, value in evidence.record.items():
-        summary |= sentences if name == "diagnostics" else {name: value}
+        summary |= sentences if name == "diagnostics" else _at_both_ends(evidence, name, value)
         if name == "contact_time":
             summary |= numbers
     return summary
+
+
+def _at_both_ends(evidence: warnings.Evidence, name: str, value: Any) -> dict[str, Any]:
+    """An entry of the record. Of a velocity or spin the record has that at the end of the run,
+    which is `final_...` if the run goes on after the contact until its end_time.
+
+    That at the end of contact t_e is continued from the step after it, in which no contact force
+    acts: v(t_1) + (t_e - t_1) dv/dt.
+    """
+    rebound, *final = contacts.at_both_ends(name)
+    t, end = evidence.history["t"], evidence.facts["contact_end"]
+    k = int(np.searchsorted(t, end))
+    touched = evidence.record["contact_intervals"] and not evidence.facts["in_contact"]
+    if not (final and evidence.facts["end_time"] > 0 and touched and k + 1 < len(t)):
+        return {rebound: value} | dict.fromkeys(final)
+    v = evidence.history[name.removeprefix("rebound_")]
+    slope = (v[k + 1] - v[k]) / (t[k + 1] - t[k])
+    return {rebound: float(v[k] + (end - t[k]) * slope), final[0]: value}

@@ -5,7 +5,7 @@ scripts record and of those that are evaluated from the record.
 from typing import Any
 
 from ..freefem.describe import describe_record
-from .contacts import CONTACT_COLUMNS, RUN_NUMBERS
+from .contacts import CONTACT_COLUMNS, RUN_NUMBERS, at_both_ends
 from .fields import POINT_COLUMNS
 
 __all__ = ["describe_results"]
@@ -30,8 +30,15 @@ def describe_results(values: dict | None = None, script: str = "disc-plane") -> 
     description["contact_columns"] = [
         name for name in CONTACT_COLUMNS if name not in description["damped"]
     ]
+    for key in ("summary", "body_summary"):
+        description[key] = [name for row in description[key] for name in at_both_ends(row)]
     meanings = description["meanings"]
     meanings["summary"] |= {name: list(entry) for name, entry in RUN_NUMBERS.items()}
+    meanings["summary"] |= {
+        final: [entry[0], f"as {name}, at end_time; null unless the run goes on after the contact"]
+        for name, entry in meanings["summary"].items()
+        for final in at_both_ends(name)[1:]
+    }
     meanings["contacts"] = {
         name: list(entry) for name, entry in CONTACT_COLUMNS.items() if entry[1]
     }

@@ -16,7 +16,16 @@ import numpy as np
 
 from .contacts import THRESHOLD, Interval, thresholds
 
-__all__ = ["Evidence", "Sentence", "note", "percent", "rounded", "sentences", "warn"]
+__all__ = [
+    "Evidence",
+    "Sentence",
+    "note",
+    "peak_uncertainty",
+    "percent",
+    "rounded",
+    "sentences",
+    "warn",
+]
 
 # With 10 points and more of the whole body the largest pressure of Hertz' contact is within 2 %,
 # its half-width within 3 %, and of
@@ -39,9 +48,9 @@ APART = 0.39  # distance of contact points over the length of their edge
 RANGE = 0.7  # penetration over the range of pairs of points, where the repulsion is largest
 # Speed over the bar wave speed. A penalty ten times larger on a mesh twice as fine moves the peak
 # force by 1 % at most up to 0.01, by 7 to
-# 18 % at 0.1, in twelve materials. Impulse and restitution hardly change: the peak is that of
-# single contact points.
-HARD = 0.03
+# 18 % at 0.1, in twelve materials: by POINTWISE at most. Impulse and restitution hardly change: the
+# peak is that of single contact points.
+HARD, POINTWISE = 0.03, 0.2
 PEAK_WIDTH, PEAK_SHARE = (
     0.5,
     0.8,
@@ -393,9 +402,41 @@ def _contact(e: Evidence) -> Iterator[Sentence]:
         yield from _end_of_contact(e)
 
 
+def peak_uncertainty(e: Evidence) -> float | None:
+    """The share of the largest force that penalty and mesh may change, None where the error
+    estimate of the peak holds.
+    """
+    if not e.record["contact_intervals"] or not e.facts["largest_force"] > 0:
+        return None
+    lasting, peak = _lasting(e)
+    if _oscillates(e):
+        return max(POINTWISE, 1 - lasting / peak)
+    return POINTWISE if _is_hard(e) else None
+
+
 def _peak(e: Evidence) -> Iterator[Sentence]:
     """The mean force over half a transit time of a wave, beside the peak, and the speed of the
     impact."""
+    if _oscillates(e):
+        yield warn(
+            f"peak force: its mean over {rounded(PEAK_WIDTH)} of the transit time of a wave is at "
+            f"most {rounded(_lasting(e)[0])} N{e.facts['per_metre']}: the "
+            "force oscillates on the penalty, as in the impact of a flat face. Penalty and mesh "
+            "change the peak by as much as it is above this mean: use "
+            "the impulse, or this mean"
+        )
+    elif _is_hard(e):
+        yield note(
+            "peak force: single contact points dominate it, at "
+            f"{percent(_fastest(e) / e.slowest_wave)} of the wave speed: above {percent(HARD)} of "
+            f"sqrt(E/rho) penalty and mesh change it by up to {percent(POINTWISE)}, which its "
+            "error estimate contains: use the impulse instead"
+        )
+
+
+def _lasting(e: Evidence) -> tuple[float, float]:
+    """The largest mean force over half a transit time of a wave that begins or ends at the peak,
+    and the peak [N/m]."""
     _, step, force = e.forces
     width = PEAK_WIDTH * e.facts["transit"]
     peak = int(force.argmax())
@@ -403,26 +444,26 @@ def _peak(e: Evidence) -> Iterator[Sentence]:
         _mean_over(step[peak:], force[peak:], width),
         _mean_over(step[peak::-1], force[peak::-1], width),
     )
-    fastest = max([e.facts["impact_speed"], *(-interval.before.normal for interval in e.intervals)])
-    hard = fastest > HARD * e.slowest_wave
-    if (
-        (e.record["front_transit"] or not hard)
-        and lasting < PEAK_SHARE * force[peak]
+    return lasting, float(force[peak])
+
+
+def _oscillates(e: Evidence) -> bool:
+    """Whether the peak is a short one of a force that oscillates on the penalty."""
+    lasting, peak = _lasting(e)
+    return bool(
+        (e.record["front_transit"] or not _is_hard(e))
+        and lasting < PEAK_SHARE * peak
         and not e.facts["in_contact"]
-    ):
-        yield warn(
-            f"peak force: its mean over {rounded(PEAK_WIDTH)} of the transit time of a wave is at "
-            f"most {rounded(lasting)} N{e.facts['per_metre']}: the "
-            "force oscillates on the penalty, as in the impact of a flat face. Penalty and mesh "
-            "change the peak by more than its error estimate: use "
-            "the impulse, or this mean"
-        )
-    elif hard:
-        yield note(
-            f"peak force: uncertain by up to 20 %, at {percent(fastest / e.slowest_wave)} of the "
-            f"wave speed: above {percent(HARD)} of sqrt(E/rho) single "
-            "contact points dominate it, and penalty and mesh change it: use the impulse instead"
-        )
+    )
+
+
+def _fastest(e: Evidence) -> float:
+    """The largest approach velocity of an impact [m/s]."""
+    return max([e.facts["impact_speed"], *(-interval.before.normal for interval in e.intervals)])
+
+
+def _is_hard(e: Evidence) -> bool:
+    return _fastest(e) > HARD * e.slowest_wave
 
 
 def _mean_over(step: np.ndarray, force: np.ndarray, width: float) -> float:

@@ -4,22 +4,35 @@ time, and stick and slip if there is friction.
 Every panel shows the projected pressure (`projected_pressure` of fields/contact.csv).
 """
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 from matplotlib.collections import QuadMesh
 from matplotlib.colors import ListedColormap
+from matplotlib.ticker import MaxNLocator
 
 from ..input.parameters import Value
 from ..output.results import read_table
-from .figures import BLACK, BLUE, ORANGE, STICKS, evenly, legend, plt
+from .figures import BLACK, BLUE, ORANGE, SMALL, STICKS, evenly, legend, plt
 
-__all__ = ["PRESSURE", "SLIDES", "draw", "draw_profiles", "hertz", "radial", "read"]
+__all__ = [
+    "PRESSURE",
+    "SLIDES",
+    "draw",
+    "draw_profiles",
+    "hertz",
+    "radial",
+    "read",
+    "representatives",
+]
 
-INSTANTS = 6  # largest number of profiles
 # Largest speed, relative to sqrt(E/rho), at which the pressure of a ball is compared with Hertz.
 SLOW = 0.03
 MOST_BODIES = 4  # largest number of bodies shown: those with the largest pressure
+# Load relative to the largest load at which profiles are drawn before and after the largest one.
+HALF = 0.5
+NUMBERS = 4  # largest number of intervals between the ticks of a horizontal axis
 PRESSURE = "contact pressure [MPa]"
 # v_T < 0 slides back, v_T > 0 slides forward. On the plane the direction of v_T is x.
 SLIP = {"slides back": BLUE, "sticks": STICKS, "slides forward": ORANGE}
@@ -34,8 +47,9 @@ ABOVE = {
     "loc": "lower center",
     "bbox_to_anchor": (0.5, 1),
     "ncols": 3,
-    "fontsize": 6.5,
+    "fontsize": SMALL,
     "handlelength": 1.0,
+    "handletextpad": 0.4,
     "columnspacing": 0.8,
 }
 COLUMNS = [
@@ -75,10 +89,10 @@ def draw(
     symmetry: str = "full",
     history: dict[str, np.ndarray] | None = None,
 ) -> plt.Figure | None:
-    """Draws a row of panels for each body: pressure over the outline at some instants; pressure
+    """Draws a row of panels for each body: pressure over the outline at three instants; pressure
     over outline and time; with friction stick and slip; with a `history` also contact half-width
-    and largest pressure. Returns None without contact. For two bodies that come into contact only
-    with each other, the first body represents both. `free`: times [s] without contact.
+    and largest pressure. Returns None without contact. Of two bodies in contact one represents
+    both (representatives()). `free`: times [s] without contact.
 
     Half a body is drawn with its mirror image. `ball` is the scene if the body is a ball that does
     not rotate; its panels use the distance from the axis. Other bodies in three dimensions: a
@@ -89,13 +103,7 @@ def draw(
     """
     if not len(table):
         return None
-    bodies = [int(body) for body in np.unique(table.body)]
-    bodies = sorted(
-        sorted(bodies, key=lambda body: -table.pressure[table.body == body].max())[:MOST_BODIES]
-    )
-    alone = set(zip(table.body, table.partner)) == {(1, 2), (2, 1)}
-    if alone:
-        bodies = [1]
+    bodies = representatives(table)
     instants = np.union1d(table.t, free[(free > table.t.min()) & (free < table.t.max())])
     rubs, solid = bool(table.shear.any()), "Z" in table.dtype.names
     shown = (
@@ -121,9 +129,11 @@ def draw(
         own, words, states = (
             radial(points, ball) if ball or solid and len(names) > 1 else _section(points, half)
         )
-        draw_profiles(panels["profiles"], own, words, "" if solid and words == ALONG else "-")
+        times = _times_of_profiles(points)
+        line = "" if solid and words == ALONG else "-"
+        draw_profiles(panels["profiles"], own, words, line, times)
         if ball:
-            _beside_hertz(panels["profiles"], points, ball)
+            _beside_hertz(panels["profiles"], points, ball, times)
         picture = _over_time(
             panels["pressure"], own, instants, 1e-6 * own.pressure, cmap="viridis", vmin=0
         )
@@ -145,11 +155,50 @@ def draw(
                 "contact radius" if ball else "half-width",
             )
             _history(panels["history"], history, own, instants, suffix, width)
+        lasts = np.array([own.t.min(), own.t.max()]) + np.array([-0.02, 0.02]) * np.ptp(own.t)
+        for axes in [panels[name] for name in shown if name != "profiles" and lasts[0] < lasts[1]]:
+            axes.set_xlim(1e3 * lasts)
         if len(names) > 1:
-            panels["pressure"].set_title(f"{names[0]} on {names[1]}" if alone else names[body - 1])
+            partners = np.unique(points.partner).astype(int)
+            on = f" on {names[partners[0] - 1]}" if len(partners) == 1 and partners[0] > 0 else ""
+            panels["pressure"].set_title(names[body - 1] + on)
+        for axes in panels.values():
+            axes.xaxis.set_major_locator(MaxNLocator(NUMBERS, steps=(1, 2, 2.5, 5, 10)))
         if maps:
             _maps(parts[2 * k + 1], points, rubs, symmetry, len(names) > 1)
     return figure
+
+
+def representatives(table: np.recarray) -> list[int]:
+    """Returns the bodies that are shown, at most MOST_BODIES with the largest pressure. Each contact
+    pair is shown once: first by bodies that are in contact with one other surface only.
+    """
+    pairs = {
+        int(body): {
+            frozenset((int(body), int(partner)))
+            for partner in np.unique(table.partner[table.body == body])
+        }
+        for body in np.unique(table.body)
+    }
+    chosen: list[int] = []
+    for body in sorted(pairs, key=lambda body: (len(pairs[body]), body)):
+        if pairs[body].difference(*(pairs[other] for other in chosen)):
+            chosen.append(body)
+    chosen.sort(key=lambda body: -table.pressure[table.body == body].max())
+    return sorted(chosen[:MOST_BODIES])
+
+
+def _times_of_profiles(points: np.recarray) -> list[float]:
+    """Returns the instants [s] of the profiles: that of the largest load, and the nearest ones
+    before and after it with at most HALF of this load, or the first and last instant.
+    """
+    times, instant = np.unique(points.t, return_inverse=True)
+    load = np.bincount(instant, points.projected_pressure * points.weight)
+    peak = int(load.argmax())
+    low = np.flatnonzero(load <= HALF * load[peak])
+    before, after = low[low < peak], low[low > peak]
+    first, last = before[-1] if len(before) else 0, after[0] if len(after) else len(times) - 1
+    return [float(times[k]) for k in sorted({int(first), peak, int(last)})]
 
 
 def _columns(**columns: np.ndarray) -> np.recarray:
@@ -302,7 +351,8 @@ def _maps(
         )
         labels = "along the patch [mm]", "across [mm]"
     points = _columns(**columns)
-    shown = _instants(points, MAPS)
+    times = list(np.unique(points.t))
+    shown = _instants(points, evenly(times, MAPS + 2)[1:-1] if len(times) > MAPS else times)
     grid = figure.subplots(1 + rubs, len(shown), squeeze=False, sharex=True, sharey=True)
     states = SLIDES if several else SLIP
     low, high = (1e3 * np.array([end(points.across), end(points.up)]) for end in (np.min, np.max))
@@ -350,29 +400,28 @@ def _in_plane(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return places @ two[0], places @ two[1]
 
 
-def _instants(table: np.recarray, limit: int = INSTANTS) -> list[tuple[float, np.recarray, tuple]]:
-    """Returns (t, rows, colour) for up to `limit` times."""
-    times = np.unique(table.t)
-    picked = evenly(times, limit + 2)[1:-1] if len(times) > limit else times
-    return [
-        (t, table[table.t == t], colour)
-        for t, colour in zip(picked, plt.get_cmap("plasma")(np.linspace(0, 0.85, len(picked))))
-    ]
+def _instants(table: np.recarray, times: Sequence[float]) -> list[tuple[float, np.recarray, tuple]]:
+    """Returns (t, rows, colour) for each of the `times` [s]."""
+    colours = plt.get_cmap("plasma")(np.linspace(0, 0.85, len(times)))
+    return [(t, table[table.t == t], colour) for t, colour in zip(times, colours)]
 
 
-def draw_profiles(axes: plt.Axes, own: np.recarray, words: str, line: str) -> None:
-    """Draws pressure [MPa] over s [mm] at up to INSTANTS times; `words` is the label of s. With a
+def draw_profiles(
+    axes: plt.Axes, own: np.recarray, words: str, line: str, times: Sequence[float]
+) -> None:
+    """Draws pressure [MPa] over s [mm] at the `times` [s]; `words` is the label of s. With a
     line style `line` the points are joined, except between separate contacts. Without it only the
     points are drawn.
     """
-    for t, now, colour in _instants(own):
+    for t, now, colour in _instants(own, times):
         now = now[np.argsort(now.s, kind="stable")]
         gap = _between(now.s)[0] if line else []  # interrupts the line between contacts
         s, values = np.append(now.s, gap), np.append(now.pressure, np.full(len(gap), np.nan))
         order = np.argsort(s, kind="stable")
+        values = values[order]
         axes.plot(
             1e3 * s[order],
-            1e-6 * values[order],
+            1e-6 * values,
             color=colour,
             linestyle=line,
             marker="" if line else ".",
@@ -380,16 +429,26 @@ def draw_profiles(axes: plt.Axes, own: np.recarray, words: str, line: str) -> No
             linewidth=1.1,
             label=f"{1e3 * t:.3g} ms",
         )
+        if (lone := _lone(values)).any():  # a line of one point is invisible
+            axes.plot(1e3 * s[order][lone], 1e-6 * values[lone], ".", color=colour, markersize=4)
     axes.set(xlabel=f"{words} [mm]", ylabel=PRESSURE, ylim=(0, None))
     legend(axes, **ABOVE)
 
 
-def _beside_hertz(axes: plt.Axes, points: np.recarray, ball: dict[str, Value]) -> None:
+def _lone(values: np.ndarray) -> np.ndarray:
+    """Returns which of the values (n,) are finite and have no finite neighbour."""
+    finite = np.pad(np.isfinite(values), 1)
+    return finite[1:-1] & ~finite[:-2] & ~finite[2:]
+
+
+def _beside_hertz(
+    axes: plt.Axes, points: np.recarray, ball: dict[str, Value], times: Sequence[float]
+) -> None:
     """Adds the Hertz pressure for the same force at each instant of the profiles, if the impact of
     the ball is slow (SLOW).
     """
     if ball["speed"] <= SLOW * np.sqrt(ball["young"] / ball["density"]):
-        for _, now, colour in _instants(points):
+        for _, now, colour in _instants(points, times):
             r, pressure = hertz((now.pressure * now.weight).sum(), ball)
             axes.plot(1e3 * r, 1e-6 * pressure, color=colour, linewidth=0.9)
         axes.plot([], [], color=BLACK, linewidth=0.9, label="Hertz, same force")

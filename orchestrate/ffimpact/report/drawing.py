@@ -10,6 +10,7 @@ from ..failure import Unreadable
 from ..input import dimension
 from ..input.parameters import Value
 from ..output import vtu
+from ..output.folder import FIGURES
 from ..output.results import Contents, body_names, check_files, read_history, read_json, read_scene
 from . import bodies, contact as contacts, impacts, solid
 from .figures import BODY, STYLE, as_written, is_half, material, per_metre, plt, save, touched
@@ -54,6 +55,9 @@ def draw(folder: Path) -> list[Path]:
         for name, figure in reversed(drawn.items()):
             figure.suptitle(wrapped(title(scene), figure.get_figwidth()))
             save(figure, target / f"{name}.png")
+    # An earlier version of the program may have drawn more. A library may be missing for `solid`.
+    for name in set(FIGURES) - {*drawn, "solid"}:
+        (target / f"{name}.png").unlink(missing_ok=True)
     return [target / f"{name}.png" for name in drawn]
 
 

@@ -35,7 +35,7 @@ LEAST_APPROACH = 0.01
 # small approach velocity was pushed off.
 HIGHEST = 1.5
 COLOURS = [BLUE, ORANGE, GREEN, "#cc79a7", "#e69f00", "#56b4e9"]
-TOLD = 5  # number of first impacts that are labelled with their restitution
+TOLD = 3  # number of first impacts that are labelled with their restitution
 INSIDE = 40  # number of rows that are inserted into a flight
 MODES = ["mode", "frequency", "energy", "strain_energy", "kinetic_energy"]
 NEEDED = [
@@ -63,28 +63,27 @@ def read(folder: Path) -> np.recarray:
 
 def several(table: np.recarray) -> list[np.recarray]:
     """Returns the impacts of each contact pair, or an empty list if no pair has more than one
-    impact. Intervals with an impulse below LIGHTEST times the largest impulse of the pair do not
-    count.
+    impact. Intervals without a restitution, as of a body that rolls, and those with an impulse
+    below LIGHTEST times the largest impulse of the pair do not count.
     """
     onsets_of = [
         table[(table.body == body) & (table.partner == partner)]
         for body, partner in np.unique(np.stack([table.body, table.partner], axis=1), axis=0)
     ]
-    impacts = [rows[rows.impulse >= LIGHTEST * rows.impulse.max()] for rows in onsets_of]
+    impacts = [
+        rows[(rows.impulse >= LIGHTEST * rows.impulse.max()) & np.isfinite(rows.restitution)]
+        for rows in onsets_of
+    ]
     return impacts if any(len(rows) > 1 for rows in impacts) else []
 
 
 def draw(table: np.recarray, names: list[str], rigid: list[str]) -> plt.Figure | None:
     """Draws normal and tangential restitution over the impacts of each contact pair, and below them
-    the speeds before each impact. Returns None if there are not several impacts or if none has a
-    restitution. `names` are those of the bodies, `rigid` those of the obstacles.
+    the speeds before each impact. Returns None if there are not several impacts. `names` are those
+    of the bodies, `rigid` those of the obstacles.
     """
-    impacts = several(table)
-    if not any(
-        np.isfinite(rows[name]).any()
-        for rows in impacts
-        for name in ("restitution", "restitution_tangential")
-    ):
+    impacts = [rows for rows in several(table) if len(rows)]
+    if not impacts:
         return None
     figure, (top, below) = plt.subplots(2, 1, figsize=(6.4, 5), sharex=True)
     for colour, rows in zip(COLOURS, impacts):
@@ -155,8 +154,8 @@ def with_flights(history: dict[str, np.ndarray]) -> Contents:
 
     Let s in [0, 1] be the fraction of a flight of duration T, in which a velocity changes by dv = g
     T. All columns are linear in s with two exceptions: positions are reduced by s (1 - s) dv T/2,
-    and kinetic energy and work of gravity by s (1 - s) m dv^2/2. Forces vanish from the very
-    beginning of the flight on.
+    and kinetic energy and work of gravity by s (1 - s) m dv^2/2. Forces and the size of the contact
+    vanish from the very beginning of the flight on.
     """
     t = history["t"]
     flies = (history["newton_iterations"][1:] == 0) & (history["normal_force"][1:] == 0)
@@ -169,7 +168,7 @@ def with_flights(history: dict[str, np.ndarray]) -> Contents:
     filled = {name: np.interp(times, t, column) for name, column in history.items()}
     filled["dt"][1:] = np.diff(times)
     for name in filled:
-        if "force" in name:
+        if "force" in name or name.startswith("contact_"):
             filled[name][flies[step] & (share > 0)] = 0
     for suffix in (
         "",

@@ -11,14 +11,14 @@ from itertools import zip_longest
 from ..input import dimension
 from ..input.parameters import Value
 from ..output import notes
-from ..output.errors import errors
+from ..output.errors import errors, zero_by_symmetry
 from ..output.results import Record, body_names, suffixes
 from ..places import shown
 from . import literature
 
-__all__ = ["MOST", "Quantity", "draw", "main_rows", "report", "rows", "stiffness", "warning_lines"]
+__all__ = ["MOST", "Quantity", "draw", "report", "rows", "rows_of", "stiffness", "warning_lines"]
 
-MOST = 10  # largest number of rows of a report that is not verbose
+MOST = 12  # largest number of rows of a report that is not verbose
 EXACT_ZERO = 1e-9  # largest size of a number that is zero to round-off
 
 # A number of the summary, or several that share a row.
@@ -37,6 +37,10 @@ def _never(result: Record, key: str) -> bool:
 
 def _nonzero(result: Record, key: str) -> bool:
     return abs(result.summary[key]) >= EXACT_ZERO
+
+
+def _moves(result: Record, key: str) -> bool:
+    return key not in zero_by_symmetry(result.summary)
 
 
 def _to_rest(result: Record, key: str) -> bool:
@@ -159,21 +163,16 @@ def _velocities(kind: str, word: str) -> list[Quantity]:
                 f"{word} velocity, {axis}",
                 "m/s",
                 main=_single,
-                when=_always if axis == "y" else _nonzero,
+                when=_moves,
             )
             for axis in "xyz"
         ),
         *(
-            Quantity(f"{kind}_spin_{axis}", f"{word} spin about {axis}", "rad/s", when=_nonzero)
+            Quantity(f"{kind}_spin_{axis}", f"{word} spin about {axis}", "rad/s", when=_moves)
             for axis in "xy"
         ),
-        Quantity(f"{kind}_spin", f"{word} spin", "rad/s", main=_single, when=_nonzero),
+        Quantity(f"{kind}_spin", f"{word} spin", "rad/s", main=_single, when=_moves),
     ]
-
-
-def main_rows() -> list[str]:
-    """Returns the keys of the rows that a report which is not verbose may have, in its order."""
-    return [row.key for row in rows("") if row.main is not _never]
 
 
 def draw(result: Record) -> None:
@@ -269,7 +268,7 @@ def report(result: Record, verbose: bool = False) -> str:
     and full sentences.
     """
     summary, scene, folder = result.summary, result.scene, shown(result.folder)
-    printed = _rows(result, verbose)
+    printed = rows_of(result, verbose)[: None if verbose else MOST]
     footnotes = notes.footnotes(summary.get("notes", []), [row.key for row in printed], verbose)
     marks = {key: f"[{k}]" for k, key in enumerate(footnotes, 1)}
     lines = [
@@ -299,8 +298,8 @@ def report(result: Record, verbose: bool = False) -> str:
     return "\n".join(lines)
 
 
-def _rows(result: Record, verbose: bool) -> list[Quantity]:
-    """Returns the rows of the report of a run, in their order."""
+def rows_of(result: Record, verbose: bool = False) -> list[Quantity]:
+    """Returns the rows of a run in their order: the main ones, or all if `verbose`."""
     summary, scene = result.summary, result.scene
     printed = [
         quantity
@@ -312,9 +311,7 @@ def _rows(result: Record, verbose: bool) -> list[Quantity]:
     # Without a contact that is over, the velocities of the rebound are those at the end of the run.
     if scene.get("end_time") and not any(row.key.startswith("final_") for row in printed):
         printed = [replace(row, label=row.label.replace("rebound", "final")) for row in printed]
-    if verbose:
-        return printed
-    return [replace(row, label=row.label.strip()) for row in printed[:MOST]]
+    return printed if verbose else [replace(row, label=row.label.strip()) for row in printed]
 
 
 def _numbers(result: Record, printed: list[Quantity], marks: dict[str, str]) -> list[str]:

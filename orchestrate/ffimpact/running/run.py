@@ -47,6 +47,7 @@ from ..places import INSTALLED, PACKAGE, RESULTS, ROOT, shown
 from ..progress import Line
 from ..scene import Scene
 from ..scenes.bodies import SIZES
+from ..scenes.mirror import symmetric_along
 from .solver import FAILURES, USED, Solver, runs
 
 __all__ = ["ENTRANCE", "HARMLESS", "states", "code_hash", "commit", "imported", "reusable", "run"]
@@ -191,7 +192,11 @@ def _finish(stage: Path, scene: Scene, estimated: dict, provenance: dict) -> Non
         if name != "error estimate" or not estimated.get("estimated_error")
     ]
     summary |= (
-        {"estimated_error": None, "released": list(scene.released)}
+        {
+            "estimated_error": None,
+            "released": list(scene.released),
+            "symmetric_along": symmetric_along(scene),
+        }
         | estimated
         | {"provenance": provenance | {"files": files_of(stage)}}
     )

@@ -1,19 +1,23 @@
-"""Symmetry of a scene in three dimensions (`symmetry`): whether all of it is computed, its half z
->= 0, or the quarter x >= 0, z >= 0.
+"""Symmetry of a scene. In three dimensions it decides whether all of it is computed, its half z >= 0,
+or the quarter x >= 0, z >= 0 (`symmetry`). In all dimensions it makes velocities and spins zero.
 """
 
 import numpy as np
 
 from ..failure import BadInput
-from ..input.dimension import SOLID
+from ..geometry.outlines import rotation
+from ..input.dimension import PLANE_STRAIN, SOLID
 from .bodies import Body
 from .obstacles import Obstacle
 
-__all__ = ["COPIES", "MIRROR_AXES", "copies"]
+__all__ = ["COPIES", "MIRROR_AXES", "copies", "symmetric_along"]
 
 COPIES = {"full": 1, "half": 2, "quarter": 4}
 MIRROR_AXES = {1: (), 2: (2,), 4: (0, 2)}  # normals of the planes of symmetry, by symmetry factor
 AXES = "xyz"
+# Largest distance between an outline and its mirror image that is round-off, over the bounding
+# radius of the bodies. Points at which obstacles are compared with their mirror images.
+ALIKE, SAMPLES = 1e-9, 500
 
 
 def copies(scene) -> int:
@@ -33,6 +37,50 @@ def copies(scene) -> int:
             f"symmetry: {symmetry}, but {why} (accepted: auto|full{'' if across_z else '|half'})"
         )
     return COPIES[symmetry]
+
+
+def symmetric_along(scene) -> list[str]:
+    """Returns the axes along which no body can move, because the scene is its own mirror image in a
+    plane normal to the axis. A case of the paper (without bodies) counts as not symmetric.
+    """
+    if scene.dimension is SOLID:
+        return [AXES[axis] for axis in (0, 2) if not _broken(scene, axis)]
+    planar = scene.bodies and scene.dimension is PLANE_STRAIN
+    return [AXES[axis] for axis in (0, 1) if planar and _is_mirrored_in_plane(scene, axis)]
+
+
+def _is_mirrored_in_plane(scene, axis: int) -> bool:
+    """Whether a plane scene is its own mirror image in the line normal to an axis through the centre
+    of its first body. Shapes are compared by their signed distances.
+    """
+    values, at = scene.values, scene.bodies[0].position[axis]
+    reach = max(body.placed.reach for body in scene.bodies)
+    image = np.where(np.arange(2) == axis, -1.0, 1.0)
+
+    def mirrored(points: np.ndarray) -> np.ndarray:
+        return points * image + (1 - image) * at
+
+    def is_its_image(body: Body) -> bool:
+        own = np.abs(body.placed.gap(mirrored(body.placed.points))).max() <= ALIKE * reach
+        moves = body.position[axis] != at or body.velocity[axis] != 0 or body.spin != 0
+        conditions = body.supports or body.loads
+        return (
+            own and not moves and not (conditions and (at != 0 or _of_conditions(body, axis, "")))
+        )
+
+    pulled = values[f"body_force_{AXES[axis]}"] or axis == 1 and values["gravity"]
+    if pulled or not all(is_its_image(body) for body in scene.bodies):
+        return False
+    centres = np.array([body.position for body in scene.bodies])
+    points = np.random.default_rng(1).uniform(
+        centres.min(axis=0) - 2 * reach, centres.max(axis=0) + 2 * reach, (SAMPLES, 2)
+    )
+    return all(
+        obstacle.velocity[axis] == 0
+        and obstacle.drive is None
+        and np.abs(obstacle.gap(points) - obstacle.gap(mirrored(points))).max() <= ALIKE * reach
+        for obstacle in scene.obstacles
+    )
 
 
 def _broken(scene, axis: int) -> str:
@@ -72,8 +120,9 @@ def _of_conditions(body: Body, axis: int, plane: str) -> str:
     """Returns which support or load of a body has no mirror image or acts along the axis, "" if
     none.
     """
+    turned = rotation(body.angle) if np.isscalar(body.angle) else body.placed.rotation
     for kind, listed in (("support", body.supports), ("load", body.loads)):
-        if not all(condition.part.is_mirrored(axis, body.placed.rotation) for condition in listed):
+        if not all(condition.part.is_mirrored(axis, turned) for condition in listed):
             return f"has a {kind} that is not its own mirror image in {plane}"
     moved = [
         (support.fixed[axis] or support.normal) and not support.motion[axis].is_constant
