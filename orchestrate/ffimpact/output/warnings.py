@@ -331,8 +331,7 @@ def _balances(e: Evidence) -> Iterator[Sentence]:
         yield warn(
             f"energy: the {integrator} integrator "
             f"{'lost' if e.facts['worst_balance'] < 0 else 'gained'} {percent(drift)} of the "
-            "energy at the "
-            f"start{e.request}. Speeds and forces have an error of this size{instead}"
+            f"energy supplied{e.request}. Speeds and forces have an error of this size{instead}"
         )
     if momentum > accuracy:
         yield warn(
@@ -770,8 +769,8 @@ def _friction(e: Evidence) -> Iterator[Sentence]:
         yield warn(
             "newmark: sticking contact points reverse their velocity in every step: this happens "
             "with any dt. "
-            f"{percent(e.record['friction_work'] / facts['energy_scale'])} of the initial energy "
-            f"went into friction. Rebound along {e.counter_body}, spin "
+            f"{percent(e.record['friction_work'] / facts['supplied_energy'])} of the energy "
+            f"supplied went into friction. Rebound along {e.counter_body}, spin "
             "and friction work do not converge: take integrator=energy-momentum"
         )
 

@@ -123,7 +123,7 @@ def rows(per: str) -> list[Quantity]:
         Quantity(
             "energy_drift",
             "energy drift",
-            "of the energy at the start or at contact",
+            "of the energy supplied",
             digits=".1e",
             main=_always,
         ),
