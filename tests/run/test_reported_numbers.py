@@ -3,8 +3,10 @@ computation gives it again."""
 
 import math
 
+import numpy as np
 import pytest
 
+from ffimpact.output import vtu
 from verification.measure import bodies
 
 SOFT = {"law": "neohookean", "young": 7e6, "nu": 0.3, "density": 1000, "accuracy": 0.1}
@@ -41,3 +43,57 @@ def test_without_energy_at_the_start_the_balance_is_relative_to_that_supplied(tm
     energies = run.history["kinetic"] + run.history["elastic"] + run.history["contact"] - run.history["balance"]
     assert run.summary["energy_drift"] == pytest.approx(abs(run.history["balance"]).max() / energies.max(), rel=1e-6)
     assert run.summary["energy_drift"] > 1e-9
+
+
+# ---- penetration beside the contact points
+
+FINE = {"mesh_size": 0.004, "contact_mesh_size": 0.004}
+SQUARE = {"shape": "rectangle", "width": 0.02, "height": 0.02} | FINE
+CENTRE, ROUND, ROUNDING = np.array([0, -0.2]), 0.2, 1e-3
+WEDGE = [[-1, -1], [0, 0], [1, -1]]
+WITH_NODE = [[-0.01, -0.01], [0, -0.01], [0.01, -0.01], [0.01, 0.01], [-0.01, 0.01]]
+
+
+def _into_circle(at: np.ndarray) -> float:
+    return ROUND - np.linalg.norm(at - CENTRE, axis=1).min()
+
+
+def _into_bowl(at: np.ndarray) -> float:
+    return np.linalg.norm(at + CENTRE, axis=1).max() - ROUND
+
+
+def _into_groove(at: np.ndarray) -> float:
+    """The groove y > |x|/2: the larger gap counts inside it."""
+    return -min(np.minimum((at[:, 1] - at[:, 0] / 2), (at[:, 1] + at[:, 0] / 2))) / np.hypot(1, 0.5)
+
+
+def _wedge_into(at: np.ndarray) -> float:
+    """The rounded tip, whose centre is at 0, in the node of the side above it."""
+    return ROUNDING - at[abs(at[:, 0]) < 1e-4, 1].min()
+
+
+CASES = {
+    # A leaning tip: one of the sides at it faces away from the circle's centre.
+    "tip on circle": ({"shape": "polygon", "vertices": [[0.002, 0.0183], [-0.021, -0.0145], [0.019, -0.0038]], "position": [0.021, 0.0146],
+                       "young": 7e8} | FINE, {"kind": "circle", "centre": CENTRE.tolist(), "radius": ROUND}, _into_circle),
+    "corner on plane": (SQUARE | {"position": [0, 0.0142], "angle": 38}, FLOOR, lambda at: -at[:, 1].min()),
+    "corner in bowl": (SQUARE | {"position": [0, 0.0142], "angle": 38}, {"kind": "bowl", "centre": (-CENTRE).tolist(), "radius": ROUND}, _into_bowl),
+    "corner in groove": (SQUARE | {"position": [0.003, 0.0166], "angle": 45}, {"kind": "polyline", "vertices": [[-1, 0.5], [0, 0], [1, 0.5]]}, _into_groove),
+    "wedge in side": ({"shape": "polygon", "vertices": WITH_NODE, "position": [0, 0.0112]} | FINE, {"kind": "polyline", "vertices": WEDGE, "rounding": ROUNDING}, _wedge_into),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_penetration_is_the_depth_below_the_surface(tmp_path, case):
+    """Of every kept state max_penetration is the depth of the deepest corner of the body along the
+    normal of the obstacle, or of a convex obstacle in the side of the body, from nodal positions."""
+    body, obstacle, depth = CASES[case]
+    run = bodies(tmp_path, SOFT | {"end_time": 3e-3, "fields": 40, "contact": {"penalty": 2e10}, "body": [body | {"velocity": [0, -1]}], "obstacle": [obstacle]})
+    t, reported, largest, found = run.history["t"], run.history["max_penetration"], 0.0, 0
+    for time, path in vtu.series(tmp_path / "run" / "fields.pvd"):
+        state = vtu.read(path)
+        expected = max(0.0, depth(state.points[:, :2] + state.fields["displacement"][:, :2]))
+        largest = max(largest, expected)
+        assert reported[np.argmin(abs(t - time))] == pytest.approx(expected, rel=0.03, abs=2e-7)
+        found += expected > 2e-6
+    assert found > 3 and run.summary["max_penetration"] == pytest.approx(largest, rel=0.1)
