@@ -108,7 +108,7 @@ def test_thin_bodies_breathe_as_membranes(tmp_path, shape, filled):
 def test_more_pressure_makes_a_contact_shorter(tmp_path, shape):
     """A hollow disc, or a hollow ball, falls on a plane: with a stiffer gas it leaves earlier."""
     times, inner = [], {"ring": 0.044, "shell": 0.047}[shape]
-    for gauge in (0, 2e4, 5e4):
+    for gauge in (0, 8e3, 2e4):
         tyre = {"shape": shape, "radius": 0.052, "inner_radius": inner, "position": [0, 0.06], "velocity": [0, -1],
                 "load": [{"where": "inner", "gas": {"gauge_pressure": gauge, "exponent": 1.4}}]}
         run = bodies(tmp_path / f"{gauge:g}", SOFT | {"accuracy": 0.05, "end_time": 0.0, "body": [tyre], "obstacle": [FLOOR]}

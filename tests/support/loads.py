@@ -27,7 +27,7 @@ PUSHED = SOFT | {"end_time": 0.02, "contact": {"friction_static": 0.4}, "obstacl
     {"name": "pad", "shape": "rectangle", "width": 0.1, "height": 0.05, "position": [0, 0.0255],
      "support": [{"where": "top", "motion": ["0.003*sin(400*t)", "-0.002*(1-cos(600*t))"]}],
      "load": [{"where": "right", "pressure": "2e4*sin(300*t)"}, {"where": "left", "traction": ["1e4*t/0.02", -3e3]}]},
-    {"name": "tyre", "shape": "ring", "radius": 0.03, "inner_radius": 0.02, "position": [0.15, 0.0305], "velocity": [1, -3], "spin": 20,
+    {"name": "tyre", "shape": "ring", "radius": 0.03, "inner_radius": 0.02, "position": [0.15, 0.0315], "velocity": [1, -3], "spin": 20,
      "load": [{"where": "inner", "gas": {"gauge_pressure": 2e4, "exponent": 1.4}}]}]}
 
 

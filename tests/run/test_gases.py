@@ -1,0 +1,59 @@
+"""Hollow bodies in equilibrium with the gases in them at the start."""
+
+import math
+
+import pytest
+from scipy.integrate import quad
+from scipy.optimize import brentq, minimize_scalar
+
+from ffimpact.failure import Failure
+from verification.measure import bodies
+
+INNER, OUTER, SHEAR = 0.025, 0.03, 1e6
+RUBBER = {"law": "incompressible", "young": 3 * SHEAR, "nu": 0.5, "density": 1000, "accuracy": 0.1, "end_time": 2e-5, "dt": 1e-5}
+
+
+def exact_pressure(inner: float, power: int) -> float:
+    """The pressure [Pa] in an incompressible neo-Hookean tube (`power` 2, plane strain) or hollow ball
+    (3) with the inner radius `inner` [m]: the integral of (sigma_theta - sigma_r)/r over r."""
+    def difference(r: float) -> float:
+        stretch = r / (r**power - inner**power + INNER**power)**(1 / power)
+        return (power - 1) * SHEAR * (stretch**2 - stretch**(2 - 2 * power)) / r
+
+    outer = (inner**power - INNER**power + OUTER**power)**(1 / power)
+    return quad(difference, inner, outer)[0]
+
+
+def exact_inner(pressure: float, power: int) -> float:
+    """The inner radius [m] at a pressure [Pa] below the largest one."""
+    return brentq(lambda inner: exact_pressure(inner, power) - pressure, INNER, 1.4 * INNER)
+
+
+def filled(tmp_path, power: int, pressure: float, exponent: float = 0.0, **more):
+    """A run of a tube or hollow ball of rubber that nothing touches, with a gas in it."""
+    gas = {"gauge_pressure": pressure, "exponent": exponent}
+    body = {"shape": "ring" if power == 2 else "shell", "radius": OUTER, "inner_radius": INNER, "position": [0, 0],
+            "load": [{"where": "inner", "gas": gas}]}
+    return bodies(tmp_path / "run", RUBBER | more | {"body": [body]} | ({"dimension": "axisymmetric"} if power == 3 else {}))
+
+
+@pytest.mark.parametrize("power, pressure, exponent", [(3, 2e5, 0.0), (3, 1e5, 1.4), (2, 1e5, 1.4)])
+def test_the_pressure_is_that_in_equilibrium(tmp_path, power, pressure, exponent):
+    """A tube and a hollow ball start with the stated pressure in the cavity of the exact solution, also
+    at 0.89 of the largest pressure, and stay at rest."""
+    inner = exact_inner(pressure, power)
+    run = filled(tmp_path, power, pressure, exponent)
+    volume = run.history["gas_volume_1"]
+    assert run.history["gas_pressure_1"][0] == pytest.approx(pressure, rel=1e-9)
+    assert volume == pytest.approx(volume[0], rel=1e-8)
+    measured = math.sqrt(volume[0] / math.pi) if power == 2 else (3 * volume[0] / (4 * math.pi))**(1 / 3)
+    assert measured == pytest.approx(exact_inner(pressure, power), rel=1e-4)
+
+
+def test_a_gas_above_the_largest_pressure_is_refused(tmp_path):
+    """The largest pressure that a hollow ball bears is named, to 0.5 % of that of the exact solution."""
+    largest = -minimize_scalar(lambda inner: -exact_pressure(inner, 3), bounds=(INNER, 2 * INNER), method="bounded").fun
+    with pytest.raises(Failure, match="body.1.load.1.gas.gauge_pressure: 'body1' has no equilibrium with 240000 Pa; the largest found is ") as failure:
+        filled(tmp_path, 3, 2.4e5, mesh_size=0.0025)
+    assert float(str(failure.value).split("largest found is ")[1].split()[0]) == pytest.approx(largest, rel=5e-3)
+    assert filled(tmp_path, 3, 0.99 * largest).history["gas_pressure_1"][0] == pytest.approx(0.99 * largest, rel=1e-9)
