@@ -38,6 +38,10 @@ def test_a_disc_bounces_until_it_rests(fallen):
     assert result.summary["bounces"] == len(impacts) >= 8 and (np.diff(impacts["approach"]) < 0).all()
     flights, speeds = impacts["start"][1:] - impacts["end"][:-1], impacts["separation"][:-1]
     assert flights == pytest.approx(2 * speeds / GRAVITY, rel=0.05, abs=1e-3)
+    assert result.summary["first_restitutions"] == pytest.approx(impacts["restitution"][:3])
+    # It rests after the last onset of contact, and a period of its weight on the spring before the
+    # end.
+    assert contacts["start"][-1] <= result.summary["rest_time"] < result.history["t"][-1]
     start = 0.5 * weight(math.pi * RADIUS**2)
     assert result.summary["viscous_work"] == pytest.approx(start, rel=2e-3) and result.summary["friction_work"] == 0
 

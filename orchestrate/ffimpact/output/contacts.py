@@ -53,6 +53,7 @@ SLIGHTEST, DRIVEN, STEADY = (
     0.25,
     0.99,
 )  # shares of the velocity jump, and of the impulse (above)
+FIRST = 3  # number of bounces in first_restitutions
 SAME = "likewise"
 # unit and meaning of the columns of contacts.csv; an empty meaning is that of the summary
 CONTACT_COLUMNS = {
@@ -78,6 +79,8 @@ CONTACT_COLUMNS = {
         "contact",
     ),
     "separation": ("m/s", "the same after contact"),
+    "lever": ("m", "distance of the centre of mass from the line of the normal force"),
+    "partner_lever": ("m", "that of the partner's, 0 for an obstacle"),
     "slip_before": ("m/s", "velocity along the counter-body before contact"),
     "slip_after": ("m/s", "velocity along it in the direction of slip_before, after contact"),
     "restitution": ("", ""),
@@ -116,12 +119,18 @@ RUN_NUMBERS = {
         "",
         "impacts that are over: intervals of contact with a restitution (contacts.csv)",
     ),
+    "first_restitutions": ("1", "list of the restitutions of the first bounces, up to three"),
+    "rest_time": (
+        "s",
+        "from then on the kinetic energy is at most accuracy^2 of the stored energy; null unless "
+        "the run ended at rest",
+    ),
     "restitution": (
         "1",
         "normal velocity after over that before contact, of the rigid motion of the point of first "
         "contact; null unless it is of one impact "
         "that is over, along one normal, with an approach of at least a quarter of impulse over "
-        "reduced mass",
+        "reduced mass. With a body on supports it contains the vibration of that body",
     ),
     "restitution_tangential": (
         "1",
@@ -159,7 +168,7 @@ class Motion:
 
 
 class Interval:
-    """One interval of contact: `rows` (steps, 36) and `head` (12,) as recorded, the reduced mass
+    """One interval of contact: `rows` (steps, 36) and `head` (14,) as recorded, the reduced mass
     [kg/m], whether the integrator takes forces at the ends of steps (`means_of_ends`), and whether
     there is friction.
     """
@@ -176,7 +185,7 @@ class Interval:
         self.pair, self.rows = pair, rows
         self.start, self.end, self.over = head[1], head[2], bool(head[3])
         self.energies, self.viscous_work = head[4:7], head[7]
-        self.radii, self.arms = head[8:10], head[10:12]
+        self.radii, self.arms, self.levers = head[8:10], head[10:12], head[12:14]
         self.step, self.middle = rows[:, 2], rows[:, 1]
         self.force, self.all, self.friction = self._forces(means_of_ends)
         impulses = self.force * self.step
@@ -285,6 +294,7 @@ class Interval:
             *self.normal,
             -before.normal,
             after.normal if self.over else None,
+            *self.levers,
             slip,
             slip_after if self.over else None,
             ratio(after.normal, -before.normal, self.impact),
@@ -311,7 +321,7 @@ def intervals_of(folder: Path, diagnostics: Mapping[str, Any]) -> list[Interval]
     """The intervals of the run in `folder` in the order in which they ended; those that bore no
     load are left out."""
     arrays, _ = read_arrays(folder / RECORDED)
-    rows, heads = arrays["rows"].reshape(-1, 36), arrays["intervals"].reshape(-1, 12)
+    rows, heads = arrays["rows"].reshape(-1, 36), arrays["intervals"].reshape(-1, 14)
     bodies, result = diagnostics["bodies"], []
     for k in np.argsort(heads[:, 2], kind="stable"):
         own = rows[rows[:, 0] == k]
@@ -352,8 +362,8 @@ def at_both_ends(name: str) -> list[str]:
     return [name, name.replace("rebound", "final")] if name.startswith("rebound_") else [name]
 
 
-def of_run(intervals: list[Interval]) -> dict[str, float | None]:
-    """The numbers RUN_NUMBERS of summary.json but thresholded_contact_time."""
+def of_run(intervals: list[Interval]) -> dict[str, Any]:
+    """The numbers RUN_NUMBERS of summary.json but thresholded_contact_time and rest_time."""
     pairs = {id(interval.pair) for interval in intervals}
     jump, size = (
         sum(interval.jump for interval in intervals),
@@ -375,10 +385,14 @@ def of_run(intervals: list[Interval]) -> dict[str, float | None]:
         and 0 < np.linalg.norm(normal)
         and bool(np.linalg.norm(normal) >= STEADY * size)
     )
-    numbers: dict[str, float | None] = dict.fromkeys(
-        name for name in RUN_NUMBERS if name != "thresholded_contact_time"
+    numbers: dict[str, Any] = dict.fromkeys(
+        name for name in RUN_NUMBERS if name not in ("thresholded_contact_time", "rest_time")
     )
-    numbers["bounces"] = sum(interval.impact for interval in intervals)
+    bounces = [interval for interval in intervals if interval.impact]
+    numbers["bounces"] = len(bounces)
+    numbers["first_restitutions"] = [
+        bounce.after.normal / -bounce.before.normal for bounce in bounces[:FIRST]
+    ]
     if last is None or not along_one:
         return numbers
     before, after, least = intervals[0].before, last.after, SLIGHTEST * jump

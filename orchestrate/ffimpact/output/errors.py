@@ -1,13 +1,19 @@
 """Converts the relative error estimates in summary.json (`estimated_error`) to the units of the
-numbers. They are relative to the number itself, to the largest energy or to the speed.
+numbers. They are relative to the number itself, to the largest energy or to the speed. Restitutions,
+the angle after contact and the ratio of the impulses follow from velocities and impulses, and so do
+their errors.
 """
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping
+from typing import Any
 
-from .results import Record, numbers, read_answers
+import numpy as np
+
+from .results import Answers, Record, held_bodies, numbers, read_answers, read_table
 
 __all__ = ["errors", "zero_by_symmetry"]
 
@@ -29,7 +35,12 @@ OF_ITSELF = (
     "peak_force",
     "max_pressure",
     "max_penetration",
+    "bounces",
+    "rest_time",
 )
+# Numbers whose error follows from those of velocities and impulses, and what it takes of contacts.csv.
+PROPAGATED = ("restitution", "restitution_tangential", "angle_out", "impulse_ratio")
+COLUMNS = ("body", "partner", "approach", "lever", "partner_lever", "slip_before")
 
 
 def errors(record: Record) -> dict[str, float]:
@@ -69,8 +80,13 @@ def errors(record: Record) -> dict[str, float]:
             size = summary.get(f"reach{name[len(kind) :]}") or reach
             if size:
                 estimates[name] = share["rebound_spin"] * answers.speed / size
-        elif kind == "restitution":
-            estimates[name] = share["rebound"]
+    if any(name in names for name in PROPAGATED):
+        estimates |= _of_impact(record, answers, share)
+    if "first_restitutions" in share:  # of each of the list
+        names, estimates["first_restitutions"] = (
+            [*names, "first_restitutions"],
+            share["first_restitutions"],
+        )
     if (least := summary.get("peak_uncertainty")) and "peak_force" in estimates:
         estimates["peak_force"] = max(estimates["peak_force"], least * abs(summary["peak_force"]))
     zeros = zero_by_symmetry(summary)
@@ -93,3 +109,65 @@ def zero_by_symmetry(summary: Mapping) -> set[str]:
         if (match := re.fullmatch(r"(?:rebound|final)_(v[xyz]|spin(?:_[xy])?)(?:_\d+)?", name))
         and (summary[name] == 0 or match[1] in kinds)
     }
+
+
+def _of_impact(record: Record, answers: Answers, share: Mapping[str, float]) -> dict[str, float]:
+    """Returns the error estimates of PROPAGATED. They follow from those of the velocities dv and of
+    the rim speeds R dw of the bodies in contact, and of the impulse dJ:
+
+        restitution             sqrt(sum dv^2 + (lever dw)^2) / approach
+        restitution_tangential  sqrt(sum dv^2 + (R dw)^2) / slip_before
+        angle_out               sqrt(sum dv^2) / speed of the centres
+        impulse_ratio  r        sqrt((m dv)^2 + (r dJ)^2) / J,  m the smaller mass
+
+    A body that supports hold vibrates. Its velocity after contact is that of one instant, for which
+    there is no estimate, so only impulse_ratio has one. angle_in follows from the start of the
+    scene.
+    """
+    rows = read_table(record.folder / "contacts.csv", COLUMNS)
+    bodies = [int(rows.body[0]), *([int(rows.partner[0])] if rows.partner[0] > 0 else [])]
+    several = any(name.startswith("mass_") for name in answers.summary)
+    suffix = [f"_{number}" if several else "" for number in bodies]
+    held, summary = held_bodies(answers.used), answers.summary
+    velocity, rim = (share[name] * answers.speed for name in ("rebound", "rebound_spin"))
+    free = [summary[f"mass{end}"] for end in suffix if end not in held]
+    ratio, impulse = summary["impulse_ratio"], summary["impulse"]
+    estimates = {}
+    if free and ratio:
+        across = math.hypot(min(free) * velocity, ratio * share["impulse"] * impulse)
+        estimates["impulse_ratio"] = across / impulse
+    if len(free) < len(bodies):
+        return estimates
+    levers = (rows.lever.max(), rows.partner_lever.max())
+    turning = [
+        lever / summary[f"reach{end}"] * rim for lever, end in zip(levers, suffix, strict=False)
+    ]
+    every = math.sqrt(len(bodies))
+    estimates["restitution"] = math.hypot(every * velocity, *turning) / rows.approach[0]
+    if rows.slip_before[0] > 0:
+        estimates["restitution_tangential"] = (
+            every * math.hypot(velocity, rim) / rows.slip_before[0]
+        )
+    leaves = _centres_speed(answers, suffix, int(rows.partner[0]))
+    if leaves:
+        estimates["angle_out"] = math.degrees(every * velocity / leaves)
+    return estimates
+
+
+def _centres_speed(answers: Answers, suffix: list[str], partner: int) -> float | None:
+    """Returns the relative speed of the centres [m/s] at the end of contact, None if the obstacle
+    follows a function of time.
+    """
+    axes = [axis for axis in "xyz" if f"rebound_v{axis}{suffix[0]}" in answers.summary]
+    after = [
+        np.array([answers.summary[f"rebound_v{axis}{end}"] for axis in axes]) for end in suffix
+    ]
+    used: Mapping[str, Any] = answers.used
+    obstacles = used.get("obstacle", [])
+    if len(suffix) == 1 and obstacles:
+        obstacle = obstacles[-partner - 1]
+        if "motion" in obstacle or "rotation" in obstacle:
+            return None
+        moves = obstacle.get("velocity", 0.0)
+        after.append(np.array([0.0, moves]) if np.isscalar(moves) else np.array(moves))
+    return float(np.linalg.norm(after[0] - after[-1] if len(after) > 1 else after[0]))

@@ -45,6 +45,7 @@ import numpy as np
 
 from ..failure import Failure
 from ..input.parameters import OUTPUT, Value
+from .rest import rest_errors
 from .results import Answers, held_bodies, suffixes
 
 __all__ = [
@@ -283,7 +284,8 @@ def settle(
     for folder in (coarser, finer):
         shutil.rmtree(folder, ignore_errors=True)
     return {
-        "estimated_error": stated,
+        # Both runs of a pair lack a contact that would follow.
+        "estimated_error": None if _lacks_contact(summary) else stated,
         "estimated_error_excludes": _excludes(summary, own_mesh),
         "estimate_cpu_seconds": seconds,
         "refinements": refinements,
@@ -291,6 +293,13 @@ def settle(
         "notes": [*notes, *([FILE_MESH] if stated and not own_mesh else [])],
         "skipped": why if refinements else [],
     }
+
+
+def _lacks_contact(summary: Mapping) -> bool:
+    """Whether the rule for the end of an impact has cut it: the results lack a contact that may
+    follow. The results at an end_time are those at this time, with or without such a contact.
+    """
+    return bool(summary.get("later_contact_possible")) and summary["ended"] != "end_time"
 
 
 def _excludes(summary: Mapping, own_mesh: bool) -> list[str]:
@@ -325,7 +334,7 @@ def error_estimates(
         estimates = strikes_again(estimates, over_time, before)
     # Both runs of a pair may have the same drift, so their difference does not show it.
     estimates["energy"] = max(estimates["energy"], summary.get("energy_drift", 0.0))
-    return estimates | highest(fine, coarse) | driven(fine, coarse)
+    return estimates | highest(fine, coarse) | driven(fine, coarse) | rest_errors(fine, coarse)
 
 
 def _ended(solve: Solve, values: dict[str, Value], where: Path) -> Failure | None:

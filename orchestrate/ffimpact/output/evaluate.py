@@ -55,11 +55,16 @@ def _summary(evidence: warnings.Evidence) -> dict[str, Any]:
     sentences = warnings.sentences(evidence) if ok else {"warnings": [], "notes": []}
     numbers = {"thresholded_contact_time": lasted} | contacts.of_run(list(evidence.intervals))
     numbers["peak_uncertainty"] = warnings.peak_uncertainty(evidence)
+    numbers["rest_time"] = (
+        evidence.facts["rest_since"] if evidence.record["ended"] == "rest" else None
+    )
     summary: dict[str, Any] = {}
     for name, value in evidence.record.items():
         summary |= sentences if name == "diagnostics" else _at_both_ends(evidence, name, value)
         if name == "contact_time":
             summary |= numbers
+        if name == "ended":
+            summary["later_contact_possible"] = evidence.later_contact_possible
     return summary
 
 

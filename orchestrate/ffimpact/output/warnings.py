@@ -115,6 +115,14 @@ class Evidence:
         )
 
     @property
+    def later_contact_possible(self) -> bool:
+        """Whether the run ended before a contact that may belong to the impact, or that vibration
+        alone may bring."""
+        again = self.facts["contact_again_at"]
+        within = again <= self.facts["impact_until"]
+        return bool(again >= 0 and (within or self.facts["vibrates_again"]))
+
+    @property
     def slowest_wave(self) -> float:
         """The smallest bar wave speed sqrt(E/rho) of the bodies [m/s]."""
         return min(_wave(body) for body in self.bodies)
@@ -671,11 +679,32 @@ def _ending(e: Evidence) -> Iterator[Sentence]:
             f"{rounded(facts['rolling'])} J{facts['per_metre']}, each second. The run ended there: "
             "give an end_time > 0 to follow the motion"
         )
-    if facts["contact_again_at"] >= 0:
-        who = e.pair(facts["pairs"][facts["pair_ahead"]]) if facts["pair_ahead"] >= 0 else "bodies"
+
+
+def _next_contact(e: Evidence) -> Iterator[Sentence]:
+    """A contact that may follow, which the run has not computed."""
+    facts, again = e.facts, e.facts["contact_again_at"]
+    if again < 0:
+        return
+    who = e.pair(facts["pairs"][facts["pair_ahead"]]) if facts["pair_ahead"] >= 0 else "bodies"
+    within, cut = again <= facts["impact_until"], e.record["ended"] == "end_time"
+    if cut:
+        why = "the end_time cuts the impact"
+    elif within:
+        why = "gravity bends their flight, which ends the run"
+    else:
+        why = "they vibrate near each other"
+    if e.later_contact_possible:
+        yield warn(
+            f"not over: {who} may strike again, at t = {again:g} s or later, as {why}: contacts "
+            f"until t = {facts['impact_until']:g} s belong to the impact. Impulse, rebound and "
+            f"times lack that contact{'' if cut else ', and have no error estimate'}: take a "
+            "larger end_time"
+        )
+    else:
         yield note(
             f"touches again: {who} {'come' if facts['surely_again'] else 'may come'} into contact "
-            f"again, at t = {facts['contact_again_at']:g} s or later: "
+            f"again, at t = {again:g} s or later: "
             "the run ended after the first impact: take an end_time > 0 to follow the next one"
         )
 
@@ -788,6 +817,7 @@ RULES = (
     _pairs,
     _corners,
     _ending,
+    _next_contact,
     _discretisation,
     _friction,
 )
