@@ -80,7 +80,8 @@ def errors(record: Record) -> dict[str, float]:
             size = summary.get(f"reach{name[len(kind) :]}") or reach
             if size:
                 estimates[name] = share["rebound_spin"] * answers.speed / size
-    if any(name in names for name in PROPAGATED):
+    path = record.folder / "contacts.csv"
+    if any(name in names for name in PROPAGATED) and path.exists():
         estimates |= _of_impact(record, answers, share)
     if "first_restitutions" in share:  # of each of the list
         names, estimates["first_restitutions"] = (
@@ -124,7 +125,9 @@ def _of_impact(record: Record, answers: Answers, share: Mapping[str, float]) -> 
     there is no estimate, so only impulse_ratio has one. angle_in follows from the start of the
     scene.
     """
-    rows = read_table(record.folder / "contacts.csv", COLUMNS)
+    rows = read_table(record.folder / "contacts.csv")
+    if not set(COLUMNS) <= set(rows.dtype.names or ()):  # written by an earlier version
+        return {}
     bodies = [int(rows.body[0]), *([int(rows.partner[0])] if rows.partner[0] > 0 else [])]
     several = any(name.startswith("mass_") for name in answers.summary)
     suffix = [f"_{number}" if several else "" for number in bodies]
