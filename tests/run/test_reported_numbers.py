@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from ffimpact.output import vtu
+from ffimpact.output.results import read_table
 from verification.measure import bodies
 
 SOFT = {"law": "neohookean", "young": 7e6, "nu": 0.3, "density": 1000, "accuracy": 0.1}
@@ -97,3 +98,41 @@ def test_penetration_is_the_depth_below_the_surface(tmp_path, case):
         assert reported[np.argmin(abs(t - time))] == pytest.approx(expected, rel=0.03, abs=2e-7)
         found += expected > 2e-6
     assert found > 3 and run.summary["max_penetration"] == pytest.approx(largest, rel=0.1)
+
+
+# ---- a body in contact with itself
+
+GAP, PUSH = 3e-4, 600.0   # half the width of the slot [m]; pressure that closes it [Pa]
+FORK = [[-0.01, -0.0063], [0.06, -0.0063], [0.06, -GAP], [0, -GAP], [0, GAP], [0.06, GAP], [0.06, 0.0063], [-0.01, 0.0063]]
+PRONG = [[-0.01, 0], [0, 0], [0, GAP], [0.06, GAP], [0.06, 0.0063], [-0.01, 0.0063]]
+
+
+def fork(folder, vertices: list, sides: list, extra: dict):
+    """A fork clamped at its left end whose prongs are pressed together; of half of it the plane of
+    symmetry is a support and an obstacle."""
+    x, y = centroid(vertices)
+    holds = [{"where": "left"}] + ([{"where": {"kind": "box", "low": [-0.011, -1e-4], "high": [1e-4, 1e-4]}, "fix": "y"}] if len(sides) == 1 else [])
+    body = {"shape": "polygon", "vertices": vertices, "position": [x, y], "mesh_size": 0.003, "contact_mesh_size": 0.003, "support": holds,
+            "load": [{"where": side, "pressure": PUSH} for side in sides]}
+    return bodies(folder, SOFT | {"young": 1e6, "accuracy": 0.05, "end_time": 6e-3, "body": [body]} | extra)
+
+
+def centroid(vertices: list) -> tuple[float, float]:
+    (x, y), (u, v) = np.transpose(vertices), np.roll(vertices, -1, axis=0).T
+    cross = x * v - u * y
+    return ((x + u) @ cross / cross.sum() / 3).item(), ((y + v) @ cross / cross.sum() / 3).item()
+
+
+def test_self_contact_is_reported_like_that_with_an_obstacle(tmp_path):
+    """A symmetric fork that closes on itself has the forces, impulse, pressure and instants of one
+    of its halves on a rigid plane; the penalty is that of two springs in line."""
+    half = fork(tmp_path / "half", PRONG, ["top"], {"obstacle": [{"kind": "polyline", "vertices": [[0.005, -1], [0.005, 0], [1, 0]]}], "contact": {"penalty": 2e9}})
+    whole = fork(tmp_path / "whole", FORK, ["top", "bottom"], {"contact": {"penalty": 1e9, "self_contact": "on"}})
+    first, second = read_table(tmp_path / "half/run/contacts.csv"), read_table(tmp_path / "whole/run/contacts.csv")
+    assert set(second.body) == {1} and set(second.partner) == {1} and np.isnan(second.approach).all() and np.isnan(second.restitution).all()
+    for name in ("contact_start", "contact_time", "impulse", "peak_force", "thresholded_contact_time"):
+        assert whole.summary[name] == pytest.approx(half.summary[name], rel=0.05), name
+    assert whole.summary["max_pressure"] == pytest.approx(half.summary["max_pressure"], rel=0.1)
+    assert second.impulse.sum() == pytest.approx(whole.summary["impulse"], rel=1e-9)
+    assert first.impulse.sum() == pytest.approx(second.impulse.sum(), rel=0.02)
+    assert not any(sentence.startswith("no contact") for sentence in whole.summary["warnings"])

@@ -15,7 +15,9 @@ a meaning are None:
   approach is below a quarter of the velocity jump, so most of the impulse is that of weight,
   vibration or other contact pairs, or the pair does not separate;
 - restitution_tangential and angles if slip_before or the speed of the centres is below a twentieth
-  of the velocity jump, and so has no direction.
+  of the velocity jump, and so has no direction;
+- all velocities, normals and what follows from them if a body is in contact with itself. Its force
+  is the sum of the sizes of the normal forces, as the forces of its two sides balance each other.
 """
 
 import math
@@ -43,6 +45,7 @@ __all__ = [
     "of_run",
     "ratio",
     "thresholds",
+    "with_self_contact",
     "write_contacts",
 ]
 
@@ -58,7 +61,7 @@ SAME = "likewise"
 # unit and meaning of the columns of contacts.csv; an empty meaning is that of the summary
 CONTACT_COLUMNS = {
     "body": ("", "number of the body, from 1"),
-    "partner": ("", "k: body k; -k: obstacle k"),
+    "partner": ("", "k: body k, also the body itself; -k: obstacle k"),
     "start": ("s", "first point in contact"),
     "end": ("s", "last point out of contact"),
     "over": ("", "0: still in contact at the end of the run"),
@@ -104,6 +107,11 @@ CONTACT_COLUMNS = {
         "energy that viscosity and relaxation took of all bodies from start to end, whole steps",
     ),
 }
+# columns without a meaning where a body is in contact with itself
+OF_TWO = (
+    *("normal_x", "normal_y", "normal_z"),
+    *("approach", "separation", "slip_before", "slip_after"),
+)
 # unit and meaning of the numbers of summary.json that are evaluated here. restitution,
 # restitution_tangential and angle_out are None unless the run is one impact that is over, of one
 # contact pair; impulse_ratio and angle_in need one pair and one normal. bounces counts all pairs,
@@ -183,6 +191,7 @@ class Interval:
         friction: bool,
     ):
         self.pair, self.rows = pair, rows
+        self.own = pair["body"] == pair["counter_body"]  # contact of a body with itself
         self.start, self.end, self.over = head[1], head[2], bool(head[3])
         self.energies, self.viscous_work = head[4:7], head[7]
         self.radii, self.arms, self.levers = head[8:10], head[10:12], head[12:14]
@@ -314,7 +323,8 @@ class Interval:
             *self.energies,
             self.viscous_work,
         ]
-        return dict(zip(CONTACT_COLUMNS, values, strict=True))
+        row = dict(zip(CONTACT_COLUMNS, values, strict=True))
+        return row | (dict.fromkeys(OF_TWO) if self.own else {})
 
 
 def intervals_of(folder: Path, diagnostics: Mapping[str, Any]) -> list[Interval]:
@@ -356,6 +366,27 @@ def write_contacts(path: Path, intervals: list[Interval], damped: bool) -> None:
     path.write_text("\n".join(lines) + "\n")
 
 
+def with_self_contact(record: dict[str, Any], intervals: list[Interval]) -> dict[str, Any]:
+    """The record of a run. If its only contacts are of bodies with themselves, the contact numbers
+    are those of these; otherwise they are those with other bodies and obstacles, as recorded.
+    """
+    own = sorted((i.start, i.end, i.over) for i in intervals if i.own)
+    if record["contact_intervals"] or not own:
+        return record
+    joined = 1
+    until = own[0][1]
+    for start, end, _ in own[1:]:
+        joined += int(start > until)
+        until = max(until, end)
+    facts = {"in_contact": int(not all(over for *_, over in own)), "contact_end": until}
+    return record | {
+        "contact_time": until - own[0][0],
+        "contact_start": own[0][0],
+        "contact_intervals": joined,
+        "diagnostics": record["diagnostics"] | facts,
+    }
+
+
 def at_both_ends(name: str) -> list[str]:
     """The names of a number of the record in the summary: of a velocity or spin `rebound_...` at
     the end of contact also `final_...` at the end of the run."""
@@ -363,7 +394,10 @@ def at_both_ends(name: str) -> list[str]:
 
 
 def of_run(intervals: list[Interval]) -> dict[str, Any]:
-    """The numbers RUN_NUMBERS of summary.json but thresholded_contact_time and rest_time."""
+    """The numbers RUN_NUMBERS of summary.json but thresholded_contact_time and rest_time. Contacts
+    of bodies with themselves do not count.
+    """
+    intervals = [interval for interval in intervals if not interval.own]
     pairs = {id(interval.pair) for interval in intervals}
     jump, size = (
         sum(interval.jump for interval in intervals),

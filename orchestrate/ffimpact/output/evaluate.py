@@ -34,6 +34,7 @@ def evaluate(folder: Path) -> None:
     write_modes(folder)
     intervals = contacts.intervals_of(folder, facts)
     contacts.write_contacts(folder / "contacts.csv", intervals, bool(facts["damped"]))
+    record = contacts.with_self_contact(record, intervals)
     evidence = warnings.Evidence(record, read_history(folder), intervals)
     summary = _summary(evidence)
     if failed:
