@@ -134,6 +134,12 @@ def _parser() -> argparse.ArgumentParser:
         help="run again, from the start, even if the result is there",
     )
     command.add_argument(
+        "--no-estimate",
+        action="store_true",
+        help="make no second run, which estimates the errors",
+    )
+    command.add_argument("--no-figures", action="store_true", help="draw no figures")
+    command.add_argument(
         "--quiet", action="store_true", help="print warnings and errors only, on stderr"
     )
     command.add_argument(
@@ -204,8 +210,10 @@ def _run(options: argparse.Namespace) -> None:
             mesh_file=options.mesh,
             force=options.force,
             progress=False if options.quiet else None,
+            estimate=not options.no_estimate,
         )
-        report.draw(result)
+        if not options.no_figures:
+            report.draw(result)
         print(report.report(result, options.verbose))
     for sentence in result.summary["warnings"] if options.quiet else ():
         print(f"ffimpact: warning: {sentence}", file=sys.stderr)

@@ -19,6 +19,7 @@ from .failure import BadInput, Busy, Failure, brief, unknown
 from .freefem import freefem
 from .model import Scene
 from .places import RESULTS
+from .report import report
 from .result import Result
 from .running import run as running
 from .sweeps.study import side_by_side
@@ -36,6 +37,7 @@ def run(
     out: str | Path | None = None,
     force: bool = False,
     estimate: bool = True,
+    figures: bool = True,
     progress: bool | None = None,
     **more: Any,
 ) -> Result:
@@ -45,8 +47,9 @@ def run(
     Entries of the scene are set by keywords (accuracy=0.005) or by dotted names
     (entries={"body.1.young": 2e6}). `out` is the result folder. Its default is results/NAME for a
     file or a built-in scene; a Scene object gets a folder of its own. A finished run in the folder
-    is reused unless `force` is set. With `estimate` a second run estimates the errors. If the scene
-    leaves `fields` open, the run keeps 60 states. Raises the exceptions of ffimpact: BadInput,
+    is reused unless `force` is set. With `estimate` a second run estimates the errors, and with
+    `figures` the figures are drawn. If the scene leaves `fields` open, the run keeps 60 states. The
+    folder is that of the command `ffimpact run`. Raises the exceptions of ffimpact: BadInput,
     StepFailed and so on.
     """
     overrides = _overrides(entries, more)
@@ -54,6 +57,8 @@ def run(
     record = running.run(
         loaded, overrides, out or default_folder, force=force, progress=progress, estimate=estimate
     )
+    if figures:
+        report.draw(record)
     return Result(record)
 
 

@@ -21,7 +21,7 @@ from . import scene as files
 from .failure import BadInput
 from .input import models
 from .input.dimension import AXISYMMETRIC, DIMENSIONS, PLANE_STRAIN, SOLID, Dimension
-from .input.models import Body, Contact, Obstacle, Plane
+from .input.models import Body, Contact, Obstacle
 from .input.parameter import plain
 from .input.toml_text import to_toml
 from .scenes import scene as reading
@@ -90,14 +90,9 @@ class Scene(models.Top):
         tables = super().table()
         for name in ("bodies", "obstacles", "contact", "folder"):
             tables.pop(name, None)
-        axes = self.kind.axes
-        floor = {"point": [0.0] * axes, "normal": [0.0, 1.0, 0.0][:axes]}
         tables["dimension"] = self.kind.name
         tables["body"] = [body.table() for body in self.bodies]
-        tables["obstacle"] = [
-            (floor if isinstance(obstacle, Plane) else {}) | obstacle.table()
-            for obstacle in self.obstacles
-        ]
+        tables["obstacle"] = [obstacle.table() for obstacle in self.obstacles]
         tables["contact"] = self.contact.table()
         return {name: value for name, value in tables.items() if value not in ({}, [])}
 

@@ -12,6 +12,7 @@ import pytest
 
 import ffimpact as ff
 from ffimpact import scene as files, schema
+from ffimpact.__main__ import main
 from ffimpact.output.results import read_history
 from tests.support.api import RUBBER, drop
 
@@ -268,3 +269,41 @@ def test_built_in_scenes_are_valid_by_the_schema(validator, name):
 )
 def test_the_schema_refuses_what_the_program_refuses(validator, changed):
     assert validator.is_valid(drop().table()) and not validator.is_valid(drop().table() | changed)
+
+
+def test_python_and_the_command_leave_the_same_folder(tmp_path):
+    """The same files, with figures by default and without them on request."""
+    path = tmp_path / "drop.toml"
+    drop(accuracy=0.4, fields=2).save(path)
+
+    def files(name: str) -> set[str]:
+        folder = tmp_path / name
+        return {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
+
+    ff.run(path, estimate=False, out=tmp_path / "python")
+    ff.run(path, estimate=False, figures=False, out=tmp_path / "plain")
+    words = ["run", str(path), "--no-estimate", "--out"]
+    assert main([*words, str(tmp_path / "command")]) == 0
+    assert main([*words, str(tmp_path / "without"), "--no-figures"]) == 0
+    assert files("python") == files("command") >= {"figures/energies.png", "summary.json"}
+    assert (
+        files("plain")
+        == files("without")
+        == {name for name in files("python") if not name.startswith("figures/")}
+    )
+
+
+def test_without_estimate_there_is_one_run(tmp_path, capsys):
+    """The option --no-estimate makes no second run. Report and summary say that the error is not
+    estimated."""
+    path = tmp_path / "drop.toml"
+    drop(accuracy=0.4, fields=0).save(path)
+    assert (
+        main(["run", str(path), "--no-estimate", "--no-figures", "--out", str(tmp_path / "a")]) == 0
+    )
+    result = ff.load(tmp_path / "a")
+    assert (
+        "not estimated" in capsys.readouterr().out and "error estimate" in result.summary["skipped"]
+    )
+    assert result["estimated_error"] is None and not result.errors
+    assert "refinements" not in result.summary  # an entry of the second run

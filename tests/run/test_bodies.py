@@ -295,7 +295,6 @@ POLYGONS = [
 NO_OBSTACLES = [
     ({"kind": "cone"}, "obstacle.1.kind: 'cone' is not known (accepted: plane|circle|bowl|polyline|implicit)"),
     ({}, "obstacle.1.kind: is missing (accepted: plane|"),
-    ({"kind": "plane", "point": [0, 0]}, "obstacle.1.normal: is missing (accepted: [x, y]"),
     ({"kind": "bowl", "centre": [0, 0]}, "obstacle.1.radius: is missing"),
     ({"kind": "bowl", "center": [0, 0]}, "obstacle.1.center: no such entry, set to '[0, 0]'; did you mean centre? (accepted: kind, centre, radius, name, velocity, motion, rotation, pivot, axis"),
     ({"kind": "polyline", "vertices": [[0, 0]]}, "obstacle.1.vertices: '[[0, 0]]' is too little (accepted: 2 points [x, y] or more)"),

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+import ffimpact as ff
 from ffimpact import __main__ as program, scene
 from ffimpact.report import report
 from ffimpact.running import run
@@ -82,6 +83,38 @@ def test_what_is_no_result_is_one_line(whole, tmp_path, capsys):
         assert "no file" in refused(capsys, name, "figures", str(tmp_path / "run"))
         shutil.rmtree(tmp_path / "run")
         shutil.copytree(whole, tmp_path / "run")
+
+
+WRONG = {"cut": None, "empty": "", "no JSON": "ok", "a list": "[]", "null": "null"}
+ENTRIES = {"a text": {"impulse": "large"}, "a table": {"contact_time": {}}, "no list": {"skipped": 3}, "no texts": {"notes": [1]}, "other number": {"impulse": 1.0},
+           "estimates": {"estimated_error": "small"}, "files": {"provenance": {"files": [1]}}, "true": {"steps": True}, "missing": {"peak_force": ...}, "all": {"provenance": ...}}
+
+
+@pytest.mark.few(3)
+@pytest.mark.parametrize("what", [*WRONG, *ENTRIES])
+def test_a_damaged_summary_is_one_line_on_all_routes(whole, tmp_path, capsys, what):
+    """Truncated, no JSON, entries of a wrong kind, changed or missing: run, figures, view, movie,
+    compare and sweep refuse the result in one line, as load() and compare() of Python do. Without
+    provenance a changed number is not seen, but its kind is."""
+    folder = tmp_path / "disc-oblique"
+    shutil.copytree(whole, folder)
+    content = (folder / "summary.json").read_text()
+    if what in WRONG:
+        text = content[:len(content) // 2] if WRONG[what] is None else WRONG[what]
+    else:
+        changed = {name: value for name, value in (json.loads(content) | ENTRIES[what]).items() if value is not ...}
+        text = json.dumps(changed)
+    (folder / "summary.json").write_text(text)
+    if what == "all":
+        with pytest.raises(ff.Unreadable, match="provenance"):
+            repr(ff.load(folder))
+        return
+    for words in (("figures", folder), ("view", folder), ("run", "disc-oblique", *SET, "--out", folder), ("movie", "disc-oblique", *SET, "--out", folder)):
+        refused(capsys, "summary.json", *map(str, words))
+    assert program.main(["compare", "disc-oblique", "disc-normal", "--set", "accuracy=0.4", "fields=3", "modes=4", "--out", str(tmp_path)]) == 14
+    for act in (ff.load, ff.Result, lambda path: ff.compare(path, whole)):
+        with pytest.raises(ff.Unreadable, match="summary.json"):
+            act(folder)
 
 
 @pytest.mark.robustness

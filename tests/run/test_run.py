@@ -22,7 +22,7 @@ def test_finished_run_is_complete(fake, tmp_path):
     result = go(tmp_path / "out", {"fields": 2})
     assert {"scene.toml", "history.csv", "summary.json", "log.txt", "mesh.msh", "fields.pvd", "fields"} == {
         p.name for p in result.folder.iterdir()}
-    assert set(result.summary["provenance"]) == {"script", "version", "asked", "git", "code", "freefem", "gmsh", "mesh", "estimate", "files"}
+    assert set(result.summary["provenance"]) == {"script", "version", "asked", "git", "code", "freefem", "gmsh", "mesh", "estimate", "files", "summary"}
     assert result.summary["status"] == "ok" and not result.reused
     assert result.history["t"].shape == (200,) and result.scene["speed"] == 8.0
     assert not list(tmp_path.glob("out.*"))

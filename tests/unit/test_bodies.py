@@ -239,3 +239,13 @@ def test_what_symmetry_makes_zero_has_no_error_estimate():
     summary = {"rebound_vx_1": 1e-4, "final_vx_1": 1e-4, "rebound_vy_1": 2.0, "rebound_vy_2": 0, "rebound_spin_1": 1e-3, "rebound_spin_x_1": 1e-3, "impulse": 0}
     assert zero_by_symmetry(summary) == {"rebound_vy_2"}
     assert zero_by_symmetry(summary | {"symmetric_along": ["x"]}) == {"rebound_vx_1", "final_vx_1", "rebound_vy_2", "rebound_spin_1"}
+
+
+@pytest.mark.parametrize("kind, axes", [("plane-strain", 2), ("axisymmetric", 2), ("3d", 3)])
+def test_a_plane_is_the_floor_by_default(kind, axes):
+    """A [[obstacle]] of kind plane without point and normal is y < 0, as ff.Plane() is; one of both
+    entries may be set."""
+    ball = {"name": "ball", "shape": "disc" if axes == 2 and kind == "plane-strain" else "ball", "radius": 0.5, "position": [0, 1.5, 0][:axes]}
+    tables = {key: value for key, value in SCENE.items() if key != "body"} | {"dimension": kind, "body": [ball]}
+    floor, higher = (read(tables | {"obstacle": [{"kind": "plane"} | entries]}).obstacles[0] for entries in ({}, {"point": [0, 0.25, 0][:axes]}))
+    assert floor.numbers == (*[0.0] * axes, *[0.0, 1.0, 0.0][:axes]) and higher.numbers[1] == 0.25 and higher.numbers[axes + 1] == 1

@@ -750,11 +750,11 @@ class Obstacle(Entries):
 
 
 class Plane(Obstacle):
-    """The half-space below a plane; in Python the floor y = 0 by default."""
+    """The half-space below a plane, by default the floor y = 0."""
 
     kind = "plane"
-    point: Annotated[list[float] | None, Vector("on it [m]")] = None
-    normal: Annotated[list[float] | None, Vector("out of it")] = None
+    point: Annotated[list[float] | None, Vector("on it [m]; default 0")] = None
+    normal: Annotated[list[float] | None, Vector("out of it; default along y")] = None
 
 
 class Circle(Obstacle):

@@ -9,7 +9,7 @@ import json
 import math
 import re
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -31,6 +31,7 @@ __all__ = [
     "body_names",
     "check_files",
     "content",
+    "digest",
     "files_of",
     "held_bodies",
     "mechanical_energy",
@@ -106,7 +107,7 @@ class Contents(dict):
         self.path = path
 
     def __missing__(self, name: str):
-        raise Unreadable(f"{self.path}: {unknown(name, self, ', ')}")
+        raise Unreadable(brief(f"{self.path}: {unknown(name, self, ', ')}"))
 
     def __reduce__(self):
         return Contents, (dict(self), self.path)
@@ -332,16 +333,77 @@ def held_bodies(used: Mapping) -> set[str]:
 
 
 def read_summary(folder: Path) -> dict:
-    """Returns summary.json of a finished run."""
+    """Returns summary.json of a finished run. Raises Unreadable if it is damaged: if an entry has
+    another kind than the program writes, or if it is not as the run has written it.
+    """
     path = folder / "summary.json"
     with reading(path):
         summary = json.loads(path.read_text("utf-8"))
         if summary["status"] != "ok":
             raise ValueError(f"status is {summary['status']!r}")
-        for name, kind in (("provenance", dict), ("warnings", list), ("notes", list)):
-            if not isinstance(summary.get(name, kind()), kind):
-                raise ValueError(f"{name} is no {kind.__name__}")
+        for name, value in summary.items():
+            kind, is_of_kind = KINDS_OF.get(name, NUMBER)
+            if not is_of_kind(value):
+                raise ValueError(f"{name} is no {kind}")
+        for name in NEEDED:
+            if name not in summary:
+                raise ValueError(f"it lacks {name}")
+        if summary.get("provenance", {}).get("summary", digest(summary)) != digest(summary):
+            raise ValueError("it is not as the run has written it")
         return Contents(summary, path)
+
+
+def digest(summary: Mapping) -> str:
+    """Returns the sha256 of all entries of a summary but its provenance."""
+    entries = {name: value for name, value in summary.items() if name != "provenance"}
+    return hashlib.sha256(json.dumps(entries, sort_keys=True).encode()).hexdigest()
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float | None) and not isinstance(value, bool)
+
+
+def _are(values: object, is_of_kind: Callable[[object], bool]) -> bool:
+    return isinstance(values, list) and all(map(is_of_kind, values))
+
+
+def _is_provenance(value: object) -> bool:
+    files = value.get("files", {}) if isinstance(value, dict) else None
+    return isinstance(files, dict) and isinstance(value.get("script", ""), str)
+
+
+# Kinds of the entries of a summary: words for a message, and whether a value is of this kind.
+# All entries that are not listed are numbers or null.
+Kind = tuple[str, Callable[[object], bool]]
+NUMBER: Kind = "number", _is_number
+TEXT: Kind = "text", lambda value: isinstance(value, str)
+TEXTS: Kind = "list of texts", lambda value: _are(value, TEXT[1])
+NUMBERS: Kind = "list of numbers", lambda value: _are(value, _is_number)
+TABLE: Kind = (
+    "table of numbers",
+    lambda value: (
+        value is None
+        or isinstance(value, dict)
+        and all(_is_number(number) or NUMBERS[1](number) for number in value.values())
+    ),
+)
+KINDS_OF: dict[str, Kind] = (
+    dict.fromkeys(("status", "message", "ended", "integrator", "volume"), TEXT)
+    | dict.fromkeys(
+        (
+            "warnings",
+            "notes",
+            "skipped",
+            "released",
+            "symmetric_along",
+            "estimated_error_excludes",
+        ),
+        TEXTS,
+    )
+    | dict.fromkeys(("estimated_error", "phase_seconds"), TABLE)
+    | {"first_restitutions": NUMBERS, "provenance": ("table", _is_provenance)}
+)
+NEEDED = ("warnings", "contact_time", "impulse", "steps")  # entries that every summary has
 
 
 def numbers(summary: Mapping) -> list[str]:

@@ -36,6 +36,7 @@ from ..output.folder import (
 from ..output.results import (
     Record,
     check_files,
+    digest,
     files_of,
     read_answers,
     read_json,
@@ -200,6 +201,7 @@ def _finish(stage: Path, scene: Scene, estimated: dict, provenance: dict) -> Non
         | estimated
         | {"provenance": provenance | {"files": files_of(stage)}}
     )
+    summary["provenance"]["summary"] = digest(summary)
     (stage / "summary.json").unlink()
     write_json(stage / "summary.json.part", summary)
     os.replace(stage / "summary.json.part", stage / "summary.json")

@@ -456,7 +456,9 @@ def used_tables(
         )
         bodies.append(used)
     obstacles = [
-        {"name": obstacle.name} | {key: value for key, value in table.items() if key not in OWN}
+        {"name": obstacle.name, "kind": obstacle.kind}
+        | obstacle.defaults(scene.dimension)
+        | {key: value for key, value in table.items() if key not in OWN}
         for table, obstacle in zip(scene.content.get("obstacle", []), scene.obstacles)
     ]
     contact = {key: values[key] for key in scene.contact}

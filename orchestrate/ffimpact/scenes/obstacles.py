@@ -18,7 +18,7 @@ from ..geometry import implicit, polyline, time_functions, tumbling
 from ..geometry.time_functions import TimeFunction, displacements, farthest
 from ..input import models
 from ..input.dimension import AXISYMMETRIC, SOLID, Dimension
-from ..input.rules import Vector, placeholder
+from ..input.rules import placeholder
 from ..mesh import solids, surface_file
 from ..mesh.revolution import mirrored
 
@@ -45,6 +45,11 @@ class Obstacle:
     def numbers_of(cls, table: Any, dimension: Dimension, folder: Path) -> tuple[float, ...]:
         """Returns the numbers of a table [[obstacle]]; files are relative to `folder`."""
         raise NotImplementedError
+
+    @classmethod
+    def defaults(cls, dimension: Dimension) -> dict[str, list[float]]:
+        """Returns the entries that a table of this kind may leave out, with their defaults."""
+        return {}
 
     def gap(self, points: np.ndarray) -> np.ndarray:
         """Returns the signed distances (n,) [m] of points (n, axes) from the obstacle at the start,
@@ -124,11 +129,13 @@ class Plane(Obstacle):
     kind = "plane"
 
     @classmethod
+    def defaults(cls, dimension: Dimension) -> dict[str, list[float]]:
+        return {"point": [0.0] * dimension.axes, "normal": [0.0, 1.0, 0.0][: dimension.axes]}
+
+    @classmethod
     def numbers_of(cls, table: models.Plane, dimension: Dimension, folder: Path) -> tuple[float, ...]:
-        for key in ("point", "normal"):
-            if key not in table:
-                raise BadInput(f"{table.at(key)}: is missing (accepted: {Vector().accepted_in(dimension)})")
-        point, normal = np.array(table.point), np.array(table.normal)
+        used = cls.defaults(dimension) | table.table()
+        point, normal = np.array(used["point"]), np.array(used["normal"])
         if not normal.any():
             raise BadInput(f"{table.at('normal')}: '{table.value_text('normal')}' has no direction "
                            f"(accepted: {placeholder(dimension.axes)} other than 0)")
