@@ -73,7 +73,7 @@ def test_numbers_have_errors_and_units(result):
 
 def test_units_of_a_ball_are_those_of_the_whole(tmp_path):
     """Only results in plane strain are per metre of thickness. Speeds keep their unit."""
-    ball = ff.run("ball-axisymmetric", accuracy=0.2, estimate=False, out=tmp_path / "ball")
+    ball = ff.run("ball-axisymmetric", accuracy=0.2, estimate=False, figures=False, out=tmp_path / "ball")
     assert [ball.units[name] for name in ("impulse", "peak_force", "energy_initial", "mass")] == [
         "N s",
         "N",
@@ -158,16 +158,16 @@ def test_results_are_compared_one_by_one_or_as_a_list(result):
 
 def test_a_result_is_of_one_run(tmp_path):
     """If another run has replaced the run in the folder, later reading raises an error."""
-    first = ff.run(drop(), accuracy=0.2, estimate=False, out=tmp_path / "run")
-    ff.run(drop(), {"body.1.velocity.2": -4}, accuracy=0.2, estimate=False, out=tmp_path / "run")
+    first = ff.run(drop(), accuracy=0.2, estimate=False, figures=False, out=tmp_path / "run")
+    ff.run(drop(), {"body.1.velocity.2": -4}, accuracy=0.2, estimate=False, figures=False, out=tmp_path / "run")
     with pytest.raises(ff.Unreadable, match="another run"):
         _ = first.history
 
 
 def test_states_are_as_many_as_the_scene_says(tmp_path):
     """There are none if the scene requests none, and some if the entry is automatic."""
-    none = ff.run(drop(fields=0), accuracy=0.3, estimate=False, out=tmp_path / "none")
-    some = ff.run(drop(), accuracy=0.3, estimate=False, out=tmp_path / "some")
+    none = ff.run(drop(fields=0), accuracy=0.3, estimate=False, figures=False, out=tmp_path / "none")
+    some = ff.run(drop(), accuracy=0.3, estimate=False, figures=False, out=tmp_path / "some")
     assert len(none.fields) == 0 < len(some.fields) <= 41
 
 
@@ -179,7 +179,7 @@ def test_friction_is_drawn_and_bodies_have_their_names(tmp_path):
         ff.Disc(name="b", position=(0.031, -0.01), velocity=(-2, 0), **disc),
     ]
     scene = ff.Scene(bodies=pair, contact=ff.Contact(friction_static=0.5), accuracy=0.2)
-    record = ff.run(scene, estimate=False, out=tmp_path / "run")
+    record = ff.run(scene, estimate=False, figures=False, out=tmp_path / "run")
     assert [line.get_label() for line in record.plot.force().lines] == ["normal", "friction"]
     labels = {line.get_label() for line in record.plot.velocities().lines}
     assert labels == {"vx a", "vx b", "vy a", "vy b"}

@@ -86,7 +86,7 @@ def test_a_moving_obstacle_moves(tmp_path, browser):
     ball = ff.Ball(**BALL, position=(0, 0.051, 0))
     plane = ff.Plane(normal=(0, 1, 0), point=(0, -0.02, 0), motion=(0, "4*t", 0))
     scene = ff.Scene(bodies=[ball], obstacles=[plane], end_time=0.01, fields=10)
-    result = ff.run(scene, accuracy=0.3, estimate=False, out=tmp_path / "out")
+    result = ff.run(scene, accuracy=0.3, estimate=False, figures=False, out=tmp_path / "out")
     browser.get(result.view(tmp_path / "impact.html").as_uri())
     wait(browser, "return Number(document.body.dataset.state) > 0")
     rows = []
@@ -146,7 +146,7 @@ def test_the_command_writes_a_page(result, tmp_path, capsys):
 
 def test_energy_density_is_that_of_the_history(tmp_path):
     """Its integral over the reference area is the elastic energy, to the error of its means."""
-    record = ff.run(drop(), accuracy=0.05, estimate=False, out=tmp_path / "run")
+    record = ff.run(drop(), accuracy=0.05, estimate=False, figures=False, out=tmp_path / "run")
     history = record.history
     times = np.array(record.fields.times)
     k = int(np.argmin(abs(times - history.t[history.elastic.idxmax()])))

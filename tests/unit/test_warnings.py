@@ -1,8 +1,11 @@
 """Warnings and notes: each appears if its condition holds, with its number, and not otherwise;
 tables and reports show them."""
 
+from pathlib import Path
+
 import pages
 from ffimpact.output import notes
+from ffimpact.output.results import Record
 from ffimpact.report import report
 from ffimpact.sweeps import study
 
@@ -53,3 +56,24 @@ def test_several_numbers_in_one_row():
     """Each has its own error estimate, the last one none."""
     row = report.Quantity("first_restitutions", "first restitutions", "1")
     assert row.text([0.7, 0.65, 0.6], [0.01, 0.02]) == "0.7 ± 0.01, 0.65 ± 0.02, 0.6 1"
+
+
+def printed(scene: dict, **numbers: object) -> list[str]:
+    """The keys of the rows of a run with these numbers."""
+    record = Record(Path("out"), {"provenance": {"script": "bodies"}} | numbers, reused=False)
+    record.__dict__["scene"] = scene  # else read from the folder
+    return [row.key for row in report.rows_of(record)]
+
+
+def test_a_run_to_rest_prints_bounces_and_not_a_rebound():
+    """What a run has at rest, its velocity and the time since the first contact, says nothing."""
+    numbers = dict(contact_time=13.0, bounces=70, first_restitutions=[0.9, 0.91, 0.92], rest_time=12.1, peak_force=300.0, rebound_vy=4e-5, contact_intervals=91)
+    assert printed({"until": "rest"}, **numbers) == ["bounces", "first_restitutions", "rest_time", "peak_force"]
+    assert printed({"until": "impact"}, **numbers) == ["contact_time", "peak_force", "rebound_vy", "contact_intervals"]
+
+
+def test_what_is_zero_or_unknown_has_no_row():
+    """Zero by symmetry, no friction, no velocity at end_time."""
+    numbers = dict(rebound_vx=1e-5, rebound_vy=2.0, rebound_spin=0, final_vy=None, friction_work=0, symmetric_along=["x"])
+    assert printed({}, **numbers) == ["rebound_vy"]
+    assert printed({}, **numbers | {"symmetric_along": [], "final_vy": 1.0}) == ["rebound_vx", "rebound_vy", "final_vy"]

@@ -373,7 +373,7 @@ def _is_provenance(value: object) -> bool:
 
 
 # Kinds of the entries of a summary: words for a message, and whether a value is of this kind.
-# All entries that are not listed are numbers or null.
+# All entries that KINDS_OF does not list are numbers or null.
 Kind = tuple[str, Callable[[object], bool]]
 NUMBER: Kind = "number", _is_number
 TEXT: Kind = "text", lambda value: isinstance(value, str)
@@ -401,7 +401,11 @@ KINDS_OF: dict[str, Kind] = (
         TEXTS,
     )
     | dict.fromkeys(("estimated_error", "phase_seconds"), TABLE)
-    | {"first_restitutions": NUMBERS, "provenance": ("table", _is_provenance)}
+    | {
+        "later_contact_possible": ("truth value", lambda value: isinstance(value, bool)),
+        "first_restitutions": NUMBERS,
+        "provenance": ("table", _is_provenance),
+    }
 )
 NEEDED = ("warnings", "contact_time", "impulse", "steps")  # entries that every summary has
 
