@@ -15,8 +15,9 @@ __all__ = ["FILE", "flags", "variable", "written"]
 
 FILE = ROOT / "edp/core/input/parameters.idp"
 BEGIN, END = "// THE TABLE", "// END OF THE TABLE\n"
-# FreeFEM variables whose names differ from their flags. The scripts' own dt is that of a step.
-OTHERWISE = {"dt": "dtGiven"}
+# FreeFEM variables whose names differ from their flags. The scripts' own dt is that of a step, and
+# start is the name of arguments.
+OTHERWISE = {"dt": "dtGiven", "start": "startState"}
 TYPES = {"real": "real", "int": "int", "word": "string", "numbers": "string"}
 
 

@@ -864,6 +864,7 @@ class Contact(Entries):
     slip_velocity: Annotated[float | str | None, shared("slip_velocity")] = None
     regularization: Annotated[str | None, shared("regularization")] = None
     friction_transition: Annotated[str | None, shared("friction_transition")] = None
+    penalty_damping: Annotated[float | None, shared("penalty_damping")] = None
     pairing: Annotated[str | None, shared("pairing")] = None
     pairing_range: Annotated[float | str | None, shared("pairing_range")] = None
     self_contact: Annotated[
@@ -941,6 +942,7 @@ class Top(Entries):
     breakdown: Annotated[str | None, shared("breakdown")] = None
     chatter: Annotated[str | None, shared("chatter")] = None
     end_time: Annotated[float | None, shared("end_time")] = None
+    start: Annotated[str | None, shared("start")] = None
     until: Annotated[str | None, shared("until")] = None
     fields: Annotated[int | None, shared("fields")] = None
     modes: Annotated[int | None, shared("modes")] = None

@@ -172,6 +172,15 @@ ROWS = (
         "contact and the exponent",
     ),
     real("exponent", 1, 1, 4, "-", "contact exponent m of (10)"),
+    real(
+        "penalty_damping",
+        0,
+        0,
+        1e9,
+        "s",
+        "retardation time tau of the penalty: a closing contact takes t_N + tau dt_N/dt instead of "
+        "t_N of (10), never below 0; 0 = none. It takes energy (penalty_damping_work)",
+    ),
     word(
         "pairing",
         "closest-point",
@@ -327,6 +336,14 @@ ROWS = (
         "s",
         "end of the run; 0 = until the first impact is over, with the contacts that follow it at "
         "once",
+    ),
+    word(
+        "start",
+        "given",
+        ("given", "equilibrium"),
+        "the bodies at t = 0: as given, or at rest in equilibrium under body force, loads, gas and "
+        "contact, reached from the given shape and place by slow loading",
+        ("bodies", "bodies-axisymmetric", "bodies-3d"),
     ),
     word(
         "until",

@@ -48,6 +48,7 @@ RUN = (
     "breakdown",
     "chatter",
     "end_time",
+    "start",
     "until",
     "fields",
     "modes",
@@ -59,6 +60,9 @@ RUN = (
 FOLDING = 0.2
 WIDE = 100.0  # width [m] of a body from a file above which its units are doubtful
 TOUCHING = 1e-9  # overlap at the start that is round-off, over half the thickness of the body
+# Overlap, likewise, that may be the depth at rest under weight or loads. The solver knows the penalty
+# and judges it by its force (edp/core/run/start.idp).
+SUNK = 1e-3
 
 
 @dataclass(frozen=True)
@@ -368,6 +372,7 @@ def _of_tables(content: dict, folder: Path, name: str) -> Scene:
     )
     _apart(scene)
     _refuse_integrator(scene)
+    _refuse_start(scene)
     for k, body in enumerate(all_bodies, 1):
         _refuse_nu(f"body.{k}.nu" if len(all_bodies) > 1 else "nu", body.nu, body.law, values)
     mirror.copies(scene)
@@ -407,6 +412,29 @@ def _refuse_integrator(scene: Scene) -> None:
         words = (word for word in parameters.PARAMETERS["integrator"].words if word != integrator)
         raise BadInput(
             f"integrator: '{integrator}' has no rigid bodies (accepted with them: {'|'.join(words)})"
+        )
+
+
+def _refuse_start(scene: Scene) -> None:
+    """Raises BadInput if the scene starts in equilibrium and something moves at t = 0, or explicit
+    steps would soften the penalty afterwards.
+    """
+    if scene.values["start"] != "equilibrium":
+        return
+    for key, table in [
+        *((f"body.{k}", body) for k, body in enumerate(scene.content["body"], 1)),
+        *((f"obstacle.{k}", table) for k, table in enumerate(scene.content.get("obstacle", []), 1)),
+    ]:
+        for name in ("velocity", "spin"):
+            if np.any(np.atleast_1d(table.get(name, 0.0))):
+                raise BadInput(
+                    f"{key}.{name}: '{brief(table[name])}' beside start = 'equilibrium', where all is at "
+                    "rest (accepted: 0, or start = 'given')"
+                )
+    if scene.values["integrator"] == "central-difference":
+        raise BadInput(
+            "integrator: 'central-difference' softens the penalty of start = 'equilibrium' "
+            "(accepted: auto, or an implicit one)"
         )
 
 
@@ -553,6 +581,7 @@ def _apart(scene: Scene) -> None:
                 f"body.{j + 1}",
                 other.name,
                 gap_between(placed[i], placed[j]),
+                _sinks(scene),
                 _units(scene, i + 1, body) or _units(scene, j + 1, other),
             )
     for (i, body), (j, other) in itertools.product(
@@ -564,6 +593,7 @@ def _apart(scene: Scene) -> None:
             f"obstacle.{j}",
             other.name,
             gap_to_obstacle(body.placed, other),
+            _sinks(scene),
             _units(scene, i, body),
         )
 
@@ -578,10 +608,16 @@ def _units(scene: Scene, i: int, body: Body) -> str:
     )
 
 
+def _sinks(scene: Scene) -> float:
+    """Returns the overlap at the start that is not refused, over half the thickness of the body."""
+    presses = any(scene.values.get(name) for name in ("gravity", "body_force_x", "body_force_y"))
+    return SUNK if presses or any(body.loads for body in scene.bodies) else TOUCHING
+
+
 def _refuse_overlap(
-    path: str, body: Body, other_path: str, other: str, gap: float, hint: str = ""
+    path: str, body: Body, other_path: str, other: str, gap: float, sinks: float, hint: str = ""
 ) -> None:
-    if gap < -TOUCHING * body.outline.half_thickness:
+    if gap < -sinks * body.outline.half_thickness:
         raise BadInput(
             f"{path}.position: '{body.name}' overlaps '{other}' ({other_path}) by {-gap:.3g} m at the start "
             f"(accepted: apart or touching{'' if other_path.startswith('body') else ', on the side that its normal points to'})"

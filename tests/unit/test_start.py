@@ -1,0 +1,33 @@
+"""What `start = "equilibrium"` accepts, and overlaps at the start that may be the depth at rest."""
+
+from pathlib import Path
+
+import pytest
+
+from ffimpact.failure import BadInput
+from ffimpact.scenes.scene import read
+from tests.support.slope import HEIGHT, slope
+
+
+def of(tables: dict):
+    return read(tables, Path("."), "scene")
+
+
+@pytest.mark.parametrize("tables, words", [
+    (slope(speed=1, start="equilibrium"), r"body\.1\.velocity: .* beside start = 'equilibrium'.*\(accepted: 0"),
+    (slope(start="equilibrium", integrator="central-difference"), r"integrator: 'central-difference' .*\(accepted: auto"),
+    (slope(start="rest"), r"start: 'rest' is not known \(accepted: given\|equilibrium"),
+    (slope(start="equilibrium") | {"obstacle": [{"kind": "plane", "point": [0, -1], "normal": [0, 1], "velocity": [1, 0]}]},
+     r"obstacle\.1\.velocity: .* beside start = 'equilibrium'")])
+def test_equilibrium_is_at_rest(tables, words):
+    with pytest.raises(BadInput, match=words):
+        of(tables)
+
+
+def test_a_small_overlap_is_left_to_the_solver_where_something_presses():
+    """A thousandth of the half thickness; without weight and loads nothing but round-off."""
+    small = -0.9e-3 * HEIGHT / 2
+    of(slope(small))
+    for tables in (slope(1.2 * small), slope(small, gravity=0.0)):
+        with pytest.raises(BadInput, match=r"overlaps 'obstacle1'.*\(accepted: "):
+            of(tables)
