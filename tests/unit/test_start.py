@@ -15,7 +15,7 @@ def of(tables: dict):
 
 @pytest.mark.parametrize("tables, words", [
     (slope(speed=1, start="equilibrium"), r"body\.1\.velocity: .* beside start = 'equilibrium'.*\(accepted: 0"),
-    (slope(start="equilibrium", integrator="central-difference"), r"integrator: 'central-difference' .*\(accepted: auto"),
+    ({"integrator": "central-difference", "start": "equilibrium", "law": "svk", "young": 1e6, "nu": 0.3, "density": 1000, "body": [{"shape": "disc", "radius": 0.1, "position": [0, 0.2]}]}, r"integrator: 'central-difference' .*\(accepted: auto"),
     (slope(start="rest"), r"start: 'rest' is not known \(accepted: given\|equilibrium"),
     (slope(start="equilibrium") | {"obstacle": [{"kind": "plane", "point": [0, -1], "normal": [0, 1], "velocity": [1, 0]}]},
      r"obstacle\.1\.velocity: .* beside start = 'equilibrium'")])
