@@ -345,9 +345,6 @@ def read_summary(folder: Path) -> dict:
             kind, is_of_kind = KINDS_OF.get(name, NUMBER)
             if not is_of_kind(value):
                 raise ValueError(f"{name} is no {kind}")
-        for name in NEEDED:
-            if name not in summary:
-                raise ValueError(f"it lacks {name}")
         if summary.get("provenance", {}).get("summary", digest(summary)) != digest(summary):
             raise ValueError("it is not as the run has written it")
         return Contents(summary, path)
@@ -407,7 +404,6 @@ KINDS_OF: dict[str, Kind] = (
         "provenance": ("table", _is_provenance),
     }
 )
-NEEDED = ("warnings", "contact_time", "impulse", "steps")  # entries that every summary has
 
 
 def numbers(summary: Mapping) -> list[str]:
