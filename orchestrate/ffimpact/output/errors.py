@@ -141,15 +141,15 @@ def _of_impact(record: Record, answers: Answers, share: Mapping[str, float]) -> 
         estimates["impulse_ratio"] = across / impulse
     if len(free) < len(bodies):
         return estimates
-    levers = (rows.lever.max(), rows.partner_lever.max())
+    levers = (float(rows.lever.max()), float(rows.partner_lever.max()))
     turning = [
         lever / summary[f"reach{end}"] * rim for lever, end in zip(levers, suffix, strict=False)
     ]
     every = math.sqrt(len(bodies))
-    estimates["restitution"] = math.hypot(every * velocity, *turning) / rows.approach[0]
+    estimates["restitution"] = math.hypot(every * velocity, *turning) / float(rows.approach[0])
     if rows.slip_before[0] > 0:
         estimates["restitution_tangential"] = (
-            every * math.hypot(velocity, rim) / rows.slip_before[0]
+            every * math.hypot(velocity, rim) / float(rows.slip_before[0])
         )
     leaves = _centres_speed(answers, suffix, int(rows.partner[0]))
     if leaves:

@@ -117,10 +117,12 @@ class Evidence:
     @property
     def later_contact_possible(self) -> bool:
         """Whether the run ended before a contact that may belong to the impact, or that vibration
-        alone may bring."""
-        again = self.facts["contact_again_at"]
-        within = again <= self.facts["impact_until"]
-        return bool(again >= 0 and (within or self.facts["vibrates_again"]))
+        alone may bring within twice the time for which contacts belong to the impact."""
+        again, until = self.facts["contact_again_at"], self.facts["impact_until"]
+        near = (
+            self.facts["vibrates_again"] and again - until <= until - self.record["contact_start"]
+        )
+        return bool(again >= 0 and (again <= until or near))
 
     @property
     def slowest_wave(self) -> float:
