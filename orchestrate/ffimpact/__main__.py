@@ -193,16 +193,19 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _run(options: argparse.Namespace) -> None:
-    from . import scene
+    from . import progress, scene
     from .input import parameters
     from .report import report
     from .running import run
 
-    loaded, overrides = scene.load(options.scene), parameters.overrides(options.set)
-    overrides = run.states(loaded) | overrides
-    if options.checkpoint_every:
-        overrides["checkpoint_every"] = options.checkpoint_every
-    with contextlib.redirect_stdout(None if options.quiet else sys.stdout):
+    with (
+        progress.muted(options.quiet),
+        contextlib.redirect_stdout(None if options.quiet else sys.stdout),
+    ):
+        loaded, overrides = scene.load(options.scene), parameters.overrides(options.set)
+        overrides = run.states(loaded) | overrides
+        if options.checkpoint_every:
+            overrides["checkpoint_every"] = options.checkpoint_every
         result = run.run(
             loaded,
             overrides,

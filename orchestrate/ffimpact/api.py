@@ -19,6 +19,7 @@ from .failure import BadInput, Busy, Failure, brief, unknown
 from .freefem import freefem
 from .model import Scene
 from .places import RESULTS
+from .progress import muted
 from .report import report
 from .result import Result
 from .running import run as running
@@ -52,13 +53,19 @@ def run(
     folder is that of the command `ffimpact run`. Raises the exceptions of ffimpact: BadInput,
     StepFailed and so on.
     """
-    overrides = _overrides(entries, more)
-    loaded, default_folder = _loaded(scene, overrides)
-    record = running.run(
-        loaded, overrides, out or default_folder, force=force, progress=progress, estimate=estimate
-    )
-    if figures:
-        report.draw(record)
+    with muted(progress is False):
+        overrides = _overrides(entries, more)
+        loaded, default_folder = _loaded(scene, overrides)
+        record = running.run(
+            loaded,
+            overrides,
+            out or default_folder,
+            force=force,
+            progress=progress,
+            estimate=estimate,
+        )
+        if figures:
+            report.draw(record)
     return Result(record)
 
 

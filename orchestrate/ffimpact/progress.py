@@ -3,7 +3,8 @@ completed fraction and the remaining time.
 
 Work that consists of parts has one line for all of them. The progress lines of its parts are merged
 into that line, both for parts in the same thread (Line.part, in_turn) and for parts in other
-threads (forward, in study.side_by_side).
+threads (forward, in study.side_by_side). Work that has no fraction is announced if it takes long
+(work).
 """
 
 import contextlib
@@ -12,19 +13,21 @@ import sys
 import threading
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 
-__all__ = ["Line", "forward", "in_notebook", "in_turn"]
+__all__ = ["Line", "forward", "in_notebook", "in_turn", "muted", "work"]
 
 FORMAT = "{desc} {percentage:3.0f}% |{bar}| {elapsed}, {remaining} left"
+SLOW = 1.5  # duration [s] from which on work is announced
 # A receiver of progress: the completed fraction, in [0, 1], and a description of the current work.
 Tell = Callable[[float, str], None]
 
 
 class _Thread(threading.local):
     """The receiver of the progress lines that a thread makes. If it is None, the lines are
-    shown.
+    shown. `muted`: nothing is announced.
     """
 
     tell: Tell | None = None
+    muted: bool = False
 
 
 _thread = _Thread()
@@ -40,6 +43,40 @@ def forward(tell: Tell) -> Iterator[None]:
         yield
     finally:
         _thread.tell = before
+
+
+@contextlib.contextmanager
+def muted(quiet: bool = True) -> Iterator[None]:
+    """Announces no work of this thread inside the `with` if `quiet`."""
+    before, _thread.muted = _thread.muted, quiet
+    try:
+        yield
+    finally:
+        _thread.muted = before
+
+
+@contextlib.contextmanager
+def work(words: str) -> Iterator[None]:
+    """Prints `words` on stderr once the work inside the `with`, or a decorated function, has taken
+    SLOW seconds. Parts of other work print nothing.
+    """
+    if _thread.muted or _thread.tell:
+        yield
+        return
+    timer = threading.Timer(SLOW, _say, [f"ffimpact: {words} ..."])
+    timer.daemon = True
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
+
+
+def _say(sentence: str) -> None:
+    from tqdm import tqdm
+
+    tqdm.write(sentence, file=sys.stderr)
+    sys.stderr.flush()
 
 
 def in_notebook() -> bool:
@@ -104,9 +141,7 @@ class Line(contextlib.AbstractContextManager):
     def say(self, sentence: str) -> None:
         """Prints a sentence above the line."""
         if not self.quiet:
-            from tqdm import tqdm
-
-            tqdm.write(sentence, file=sys.stderr)
+            _say(sentence)
 
     @contextlib.contextmanager
     def part(self, part: Hashable, words: str) -> Iterator[None]:

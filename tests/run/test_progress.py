@@ -3,12 +3,14 @@
 import re
 import subprocess
 import sys
+import time
 import types
 
 import pytest
 
 from examples.paper import paper as paper_making
 from ffimpact import progress
+from ffimpact.__main__ import main
 from ffimpact.failure import BadInput
 from ffimpact.input.parameters import ROOT
 from ffimpact.sweeps import study
@@ -65,6 +67,47 @@ def test_nobody_looks(shown, capsys):
     with progress.Line("run", {1: 1.0}) as line:
         line.at(1, float("nan"))
     assert not shown and capsys.readouterr() == ("", "")
+
+
+class Instant:
+    """A timer whose time has come at its start."""
+
+    def __init__(self, seconds: float, call, arguments):
+        self.call, self.arguments = call, arguments
+
+    def start(self):
+        self.call(*self.arguments)
+
+    def cancel(self):
+        pass
+
+
+def test_long_work_is_announced_in_a_pipe(capsys, monkeypatch):
+    """Work that takes longer than SLOW prints one line on stderr while it goes on. Quick work, parts of
+    other work and muted work print none."""
+    monkeypatch.setattr(progress, "SLOW", 0.05)
+    for words, seconds in (("slow", 0.3), ("quick", 0.0)):
+        with progress.work(words):
+            time.sleep(seconds)
+            during = capsys.readouterr().err
+        assert during == ("ffimpact: slow ...\n" if words == "slow" else "")
+    with progress.muted(), progress.work("muted"):
+        time.sleep(0.2)
+    with progress.forward(lambda share, words: None), progress.work("a part"):
+        time.sleep(0.2)
+    assert capsys.readouterr().err == ""
+
+
+def test_the_set_up_of_a_scene_says_what_it_does(fake, tmp_path, capsys, monkeypatch):
+    """Search of the first contact, element sizes, meshes and the set-up of FreeFem++ are announced,
+    unless --quiet."""
+    monkeypatch.setattr(progress.threading, "Timer", Instant)
+    words = ["run", "two-discs", "--no-figures", "--no-estimate", "--set", "fields=0", "--out"]
+    for quiet in ([], ["--quiet"]):
+        main([*words, str(tmp_path / f"out{len(quiet)}"), *quiet])
+        announced = [line for line in capsys.readouterr().err.splitlines() if line.endswith(" ...")]
+        steps = ["searching for the first contact", "choosing element sizes", "meshing the bodies", "FreeFem++ sets up the main run"]
+        assert all(any(step in line for line in announced) for step in steps) if not quiet else not announced
 
 
 @pytest.mark.robustness

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from platformdirs import user_cache_path
 
-from .. import __version__
+from .. import __version__, progress
 
 __all__ = ["QUIET", "compiled"]
 
@@ -32,7 +32,10 @@ def compiled(name: str, made_of: Iterable[str], make: Callable[[Path], None]) ->
         return path
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(dir=path.parent) as folder:
+        with (
+            tempfile.TemporaryDirectory(dir=path.parent) as folder,
+            progress.work(f"compiling {name}, once for this version"),
+        ):
             make(Path(folder))
             os.replace(Path(folder) / name, path)
         return path

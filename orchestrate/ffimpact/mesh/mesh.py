@@ -28,6 +28,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from .. import progress
 from ..failure import BadInput, NotInstalled
 from ..places import INSTALLED, PACKAGE
 
@@ -368,7 +369,7 @@ def in_own_process(read: Callable, path: Path, *arguments):
     modules = os.pathsep.join([str(PACKAGE.parent), *filter(None, [os.environ.get("PYTHONPATH")])])
     command = [sys.executable, "-P", "-c", f"from {__name__} import _answer; _answer()"]
     # The process keeps the working folder, so relative paths stay valid.
-    with tempfile.NamedTemporaryFile() as answer:
+    with tempfile.NamedTemporaryFile() as answer, progress.work(f"reading {path.name}"):
         child = subprocess.run(
             [*command, answer.name],
             env=os.environ | {"PYTHONPATH": modules},

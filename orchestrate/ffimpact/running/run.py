@@ -57,7 +57,7 @@ STATES = 60  # states that a run keeps by default, for figures and the player
 # The module that makes flags, mesh and scene.dat. Results depend on it and on all that it imports.
 ENTRANCE = "scenes/assembly"
 # Of these modules, the ones that only query, start, report or read. Results do not depend on them.
-HARMLESS = {"failure", "places", "freefem/describe", "freefem/freefem"}
+HARMLESS = {"failure", "places", "progress", "freefem/describe", "freefem/freefem"}
 # Further modules, on which the error estimates depend.
 ESTIMATING = ("output/estimate", "output/notes", "output/results", "scenes/finer")
 

@@ -23,7 +23,7 @@ from ..input.parameters import Value
 from ..output import estimate
 from ..output.evaluate import RECORD, evaluate
 from ..output.results import read_history, read_json, read_summary, write_json
-from ..progress import Line
+from ..progress import Line, work
 from ..scene import Scene
 from ..scenes.assembly import prepare
 from ..scenes.finer import scaled
@@ -111,7 +111,14 @@ class Solver(AbstractContextManager):
         if taken or not (where / "summary.json").exists():
             with ExitStack() as leaving:
                 process = taken or self._started(overrides, where, leaving, display)
-                exit_code, message = process.end(display.show)
+                setting_up = leaving.enter_context(ExitStack())
+                setting_up.enter_context(work(f"FreeFem++ sets up the {display.part}"))
+
+                def show(at: freefem.At) -> None:
+                    setting_up.close()  # the first report comes with the first steps
+                    display.show(at)
+
+                exit_code, message = process.end(show)
         if (where / USED).exists() and (where / "scene.toml").exists():
             os.replace(where / USED, where / "scene.toml")
         evaluate(where)

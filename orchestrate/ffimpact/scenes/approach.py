@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.polynomial import Polynomial
 
+from .. import progress
 from ..failure import BadInput
 from ..geometry.outlines import Outline, Shape
 from ..input.dimension import PLANE_STRAIN
@@ -75,6 +76,7 @@ class Onset:
         return other.gap_for_sizes(points) if isinstance(other, Obstacle) else other.gap(points)
 
 
+@progress.work("searching for the first contact of the bodies")
 def onsets_of(scene: Scene) -> list[Onset]:
     """Returns the onsets of contact of a scene: one for each body with each obstacle and for each
     two bodies that may come near each other, and those that follow because an impact turns the

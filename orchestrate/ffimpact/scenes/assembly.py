@@ -17,6 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
+from .. import progress
 from ..failure import BadInput
 from ..freefem.describe import describe
 from ..geometry.outlines import Loop, TubeOutline, rotation
@@ -164,8 +165,12 @@ def assemble(scene: Scene, rule: Rule | None = None, onsets: list[Onset] | None 
     values = scene.values | contact_values(scene.bodies, scene.contact, ask, "contact")
     scene = replace(scene, pairs=with_open_penalties(scene, ask))
     pairs = [pair_values(pair, ask, values) for pair in scene.pairs]
-    sizes = [None if body.mesh else element_sizes(k, ask) for k, body in enumerate(scene.bodies)]
-    meshes, centres, rounds = (_solids if scene.dimension is SOLID else _sections)(scene, sizes)
+    with progress.work("choosing element sizes"):
+        sizes = [
+            None if body.mesh else element_sizes(k, ask) for k, body in enumerate(scene.bodies)
+        ]
+    with progress.work("meshing the bodies"):
+        meshes, centres, rounds = (_solids if scene.dimension is SOLID else _sections)(scene, sizes)
     together, regions = stack(meshes, centres)
     conditions = sections(scene.bodies, meshes, scene.obstacles, scene.dimension, copies(scene))
     disc = ask.disc(
