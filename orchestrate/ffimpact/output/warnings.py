@@ -652,6 +652,28 @@ def _corners(e: Evidence) -> Iterator[Sentence]:
         )
 
 
+# ---- supports
+
+
+def _release(e: Evidence) -> Iterator[Sentence]:
+    """The support whose force rises most at a release beyond what it was before. The exact force of
+    an elastic bar changes its sign there, not its size.
+    """
+    rises = [
+        (e.record[f"support_peak_{k}"] / before, before, k)
+        for k, before in enumerate(e.facts["peaks_before_release"], 1)
+        if e.facts["first_release"] >= 0 and before > 0
+    ]
+    ratio, before, k = max(rises, default=(0.0, 0.0, 0))
+    if ratio > 1 + e.facts["accuracy"]:
+        yield warn(
+            f"release: support_peak_{k} is {percent(ratio - 1)} above the {rounded(before)} "
+            f"N{e.facts['per_metre']} until the release at t = {e.facts['first_release']:g} s: a "
+            "sudden release starts a front that elements and steps do not resolve, and forces ring "
+            "behind it: take a motion that unloads the part before its release"
+        )
+
+
 # ---- the end of the run
 
 
@@ -818,6 +840,7 @@ RULES = (
     _obstacles,
     _pairs,
     _corners,
+    _release,
     _ending,
     _next_contact,
     _discretisation,
