@@ -16,7 +16,7 @@ namespace obstacles {
 typedef Eigen::Vector3d Point;             // z = 0 in the plane
 typedef Eigen::Matrix3d Rotation;
 
-// A function of time, of cubic Hermite polynomials between knots, constant before and after them
+// A function of time, of cubic Hermite polynomials between knots, linear before and after them
 // (functionAt() of core/input/conditions.idp).
 struct TimeFunction {
   std::vector<double> time, value, slope;
@@ -26,15 +26,17 @@ struct TimeFunction {
   }
   double at(double t) const {
     if (time.empty()) return 0;
-    if (t <= time.front()) return value.front();
-    if (t >= time.back()) return value.back();
+    if (t <= time.front()) return value.front() + (t - time.front()) * slope.front();
+    if (t >= time.back()) return value.back() + (t - time.back()) * slope.back();
     const size_t k = before(t);
     const double h = time[k + 1] - time[k], s = (t - time[k]) / h, r = 1 - s;
     return r * r * ((1 + 2 * s) * value[k] + h * s * slope[k])
       + s * s * ((1 + 2 * r) * value[k + 1] - h * r * slope[k + 1]);
   }
   double rate(double t) const {
-    if (time.empty() || t < time.front() || t >= time.back()) return 0;
+    if (time.empty()) return 0;
+    if (t <= time.front()) return slope.front();
+    if (t >= time.back()) return slope.back();
     const size_t k = before(t);
     const double h = time[k + 1] - time[k], s = (t - time[k]) / h;
     return 6 * s * (1 - s) * (value[k + 1] - value[k]) / h + (1 - s) * (1 - 3 * s) * slope[k]

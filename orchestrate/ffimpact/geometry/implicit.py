@@ -16,7 +16,9 @@ import numpy as np
 from ..failure import BadInput, brief
 
 __all__ = [
+    "Interval",
     "Stop",
+    "among",
     "bending",
     "closest",
     "gap",
@@ -27,6 +29,7 @@ __all__ = [
     "radius_at",
     "run",
     "settled",
+    "sines",
 ]
 
 ACCEPTED = "numbers, pi, {names}, + - * / ^, sin cos sqrt exp abs min max and parentheses"
@@ -183,7 +186,7 @@ def no_zero(code: Sequence[float], points: np.ndarray, half: np.ndarray) -> np.n
     return (low > 0) | (high < 0)
 
 
-def _among(*values: np.ndarray) -> Interval:
+def among(*values: np.ndarray) -> Interval:
     """The smallest and the largest of values; infinite where one is no number."""
     finite = np.isfinite(values).all(axis=0)
     return (
@@ -194,7 +197,7 @@ def _among(*values: np.ndarray) -> Interval:
 
 def _quotients(a: Interval, b: Interval) -> Interval:
     whole = np.where((b[0] <= 0) & (b[1] >= 0), np.nan, 1.0)
-    return _among(*(x / y * whole for x in a for y in b))
+    return among(*(x / y * whole for x in a for y in b))
 
 
 def _powers(a: Interval, b: Interval) -> Interval:
@@ -203,11 +206,11 @@ def _powers(a: Interval, b: Interval) -> Interval:
         ends = low**power, high**power
         return np.where((low <= 0) & (high >= 0), 0.0, np.minimum(*ends)), np.maximum(*ends)
     defined = (low > 0) | (power > 0) & ((low == 0) | (power % 2 == 1))
-    return _among(np.where(defined, low, np.nan) ** power, high**power)
+    return among(np.where(defined, low, np.nan) ** power, high**power)
 
 
-def _sines(a: Interval, shift: float = 0.0) -> Interval:
-    """The extremes +-1 are at pi/2 + k pi."""
+def sines(a: Interval, shift: float = 0.0) -> Interval:
+    """Bounds of sin(x + shift) for x in a: the extremes +-1 are at pi/2 + k pi."""
     low, high = a[0] + shift, a[1] + shift
     first, last = np.ceil(low / np.pi - 0.5), np.floor(high / np.pi - 0.5)
     ends, both = (np.sin(low), np.sin(high)), ~(last - first < 1)
@@ -219,14 +222,14 @@ def _sines(a: Interval, shift: float = 0.0) -> Interval:
 RANGES = {
     4: lambda a, b: (a[0] + b[0], a[1] + b[1]),
     5: lambda a, b: (a[0] - b[1], a[1] - b[0]),
-    6: lambda a, b: _among(*(x * y for x in a for y in b)),
+    6: lambda a, b: among(*(x * y for x in a for y in b)),
     7: _quotients,
     8: _powers,
     9: lambda a, b: (np.minimum(a[0], b[0]), np.minimum(a[1], b[1])),
     10: lambda a, b: (np.maximum(a[0], b[0]), np.maximum(a[1], b[1])),
     11: lambda a, b: (-a[1], -a[0]),
-    12: lambda a, b: _sines(a),
-    13: lambda a, b: _sines(a, np.pi / 2),
+    12: lambda a, b: sines(a),
+    13: lambda a, b: sines(a, np.pi / 2),
     14: lambda a, b: tuple(np.sqrt(np.maximum(end, 0.0)) for end in a),
     15: lambda a, b: (np.exp(a[0]), np.exp(a[1])),
     16: lambda a, b: (np.maximum(0.0, np.maximum(a[0], -a[1])), np.maximum(-a[0], a[1])),

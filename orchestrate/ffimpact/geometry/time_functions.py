@@ -1,22 +1,26 @@
-"""Functions of time that supports and loads follow: a number, an expression of t [s] or a table.
+"""Functions of time that supports, loads and driven obstacles follow: a number, an expression of
+t [s] or a table.
 
-Each becomes a piecewise cubic Hermite polynomial, which FreeFEM evaluates
+Each becomes a piecewise cubic Hermite polynomial, which the scripts evaluate
 (edp/core/input/conditions.idp). A table is interpolated monotonically and with a continuous slope
 (Fritsch and Carlson 1980). An expression is interpolated with an error of CLOSE times its largest
-value.
+value, which enclosures of its derivatives guarantee (enclosures.py).
 """
 
 import ast
 import csv
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ..failure import BadInput, brief
 from ..input.rules import LONGEST
 from . import implicit
+from .enclosures import crossing, enclosure
 
 __all__ = [
     "TimeFunction",
@@ -29,43 +33,149 @@ __all__ = [
     "of_table",
 ]
 
-CLOSE = 1e-8  # largest error of the interpolation, relative to the largest value of the expression
+# Largest error of the interpolation, relative to the largest value of the expression; that which is
+# accepted if CLOSE takes more than MOST intervals.
+CLOSE, ROUGH = 1e-8, 1e-6
 STEEPEST = 1e30  # largest slope, per second; larger slopes are refused
-# Relative errors as CLOSE: ROUGH is accepted when the number of knots reaches MOST; an error beyond
-# BROKEN means that the expression is not continuous.
-ROUGH, BROKEN = 1e-6, 1e-2
-FEWEST, MOST = 64, 2**17  # smallest number of intervals, largest number of knots
-TESTED = 15  # times between two knots at which an expression and its polynomial are compared
-SHORTEST_INTERVAL = 1e-12  # shortest interval between knots, relative to end_time
+FEWEST, MOST = 16, 2**17  # smallest and largest number of intervals
+KINK = 2.0**-44  # distance of the two knots of a kink, relative to its time
+SHORTEST = 2.0**-44  # shortest interval that is divided, relative to end_time
+SHARP = 1e-9  # change of the slope, relative to its largest values, that is a kink
 
 
 @dataclass(frozen=True)
 class TimeFunction:
     """A piecewise cubic Hermite polynomial; `knots` (n, 3): time [s], value, slope per second.
 
-    Before the first knot and after the last one the function is constant.
+    Before the first knot and after the last one it is linear. At a kink there are two knots, KINK
+    apart, with both slopes.
     """
 
     knots: np.ndarray
 
     @property
     def is_constant(self) -> bool:
-        """Whether all knots have the same value."""
-        return bool(np.ptp(self.knots[:, 1]) == 0)
+        """Whether the function has the same value at all times."""
+        return not self.knots[:, 2].any() and bool(np.ptp(self.knots[:, 1]) == 0)
 
     @property
     def is_zero(self) -> bool:
-        """Whether the value is 0 at all knots."""
-        return not self.knots[:, 1].any()
+        """Whether the function is 0 at all times."""
+        return not self.knots[:, 1:].any()
 
     def __call__(self, t: np.ndarray | float) -> np.ndarray:
         """The values at times t [s], in the shape of t."""
         times, values, slopes = self.knots.T
+        t = np.asarray(t, dtype=float)
+        inside = np.clip(t, times[0], times[-1])
+        beyond = np.where(t < times[0], slopes[0], slopes[-1]) * (t - inside)
+        return beyond + (values[0] if len(times) == 1 else self._spline(inside))
+
+    def slope(self, t: np.ndarray | float) -> np.ndarray:
+        """The slopes per second at times t [s], in the shape of t."""
+        times, _, slopes = self.knots.T
+        t = np.asarray(t, dtype=float)
         if len(times) == 1:
-            return values[0] + 0 * np.asarray(t)
+            return slopes[0] + 0 * t
+        return self._spline(np.clip(t, times[0], times[-1]), 1)
+
+    def integral(self, begin: np.ndarray | float, end: np.ndarray | float) -> np.ndarray:
+        """The integral from `begin` to `end` [s], exactly."""
+        return self._integral_to(end) - self._integral_to(begin)
+
+    @property
+    def largest_value(self) -> float:
+        """The largest absolute value from the first to the last knot."""
+        return float(abs(self(self.extreme_times)).max())
+
+    @property
+    def largest_slope(self) -> float:
+        """The largest absolute slope per second from the first to the last knot."""
+        # The slope of a cubic is a parabola: its extreme is at its vertex or at a knot.
+        _, (_, second, third) = self._coefficients
+        with np.errstate(all="ignore"):
+            vertex = self.knots[:-1, 0] - second / (3 * third)
+        inside = (vertex > self.knots[:-1, 0]) & (vertex < self.knots[1:, 0]) & ~self._at_kink
+        return float(abs(np.append(self.knots[:, 2], self.slope(vertex[inside]))).max())
+
+    @property
+    def largest_integral(self) -> float:
+        """The largest absolute value of the integral from the first knot to any other one."""
+        return float(abs(self._sums).max())
+
+    @cached_property
+    def extreme_times(self) -> np.ndarray:
+        """The knots and the times [s] between them at which the slope is 0."""
+        width, (first, second, third) = self._coefficients
+        with np.errstate(all="ignore"):
+            # roots of first + 2 second s + 3 third s^2, without cancellation
+            half = -(second + np.copysign(np.sqrt(second**2 - 3 * third * first), second))
+            roots = np.concatenate([half / (3 * third), first / half])
+            inside = (roots > 0) & (roots < np.tile(width, 2)) & ~np.tile(self._at_kink, 2)
+        return np.append(self.knots[:, 0], (np.tile(self.knots[:-1, 0], 2) + roots)[inside])
+
+    @property
+    def kinks(self) -> np.ndarray:
+        """The kinks (n, 2): times [s], changes of the slope per second."""
+        times, _, slopes = self.knots.T
+        return np.column_stack([times[:-1], abs(np.diff(slopes))])[self._at_kink]
+
+    def between(self, begin: float, end: float) -> "TimeFunction":
+        """The function with knots from `begin` to `end` [s] only, where it is the same."""
+        times = self.knots[:, 0]
+        inside = (times > begin) & (times < end)
+        ends = np.array([begin, end])
+        slopes = self.slope(ends)
+        first, last = ([ends[k], float(self(ends[k])), slopes[k]] for k in (0, 1))
+        return TimeFunction(np.vstack([first, self.knots[inside], last]))
+
+    def scaled(self, factor: float) -> "TimeFunction":
+        """The function times a factor."""
+        return TimeFunction(self.knots * [1.0, factor, factor])
+
+    def raised(self, value: float) -> "TimeFunction":
+        """The function plus a constant value."""
+        return TimeFunction(self.knots + [0.0, value, 0.0])
+
+    @cached_property
+    def _at_kink(self) -> np.ndarray:
+        """Whether an interval (n - 1,) lies between the two knots of a kink."""
+        times = self.knots[:, 0]
+        return np.diff(times) <= 2 * KINK * abs(times[1:])
+
+    @cached_property
+    def _spline(self) -> Any:
         from scipy.interpolate import CubicHermiteSpline  # imported here: most scenes need none
 
-        return CubicHermiteSpline(times, values, slopes)(np.clip(t, times[0], times[-1]))
+        return CubicHermiteSpline(*self.knots.T)
+
+    @cached_property
+    def _coefficients(self) -> tuple[np.ndarray, np.ndarray]:
+        """Widths (n - 1,) [s] of the intervals, and the coefficients (3, n - 1) of s, s^2, s^3, s
+        [s] since the knot before.
+        """
+        times, values, slopes = self.knots.T
+        width = np.diff(times)
+        secant = np.diff(values) / width
+        second = (3 * secant - 2 * slopes[:-1] - slopes[1:]) / width
+        third = (slopes[:-1] + slopes[1:] - 2 * secant) / width**2
+        return width, np.array([slopes[:-1], second, third])
+
+    @cached_property
+    def _sums(self) -> np.ndarray:
+        """The integrals (n,) from the first knot to each knot."""
+        times, values, slopes = self.knots.T
+        width = np.diff(times)
+        parts = width * (values[:-1] + values[1:]) / 2 - width**2 * np.diff(slopes) / 12
+        return np.append(0.0, np.cumsum(parts))
+
+    def _integral_to(self, t: np.ndarray | float) -> np.ndarray:
+        """The integral from the first knot to times t [s]."""
+        t = np.asarray(t, dtype=float)
+        k = np.clip(np.searchsorted(self.knots[:, 0], t, side="right") - 1, 0, len(self.knots) - 1)
+        begin, value, slope = self.knots[k].T
+        # Simpson's rule is exact for cubics, and beyond the ends for linear functions.
+        return self._sums[k] + (t - begin) / 6 * (value + 4 * self((begin + t) / 2) + self(t))
 
 
 def constant(value: float) -> TimeFunction:
@@ -131,7 +241,13 @@ def of_table(entry: str, times: object, values: object) -> TimeFunction:
         )
     from scipy.interpolate import PchipInterpolator
 
-    return TimeFunction(np.column_stack([t, value, PchipInterpolator(t, value).derivative()(t)]))
+    slope = PchipInterpolator(t, value).derivative()(t)
+    # Before the first time and after the last one the function is constant.
+    before, after = (
+        [[t[k] + side * KINK * abs(t[k]), value[k], 0.0]] if slope[k] and t[k] else []
+        for k, side in ((0, -1), (-1, 1))
+    )
+    return TimeFunction(np.array([*before, *np.column_stack([t, value, slope]), *after]))
 
 
 def of_csv(entry: str, path: Path, columns: str) -> dict[str, list[float]]:
@@ -171,17 +287,23 @@ def functions(
     """The functions of an entry, one for each component in `names`.
 
     The entry is a list of numbers and expressions, a single one for a single component, or a table
-    {t, ...} with a column for each component. `end_time` is in s. Raises BadInput, with the name of
-    the entry, for anything else.
+    {t, ...} with a column for each component. Their knots are between 0 and `end_time` [s], if that
+    is not 0. Raises BadInput, with the name of the entry, for anything else.
     """
+    components = _components(entry, definition, names, end_time)
+    if end_time > 0:
+        components = [function.between(0.0, end_time) for function in components]
+    return tuple(components)
+
+
+def _components(entry: str, definition: object, names: str, end_time: float) -> list[TimeFunction]:
+    """The functions of an entry from their first to their last knot."""
     if isinstance(definition, dict):
         if set(definition) != {"t", *names}:
             raise BadInput(
                 f"{entry}: '{brief(definition)}' is no table (accepted: t and {', '.join(names)})"
             )
-        return tuple(
-            of_table(f"{entry}.{name}", definition["t"], definition[name]) for name in names
-        )
+        return [of_table(f"{entry}.{name}", definition["t"], definition[name]) for name in names]
     if len(names) == 1 and not isinstance(definition, list):
         definition = [definition]
     if not isinstance(definition, list) or len(definition) != len(names):
@@ -189,44 +311,43 @@ def functions(
             f"{entry}: '{brief(definition)}' is no [{', '.join(names)}] "
             f"(accepted: {len(names)} numbers or expressions of t, or a CSV file)"
         )
-    return tuple(
+    return [
         of_entry(f"{entry}.{k}" if len(names) > 1 else entry, component, end_time)
         for k, component in enumerate(definition, 1)
-    )
+    ]
 
 
 def displacements(
     entry: str, definition: object, names: str, end_time: float
 ) -> tuple[TimeFunction, ...]:
-    """The functions of a motion, as `functions`. A displacement is the change since t = 0.
+    """The functions of a motion, as `functions`, less their values at t = 0.
 
     Raises BadInput, in addition, if a component is a number other than 0: it would have no effect.
     """
     motion = functions(entry, definition, names, end_time)
     for k, function in enumerate(motion, 1):
-        if len(function.knots) == 1 and not function.is_zero:
+        if function.is_constant and not function.is_zero and not isinstance(definition, dict):
             name = f"{entry}.{k}" if len(names) > 1 else entry
             raise BadInput(
                 f"{name}: {function.knots[0, 1]:g} does not change in time, and a motion counts "
                 f"from its value at t = 0 (accepted: 0, or a function of t, '0.1*t'; place or turn "
                 f"the part itself)"
             )
-    return motion
+    return tuple(function.raised(-float(function(0.0))) for function in motion)
 
 
 def farthest(
     translation: Sequence[TimeFunction], until: float = np.inf
 ) -> tuple[np.ndarray, float]:
-    """The largest displacement (axes,) from the value at t = 0, and the time [s] of it.
+    """The largest displacement (axes,) from t = 0 to `until` [s], and the time [s] of it.
 
-    `translation` contains the functions of the components. Only their knots from 0 to `until` [s]
-    are examined.
+    `translation` contains the functions of the components. Each has its extremes among the times
+    that are examined.
     """
-    times = np.unique(np.concatenate([function.knots[:, 0] for function in translation]))
-    times = times[(times >= 0) & (times <= until)]
-    if not len(times):
-        return np.zeros(len(translation)), 0.0
-    moved = np.array([function(times) - function(0.0) for function in translation]).T
+    times = np.concatenate([function.extreme_times for function in translation])
+    latest = min(until, float(times.max()))
+    times = np.unique([0.0, *times[(times > 0) & (times < latest)], max(0.0, latest)])
+    moved = np.array([function(times) for function in translation]).T
     k = int(np.linalg.norm(moved, axis=1).argmax())
     return moved[k], float(times[k])
 
@@ -234,45 +355,119 @@ def farthest(
 def _sampled(entry: str, expression: str, program: tuple[float, ...], end: float) -> np.ndarray:
     """The knots (n, 3) of an expression from 0 to `end` [s].
 
-    Intervals are halved until the polynomial in each agrees with the expression to CLOSE. At a kink
-    they are halved until they are as short as SHORTEST_INTERVAL. Raises BadInput if the expression
-    is not continuous or needs more than MOST knots.
+    Intervals are divided, at kinks or in their middle, until the polynomial in each certainly
+    agrees with the expression to CLOSE. Raises BadInput if this takes more than MOST intervals, or
+    if the expression has no bound or jumps.
     """
-    t = np.linspace(0, end, FEWEST + 1)
-    while True:
-        knots = np.column_stack([t, *_evaluated(entry, expression, program, t)])
-        width = np.diff(t)
-        between = t[:-1, None] + width[:, None] * np.arange(1, TESTED + 1) / (TESTED + 1)
-        value, _ = _evaluated(entry, expression, program, between.ravel())
-        off = abs(TimeFunction(knots)(between) - value.reshape(between.shape)).max(axis=1)
-        largest = max(abs(knots[:, 1]).max(), abs(value).max())
-        open_ones = (off > CLOSE * largest) & (width > SHORTEST_INTERVAL * end)
-        too_many = len(t) + open_ones.sum() > MOST
-        if off.max() <= (ROUGH * largest if too_many else CLOSE * largest) or not open_ones.any():
+    largest = _largest(entry, expression, program, end)
+    for close in (CLOSE, ROUGH):
+        intervals = _divided(entry, expression, program, end, close * largest)
+        if intervals is not None:
+            return _knots(entry, expression, program, *intervals)
+    raise BadInput(
+        f"{entry}: '{brief(expression)}' changes too often up to end_time = {end:g} s "
+        f"(accepted: what {MOST} cubic polynomials follow)"
+    )
+
+
+def _largest(entry: str, expression: str, program: tuple[float, ...], end: float) -> float:
+    """A lower bound of the largest absolute value of an expression from 0 to `end` [s], at least
+    half of it. Intervals that may have larger values are halved.
+    """
+    edges, largest = np.linspace(0, end, FEWEST + 1), 0.0
+    begin, until = edges[:-1], edges[1:]
+    while len(begin) and begin[0] + SHORTEST * end < until[0]:
+        middle = (begin + until) / 2
+        values, _ = _evaluated(entry, expression, program, np.concatenate([begin, middle, until]))
+        largest = max(largest, float(abs(values).max()))
+        (low, high), _ = enclosure(program, begin, until)
+        larger = np.maximum(-low[0], high[0]) > 2 * largest
+        if larger.sum() > MOST:
             break
-        if too_many:
+        begin, middle, until = begin[larger], middle[larger], until[larger]
+        begin, until = np.append(begin, middle), np.append(middle, until)
+    return largest
+
+
+def _divided(
+    entry: str, expression: str, program: tuple[float, ...], end: float, error: float
+) -> tuple[np.ndarray, np.ndarray] | None:
+    """The intervals (n,), (n,) from 0 to `end` [s] in each of which a cubic Hermite polynomial has
+    at most this error; None if they are more than MOST. Kinks lie between intervals.
+    """
+    edges = np.linspace(0, end, FEWEST + 1)
+    begin, until, done = edges[:-1], edges[1:], []
+    while len(begin):
+        width = until - begin
+        (low, high), kinks = enclosure(program, begin, until)
+        with np.errstate(all="ignore"):
+            # the error is at most h^4/384 times the fourth derivative, and h (max f' - min f')
+            off = width**4 / 16 * np.maximum(-low[4], high[4])
+            off = np.fmin(off, width * (high[1] - low[1]))
+        coarse = ~(off <= error)
+        done.append((begin[~coarse], until[~coarse]))
+        stuck = coarse & (width <= SHORTEST * end)
+        if stuck.any():
             raise BadInput(
-                f"{entry}: '{brief(expression)}' changes too often up to end_time = {end:g} s "
-                f"(accepted: what {MOST} cubic polynomials follow)"
+                f"{entry}: '{brief(expression)}' jumps, or has no limit, at "
+                f"t = {begin[stuck][0]:.6g} s, or changes there within {SHORTEST * end:.1g} s "
+                f"(accepted: a continuous function)"
             )
-        t = np.sort(np.append(t, (t[:-1] + width / 2)[open_ones]))
-    if off.max() > BROKEN * largest:
-        raise BadInput(
-            f"{entry}: '{brief(expression)}' jumps, or has no limit, at "
-            f"t = {t[off.argmax()]:.6g} s (accepted: a continuous function)"
+        first, last = (begin + until) / 2, (begin + until) / 2
+        whole = coarse.copy()  # not divided at a kink yet
+        for argument, crossed in kinks:
+            here = crossed & whole
+            first[here], last[here] = crossing(argument, begin[here], until[here])
+            whole &= ~here
+        begin, until = (
+            np.append(begin[coarse], last[coarse]),
+            np.append(first[coarse], until[coarse]),
         )
-    return knots
+        if len(begin) + sum(len(part[0]) for part in done) > MOST:
+            return None
+    begin, until = (np.concatenate(ends) for ends in zip(*done))
+    order = begin.argsort()
+    return begin[order], until[order]
+
+
+def _knots(
+    entry: str,
+    expression: str,
+    program: tuple[float, ...],
+    begin: np.ndarray,
+    until: np.ndarray,
+) -> np.ndarray:
+    """The knots (n, 3) of an expression at the ends of intervals (n,), (n,); two at a kink."""
+    branches: dict[int, np.ndarray] = {}  # those in the middle hold in the whole interval
+    with np.errstate(all="ignore"):
+        implicit.run(program, ((begin + until) / 2)[:, None], branches)
+    at_begin, at_end = (
+        np.column_stack([t, *_evaluated(entry, expression, program, t, branches)])
+        for t in (begin, until)
+    )
+    change = abs(at_begin[1:, 2] - at_end[:-1, 2])
+    kink = change > SHARP * (abs(at_begin[1:, 2]) + abs(at_end[:-1, 2]))
+    later = at_begin[1:][kink]
+    shift = KINK * later[:, 0]
+    later += np.column_stack([shift, shift * later[:, 2], 0 * shift])
+    knots = np.vstack([at_begin[:1], at_end, later])
+    return knots[knots[:, 0].argsort(kind="stable")]
 
 
 def _evaluated(
-    entry: str, expression: str, program: tuple[float, ...], t: np.ndarray
+    entry: str,
+    expression: str,
+    program: tuple[float, ...],
+    t: np.ndarray,
+    branches: dict[int, np.ndarray] | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The values (n,) and slopes (n,) per second of an expression at times (n,) [s].
+    """The values (n,) and slopes (n,) per second of an expression at times (n,) [s], on its
+    `branches` as in implicit.run.
 
     Raises BadInput if a value or slope is not finite or too large.
     """
     with np.errstate(all="ignore"):
-        value, slope = implicit.run(program, t[:, None])
+        value, slope = implicit.run(program, t[:, None], branches)
     value, slope = np.broadcast_to(value, t.shape), np.broadcast_to(slope[:, 0], t.shape)
     bad = ~((abs(value) <= LONGEST**2) & (abs(slope) <= STEEPEST))
     if bad.any():

@@ -55,6 +55,7 @@ PEAK_WIDTH, PEAK_SHARE = (
     0.5,
     0.8,
 )  # a time over the transit time of a wave; a mean force over the peak
+BENT = 0.1  # deviation of a function of time from a straight line in a step
 CORNER = 0.05  # share of the impulse that begins at a sharp corner
 # A pair of density and modulus that no material has: waves faster than in diamond (18 km/s);
 # lighter than all but
@@ -767,6 +768,13 @@ def _discretisation(e: Evidence) -> Iterator[Sentence]:
             f"flight: {e.body} is taken as unstressed until contact, but its spin would strain it "
             f"by {percent(spun)}{e.request}: take without=flight, "
             "which integrates the flight in time"
+        )
+    if facts["bend"] > BENT:
+        yield warn(
+            f"functions of time: at t = {facts['bend_at']:.3g} s one changes by "
+            f"{percent(facts['bend'])} of its largest value within {facts['dt_largest']:.2g} s, "
+            "faster than steps and mesh resolve. Its impulse and displacement are exact, the waves "
+            "that it sends are not: take a smaller accuracy, or a smaller mesh_size and dt"
         )
     turn, largest = facts["driven_turn"], facts["most_driven_turn"]
     if turn > largest * (1 + 1e-9):

@@ -349,12 +349,12 @@ def refuse_nothing(scene: Scene, onsets: list[Onset]) -> None:
     forces = [scene.values.get(name, 0.0) for name in ("gravity", "body_force_x", "body_force_y")]
     if (
         not any(np.any(motion) for motion in moving)
-        and not any(forces)
-        and not driven
+        and not any([*forces, *driven])
         and not any(body.supports or body.loads for body in scene.bodies)
     ):
         raise BadInput(
-            "velocity: 0 of every body, without spin, gravity or body force: nothing would ever move (accepted: one of them)"
+            "velocity: 0 of every body, without spin, gravity, body force, moved support or "
+            "obstacle, or load: nothing would ever move (accepted: one of them)"
         )
     if (
         scene.values["end_time"] == 0

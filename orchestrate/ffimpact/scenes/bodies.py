@@ -110,7 +110,7 @@ class Body:
         count).
         """
         return any(support.moves for support in self.supports) or any(
-            load.kind != "gas" for load in self.loads
+            load.kind != "gas" and load.largest > 0 for load in self.loads
         )
 
     @property

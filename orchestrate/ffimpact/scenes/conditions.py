@@ -87,7 +87,7 @@ class Support:
     def moves(self) -> bool:
         """Whether any component is moved."""
         return not all(
-            function.is_constant
+            function.is_zero
             for function, fixed in zip(self.motion, self.fixed)
             if fixed or self.normal
         )
@@ -113,12 +113,7 @@ class Load:
     @property
     def largest(self) -> float:
         """The largest stress of the load [Pa]."""
-        return max(
-            [
-                abs(self.gas[0]),
-                *(float(abs(function.knots[:, 1]).max()) for function in self.functions),
-            ]
-        )
+        return max([abs(self.gas[0]), *(function.largest_value for function in self.functions)])
 
 
 def inlined(content: dict, folder: Path, dimension: Dimension) -> dict:

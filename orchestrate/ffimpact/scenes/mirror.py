@@ -125,7 +125,7 @@ def _of_conditions(body: Body, axis: int, plane: str) -> str:
         if not all(condition.part.is_mirrored(axis, turned) for condition in listed):
             return f"has a {kind} that is not its own mirror image in {plane}"
     moved = [
-        (support.fixed[axis] or support.normal) and not support.motion[axis].is_constant
+        (support.fixed[axis] or support.normal) and not support.motion[axis].is_zero
         for support in body.supports
     ]
     pushed = [load.kind == "traction" and not load.functions[axis].is_zero for load in body.loads]
@@ -136,7 +136,7 @@ def _of_conditions(body: Body, axis: int, plane: str) -> str:
 
 def _of_obstacle(obstacle: Obstacle, axis: int) -> bool:
     if obstacle.drive and (
-        not obstacle.drive.translation[axis].is_zero or not obstacle.drive.turn.is_constant
+        not obstacle.drive.translation[axis].is_zero or not obstacle.drive.turn.is_zero
     ):
         return True
     return obstacle.velocity[axis] != 0 or not obstacle.is_mirrored(axis)

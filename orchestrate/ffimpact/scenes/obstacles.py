@@ -78,12 +78,12 @@ class Obstacle:
 
     @property
     def driven(self) -> bool:
-        """Whether the obstacle follows functions of time."""
-        return self.drive is not None
+        """Whether functions of time move the obstacle."""
+        return self.drive is not None and self.drive.moves
 
     @property
     def moves(self) -> bool:
-        """Whether the obstacle has a velocity or follows functions of time."""
+        """Whether the obstacle has a velocity or is driven."""
         return self.driven or bool(self.velocity.any())
 
     def matrix(self, t: float) -> np.ndarray:
@@ -319,9 +319,14 @@ class Drive:
     axis: np.ndarray
 
     @property
+    def moves(self) -> bool:
+        """Whether the displacement or the rotation changes in time."""
+        return not all(function.is_zero for function in (*self.translation, self.turn))
+
+    @property
     def fastest_turn(self) -> float:
         """The largest angular velocity [rad/s]."""
-        return float(abs(self.turn.knots[:, 2]).max())
+        return self.turn.largest_slope
 
     def at_start(self, points: np.ndarray, t: float) -> np.ndarray:
         """Returns where points (n, axes) that are on the moved obstacle at the time t [s] were on it
@@ -333,11 +338,11 @@ class Drive:
 
     def shift(self, t: float) -> np.ndarray:
         """The displacement (axes,) [m] at the time t [s] since the start."""
-        return np.array([function(t) - function(0.0) for function in self.translation])
+        return np.array([function(t) for function in self.translation])
 
     def rotation(self, t: float) -> np.ndarray:
         """The rotation matrix (3, 3) at the time t [s] since the start."""
-        return tumbling.rotation(self.axis * float(self.turn(t) - self.turn(0.0)))
+        return tumbling.rotation(self.axis * float(self.turn(t)))
 
 
 def read(tables: list[models.Obstacle], dimension: Dimension, end_time: float, folder: Path) -> list[Obstacle]:
@@ -383,7 +388,7 @@ def _drive(table: models.Obstacle, dimension: Dimension, end_time: float) -> Dri
     if dimension is AXISYMMETRIC and not translation[0].is_zero:
         raise BadInput(f"{table.at('motion')}.1: leaves the axis of revolution (accepted: 0)")
     degrees = none if table.rotation is None else displacements(table.at("rotation"), table.rotation, "r", end_time)[0]
-    turn = replace(degrees, knots=degrees.knots * [1.0, np.pi / 180, np.pi / 180])
+    turn = degrees.scaled(np.pi / 180)
     axis = np.array(table.axis or [0.0, 0.0, 1.0])
     if not axis.any():
         raise BadInput(f"{table.at('axis')}: '{table.value_text('axis')}' has no direction (accepted: other than 0)")

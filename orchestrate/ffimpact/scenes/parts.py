@@ -101,13 +101,22 @@ def sections(
             )
     lines: Lines = []
     if functions:
-        lines += [
-            ("functions", len(functions)),
-            *((len(function.knots), *function.knots.ravel().tolist()) for function in functions),
-        ]
+        lines += [("functions", len(functions)), *map(_line, functions)]
+    kinks = sorted(
+        (time, change / function.largest_value)
+        for function in functions
+        for time, change in function.kinks.tolist()
+    )
+    lines += [("kinks", len(kinks)), *kinks] if kinks else []
     lines += [("drives", len(drives)), *drives] if drives else []
     lines += [("supports", len(supports)), *supports] if supports else []
     return lines + ([("loads", len(loads)), *loads] if loads else [])
+
+
+def _line(function: TimeFunction) -> tuple:
+    """The line of a time function: number of knots, the largest of integral, value and slope, knots."""
+    largest = function.largest_integral, function.largest_value, function.largest_slope
+    return len(function.knots), *largest, *function.knots.ravel().tolist()
 
 
 def _numbered(functions: list[TimeFunction], added: list[TimeFunction | None]) -> list[int]:

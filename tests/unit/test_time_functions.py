@@ -1,0 +1,104 @@
+"""Functions of time: extremes, integrals, kinks, and expressions that change fast."""
+
+import math
+
+import numpy as np
+import pytest
+
+from ffimpact.failure import BadInput
+from ffimpact.geometry import implicit
+from ffimpact.geometry.enclosures import enclosure
+from ffimpact.geometry.time_functions import (
+    CLOSE,
+    TimeFunction,
+    farthest,
+    functions,
+    of_entry,
+    of_table,
+)
+
+TRIANGLE = "max(0, 1e6*(1 - abs(t - 0.0103)/4e-6))"
+# Expression, end [s], largest value, largest slope per second, integral.
+FAST = {
+    "triangle of 8 us": (TRIANGLE, 0.02, 1e6, 1e6 / 4e-6, 4.0),
+    "bell of 20 us": ("1e5*exp(-((t-0.0103)/2e-5)^2)", 0.02, 1e5, 1e5 / 2e-5 * math.sqrt(2 / math.e), 2 * math.sqrt(math.pi)),
+    "bell of 1 ns": ("exp(-((t-0.3)/1e-9)^2)", 1.0, 1.0, 1e9 * math.sqrt(2 / math.e), 1e-9 * math.sqrt(math.pi)),
+    "triangle of 1 ns": ("max(0, 1 - abs(t-0.3)/5e-10)", 1.0, 1.0, 2e9, 5e-10),
+    "rational": ("1/(1 + ((t-3e-6)/1e-7)^2)", 1e-5, 1.0, 1e7 * 3 * math.sqrt(3) / 8, 1e-7 * (math.atan(30) + math.atan(70))),
+}
+
+
+@pytest.mark.parametrize("name", FAST)
+def test_what_is_short_is_found(name):
+    """A pulse that no fixed times would hit has its height, slope and integral, to CLOSE of the
+    expression; its integral to 1e-6."""
+    expression, end, value, slope, integral = FAST[name]
+    function = of_entry("load", expression, end)
+    assert function.largest_value == pytest.approx(value, rel=CLOSE)
+    assert function.largest_slope == pytest.approx(slope, rel=1e-4)
+    assert float(function.integral(0.0, end)) == pytest.approx(integral, rel=1e-6)
+    assert function.largest_integral == pytest.approx(integral, rel=1e-6)
+
+
+@pytest.mark.parametrize("expression", ["exp(-((t-0.3)/1e-13)^2)", "exp(-((t-0.3)/1e-15)^2)", "abs(t-0.3)/(t-0.3)"])
+def test_what_is_too_short_is_named(expression):
+    """What changes faster than round-off allows to follow is refused and not lost."""
+    with pytest.raises(BadInput, match=r"load: .* jumps, or has no limit, at t = 0\.3 s"):
+        of_entry("load", expression, 1.0)
+
+
+@pytest.mark.parametrize("expression", [
+    "sin(40*t)*exp(-3*t)", "t^1.5", "1/(0.1+t)^2", "sqrt(t+1e-3)", "max(sin(9*t), cos(7*t)^3)", "abs(t-0.4)*t",
+    "0.02*min(t/0.1, 1)^2 - max(0, t-0.7)^3", "max(0, max(0, t-0.5))", "exp(-t)/(2+cos(30*t))", "min(abs(sin(5*t)), 0.5)"])
+def test_an_expression_is_followed_to_its_error(expression):
+    """At 20,000 random times the polynomials differ by at most CLOSE of the largest value."""
+    function = of_entry("load", expression, 1.0)
+    t = np.random.default_rng(0).uniform(0, 1, 20_000)
+    value = implicit.run(implicit.program("load", expression, "t"), t[:, None])[0]
+    assert abs(function(t) - value).max() <= CLOSE * abs(value).max() and len(function.knots) < 3000
+
+
+def test_enclosures_contain_the_derivatives():
+    """Taylor coefficients of every operation at random times are within those of the interval."""
+    code = implicit.program("f", "exp(sin(3*t))/(2+t)^2 + sqrt(1+t^3) - cos(t)^3", "t")
+    begin, width, step = np.linspace(0, 1, 21)[:-1], 0.05, 1e-3
+    (low, high), _ = enclosure(code, begin, begin + width)
+    inside = begin + width * np.random.default_rng(1).uniform(0.1, 0.9, 20)
+    stencil = np.arange(-4, 5)
+    values = implicit.run(code, (inside[:, None] + step * stencil).ravel()[:, None])[0].reshape(20, 9)
+    local = np.polynomial.polynomial.polyfit(step * stencil, values.T, 8)[:5]
+    size = abs(high) + abs(low) + 1
+    assert (low - 1e-3 * size <= local).all() and (local <= high + 1e-3 * size).all()
+    assert ((high - low)[0] < 0.5).all()
+
+
+def test_extremes_lie_between_knots():
+    """Two knots with value 0 and slopes of opposite signs: the extremes are inside."""
+    arch = TimeFunction(np.array([[0.0, 0.0, 1.0], [2.0, 0.0, -1.0]]))  # t - t^2/2
+    assert arch.largest_value == pytest.approx(0.5) and 1.0 in arch.extreme_times
+    assert arch.largest_integral == pytest.approx(2 / 3) and not arch.is_constant
+    assert float(arch.integral(0.5, 1.75)) == pytest.approx((1.75**2 - 0.5**2) / 2 - (1.75**3 - 0.5**3) / 6, rel=1e-14)
+    held = of_table("motion", [0.0, 0.005, 0.015, 0.03], [0.0, 0.0, 0.002, 0.002])
+    assert not held.knots[:, 2].any() and held.largest_slope == pytest.approx(1.5 * 0.002 / 0.01, rel=1e-12)
+    assert farthest([arch])[1] == pytest.approx(1.0) and farthest([arch], 0.25) == (pytest.approx(0.25 - 0.25**2 / 2), 0.25)
+
+
+def test_a_table_holds_its_last_value_and_an_expression_goes_on():
+    """The slope at the last knot is that before it; kinks are where a table begins and ends."""
+    ramp = of_table("motion", [1e-3, 2e-3], [0.0, 1.0])
+    assert ramp.kinks == pytest.approx(np.array([[1e-3, 1e3], [2e-3, 1e3]]))
+    assert ramp(np.array([0.0, 5e-4, 1.5e-3, 2e-3, 3e-3])) == pytest.approx([0, 0, 0.5, 1, 1])
+    assert float(ramp.slope(2e-3)) == pytest.approx(1e3) and float(ramp.slope(2.5e-3)) == 0
+    for end in (2e-3, 3e-3):
+        (cut,) = functions("motion", {"t": [1e-3, 2e-3], "x": [0.0, 1.0]}, "x", end)
+        assert cut.knots[[0, -1], 0] == pytest.approx([0, end]) and float(cut.slope(2e-3)) == pytest.approx(1e3)
+        assert float(cut.integral(0, end)) == pytest.approx(5e-4 + (end - 2e-3), rel=1e-9)
+    line = of_entry("motion", "3*t", 1.0)
+    assert float(line(1.5)) == pytest.approx(4.5) and float(line.slope(1.0)) == pytest.approx(3) and not len(line.kinks)
+
+
+def test_kinks_are_found_where_branches_change():
+    """Times to round-off, with the change of the slope; a smooth change of branch is none."""
+    shape = of_entry("motion", "min(max(t-0.1, 0)*10, 1) - max(t-0.5, 0)^2", 1.0)
+    assert shape.kinks == pytest.approx(np.array([[0.1, 10.0], [0.2, 10.0]]), rel=1e-12)
+    assert shape.largest_slope == pytest.approx(10.0) and len(shape.knots) < 60
