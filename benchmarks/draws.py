@@ -202,9 +202,10 @@ def _round(value: float) -> float:
     return float(f"{value:.3g}")
 
 
+OWN = Path(__file__).with_name("scenes")  # folder of scenes that are not among the built-in ones
+
 # ---- faces that strike flat
 
-FLAT = Path(__file__).with_name("flat")  # folder of their scenes
 # The number of each scene in sixty, and its requested accuracies. Scenes in space are expensive.
 FLAT_MIXTURE = {"block-wall": (18, (0.02, 0.05, 0.1)), "two-bars": (14, (0.02, 0.05, 0.1)), "polygon-wall": (14, (0.02, 0.05, 0.1)),
                 "cylinder-wall": (10, (0.02, 0.05, 0.1)), "box-wall": (4, (0.1,))}
@@ -329,3 +330,128 @@ def _roller(chance: random.Random, speed: float, c: float, material: Point) -> P
 
 
 HELD_SHAPES = {"drop-weight": _weight, "disc-beam": _on_beam, "hollow-ball": _hollow, "roller": _roller}
+
+
+# ---- bodies of revolution on curved surfaces, hollow bodies, rubber, unlike materials, strips
+
+# By family: the number of each scene in thirty.
+OTHER_MIXTURE = {"curved": {"ball-sphere": 10, "ellipsoid-bowl": 8, "ellipsoid-cylinder": 12},
+                 "hollow": {"shell-wall": 10, "gas-shell": 12, "ring-circle": 8},
+                 "incompressible": {"block-circle": 14, "disc-normal": 8, "ball-axisymmetric": 8},
+                 "unlike": {"disc-slab": 16, "ball-cylinder": 14},
+                 "strips": {"disc-strip": 12, "ball-plate": 10, "disc-free-strip": 8}}
+OTHER_ACCURACIES = (0.02, 0.05, 0.1)
+FASTEST_OTHER = 0.08  # upper bound of the speed over sqrt(E/density)
+NEARLY = (0.49, 0.495, 0.499)  # Poisson's ratios
+UNLIKE = (0.0333, 0.1, 0.3, 3.0, 10.0, 30.0)  # ratios of Young's moduli
+
+
+def others(seed: int, count: int) -> list[tuple[str, Point]]:
+    """About `count` scenes of each family in OTHER_MIXTURE, as scene and overrides."""
+    entries = []
+    for family, shares in OTHER_MIXTURE.items():
+        for scene, share in shares.items():
+            chance = random.Random(f"{seed} {family} {scene}")
+            many = max(1, round(count * share / 30))
+            for k in range(many):
+                young, density, nu = MATERIALS[chance.choice(list(MATERIALS))]
+                c = bar_speed(young, density)
+                speed = c * FASTEST_OTHER * math.exp(-chance.uniform(0, math.log(40)))
+                point = {"young": young, "density": density, "nu": chance.choice(NEARLY) if family == "incompressible" else nu,
+                         "law": "neohookean", "accuracy": chance.choice(OTHER_ACCURACIES)}
+                point |= _rounded(OTHER_SHAPES[scene](chance, speed, c, point))
+                entries.append(((k + 0.5) / many, scene, point))
+    return [(scene, point) for _, scene, point in sorted(entries, key=lambda entry: entry[0])]
+
+
+def family(scene: str) -> str:
+    """The family of a scene: a key of OTHER_MIXTURE, or else the scene itself."""
+    return next((name for name, shares in OTHER_MIXTURE.items() if scene in shares), scene)
+
+
+def _rounded(value):
+    """The numbers in overrides, to three digits."""
+    if isinstance(value, dict):
+        return {name: _rounded(item) for name, item in value.items()}
+    if isinstance(value, list):
+        return [_rounded(item) for item in value]
+    return _round(value) if isinstance(value, float) else value
+
+
+def _friction(chance: random.Random) -> Point:
+    static = chance.choice([0.0, 0.2, 0.5])
+    return {"contact.friction_static": static, "contact.friction_dynamic": static * chance.choice([0.7, 1.0])}
+
+
+def _ball_sphere(chance: random.Random, speed: float, c: float, material: Point) -> Point:
+    radius = 0.05 * chance.choice([0.3, 1.0, 3.0])
+    return {"obstacle.1.radius": radius, "obstacle.1.centre": [0.0, -radius], "body.1.velocity": -speed} | _friction(chance)
+
+
+def _ellipsoid_bowl(chance: random.Random, speed: float, c: float, material: Point) -> Point:
+    half, bowl = 0.03 * chance.choice([0.7, 1.0, 2.0]), 0.1 * chance.choice([1.5, 3.0])
+    # The ellipsoid is more strongly curved at its lowest point than the bowl.
+    half = max(half, 1.2 * 0.05**2 / bowl)
+    return {"body.1.semi_axes": [0.05, half], "body.1.position": 1.01 * half, "body.1.velocity": -speed,
+            "obstacle.1.radius": bowl, "obstacle.1.centre": [0.0, bowl]} | _friction(chance)
+
+
+def _ellipsoid_cylinder(chance: random.Random, speed: float, c: float, material: Point) -> Point:
+    half, height = 0.025 * chance.choice([0.7, 1.0, 2.0]), 0.04 * chance.choice([0.5, 1.0, 2.0])
+    return {"body.1.semi_axes": [0.04, half], "body.1.position": half + height / 2 + 0.0003, "body.1.velocity": -speed,
+            "body.2.height": height, "body.2.young": material["young"] * chance.choice([1.0, 3.0, 10.0])} | _friction(chance)
+
+
+def _shell(chance: random.Random, speed: float, c: float, material: Point) -> Point:
+    return {"body.1.inner_radius": 0.05 * chance.choice([0.5, 0.7, 0.85]), "body.1.velocity": -speed} | _friction(chance)
+
+
+def _gas_shell(chance: random.Random, speed: float, c: float, material: Point) -> Point:
+    return _shell(chance, speed, c, material) | {
+        "body.1.load.1.gas.gauge_pressure": material["young"] * chance.choice([0.002, 0.01, 0.02])}
+
+
+def _ring(chance: random.Random, speed: float, c: float, material: Point) -> Point:
+    off = 0.1 * chance.choice([0.0, 0.2, 0.4])
+    return {"body.1.inner_radius": 0.05 * chance.choice([0.5, 0.7, 0.8]), "body.1.velocity.2": -speed,
+            "body.1.position": [off, (0.1001**2 - off**2) ** 0.5 - 0.05 + 0.0002]} | _friction(chance)
+
+
+def _block_circle(chance: random.Random, speed: float, c: float, material: Point) -> Point:
+    angle, off = chance.choice([0.0, 10.0, 25.0]), 0.03 * chance.random()
+    turn = math.radians(angle)  # the lower face, 0.025 from the centre, is just above the disc
+    return {"body.1.angle": angle, "body.1.velocity": [speed * chance.choice([0.0, 0.5]), -speed],
+            "body.1.position": [off, (0.0653 + off * math.sin(turn)) / math.cos(turn)]} | _friction(chance)
+
+
+def _rubber(chance: random.Random, speed: float, c: float, material: Point) -> Point:
+    return {"speed": speed}
+
+
+def _slab(chance: random.Random, speed: float, c: float, material: Point) -> Point:
+    stiffer = chance.choice(UNLIKE)
+    speed *= min(1.0, stiffer**0.5)
+    return {"body.1.young": material["young"] * stiffer, "body.1.density": material["density"] * chance.choice([0.3, 1.0, 3.0]),
+            "body.1.velocity": [speed * chance.choice([0.0, 0.5]), -speed],
+            "body.2.height": 0.04, "body.2.width": 0.2 * chance.choice([0.5, 1.0])} | _friction(chance)
+
+
+def _ball_cylinder(chance: random.Random, speed: float, c: float, material: Point) -> Point:
+    stiffer = chance.choice(UNLIKE)
+    return {"body.1.young": material["young"] * stiffer, "body.1.velocity": -speed * min(1.0, stiffer**0.5),
+            "body.2.height": 0.1, "body.2.radius": 0.15 * chance.choice([0.5, 1.0])} | _friction(chance)
+
+
+def _strip(chance: random.Random, speed: float, c: float, material: Point) -> Point:
+    return {"body.1.position": [0.02 * chance.choice([0, 1, 2]), 0.0303], "body.1.velocity.2": -speed,
+            "body.2.width": 0.2 * chance.choice([0.6, 1.0, 1.4])}
+
+
+def _plate(chance: random.Random, speed: float, c: float, material: Point) -> Point:
+    return {"body.1.velocity": -speed, "body.2.radius": 0.1 * chance.choice([0.6, 1.0, 1.4])}
+
+
+OTHER_SHAPES = {"ball-sphere": _ball_sphere, "ellipsoid-bowl": _ellipsoid_bowl, "ellipsoid-cylinder": _ellipsoid_cylinder,
+                "shell-wall": _shell, "gas-shell": _gas_shell, "ring-circle": _ring, "block-circle": _block_circle,
+                "disc-normal": _rubber, "ball-axisymmetric": _rubber, "disc-slab": _slab, "ball-cylinder": _ball_cylinder,
+                "disc-strip": _strip, "ball-plate": _plate, "disc-free-strip": _strip}

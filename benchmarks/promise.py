@@ -160,7 +160,7 @@ def _row(out: Path, name: str, point: study.Point) -> dict:
 
 def open_scene(name: str, point: study.Point) -> scene.Scene:
     """The scene with automatic penalty. The built-in scenes prescribe a penalty."""
-    own = draws.FLAT / f"{name}.toml"
+    own = draws.OWN / f"{name}.toml"
     open_one = scene.load(str(own) if own.exists() else name)
     penalty = "contact.penalty" if open_one.bodies else "penalty"
     return open_one.override({"fields": 0, penalty: "auto"} | point)

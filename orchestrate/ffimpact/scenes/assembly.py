@@ -561,29 +561,32 @@ def _boundary(scene: Scene, k: int) -> list[list[tuple[Curve, float, int]]]:
     """Returns the closed curves that bound the mesh of body k, the outer one first,
     counter-clockwise. Each is a list of pieces with the largest element size [m] and the label.
     """
-    loops = scene.bodies[k].outline.loops
+    loops, finest = scene.bodies[k].outline.loops, math.sqrt(float(scene.values["accuracy"]))
+
+    def largest(loop: Loop) -> float:
+        # Edges on an ellipse are straight, and an edge of the angle a loses a^2/6 of the area.
+        if loop.semi_axes is None:
+            return np.inf
+        return (ROUND if loop.radius else min(ROUND, finest)) * loop.semi_axes.min()
+
     if scene.dimension is AXISYMMETRIC:
         if isinstance(scene.bodies[k].outline, TubeOutline):
             return [
                 [
-                    (partial(loops[0].at, piece), _largest(loops[0]), FREE)
+                    (partial(loops[0].at, piece), largest(loops[0]), FREE)
                     for piece in range(len(loops[0].corners))
                 ]
             ]
         return [
             [
-                (piece, _largest(loop), FREE) if loop else (piece, np.inf, AXIS)
+                (piece, largest(loop), FREE) if loop else (piece, np.inf, AXIS)
                 for piece, loop in revolution.boundary(scene.bodies[k].outline)
             ]
         ]
     return [
-        [(partial(loop.at, piece), _largest(loop), FREE) for piece in range(len(loop.corners))]
+        [(partial(loop.at, piece), largest(loop), FREE) for piece in range(len(loop.corners))]
         for loop in loops
     ]
-
-
-def _largest(loop: Loop) -> float:
-    return np.inf if loop.semi_axes is None else ROUND * loop.semi_axes.min()
 
 
 def _reached(scene: Scene, k: int, made):
