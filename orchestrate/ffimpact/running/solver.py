@@ -56,8 +56,8 @@ APART = 10.0
 
 class Solver(AbstractContextManager):
     """Runs a scene with given values in given folders, one run after the other. If `pair` is set
-    and a core is free, the coarser run starts at the same time as the main run. In a thread other
-    than the main thread it does not, because a study already has a run on every core.
+    and a core is free, the coarser runs start at the same time as the main run. In a thread other
+    than the main thread they do not, because a study already has a run on every core.
     """
 
     def __init__(
@@ -79,16 +79,18 @@ class Solver(AbstractContextManager):
         )
         self.own_mesh = foreign is None and not scene.of_files
         self.number = 0
-        self.beside: tuple[Path, dict[str, Value], freefem.Process] | None = None
+        # The coarser runs that have started, by folder, with the entries that they override.
+        self.beside: dict[Path, tuple[dict[str, Value], freefem.Process]] = {}
         self.leaving = ExitStack()
 
     def __exit__(self, *_) -> None:
-        """Ends the coarser run. Removes its folder if the main run has neither a summary nor a
+        """Ends the coarser runs. Removes their folders if the main run has neither a summary nor a
         checkpoint.
         """
         self.leaving.close()
         if not any((self.stage / name).exists() for name in ("summary.json", "checkpoint")):
-            shutil.rmtree(self.stage / estimate.COARSE, ignore_errors=True)
+            for name in estimate.LEVELS:
+                shutil.rmtree(self.stage / name, ignore_errors=True)
 
     def __call__(self, overrides: dict[str, Value], where: Path) -> None:
         """Runs the scene, with `overrides`, in the folder `where`: from its checkpoint if there is
@@ -160,29 +162,31 @@ class Solver(AbstractContextManager):
         return process
 
     def _start_beside(self, used: Mapping) -> None:
-        """Starts the coarser run as estimate.settle() will request it. A Failure is ignored here;
-        settle() then raises it again.
+        """Starts the coarser runs as estimate.settle() will request them. A Failure is ignored
+        here; settle() then raises it again.
         """
-        where = self.stage / estimate.COARSE
-        overrides = self.scaled(
-            self.scene.values | self.scene.sizes, used, estimate.COARSER, self.own_mesh
-        )
-        if not (where / "summary.json").exists():
-            with suppress(Failure):
-                self.beside = where, overrides, self._started(overrides, where, self.leaving)
+        for k, name in enumerate(estimate.LEVELS, 1):
+            where, factor = self.stage / name, estimate.COARSER**k
+            overrides = self.scaled(
+                self.scene.values | self.scene.sizes, used, factor, self.own_mesh
+            )
+            if not (where / "summary.json").exists():
+                with suppress(Failure):
+                    self.beside[where] = overrides, self._started(overrides, where, self.leaving)
 
     def _taken(self, overrides: dict[str, Value], where: Path) -> freefem.Process | None:
         """Returns the process of the coarser run if the request is for this run, else None. If the
-        request is for another run, the coarser run is ended and its folder removed.
+        request is for other sizes, the coarser runs are ended and their folders removed.
         """
-        if not self.beside:
+        if where not in self.beside:
             return None
-        folder, values, process = self.beside
-        self.beside = None
-        if (folder, values) == (where, overrides):
+        values, process = self.beside.pop(where)
+        if values == overrides:
             return process
         self.leaving.close()
-        shutil.rmtree(folder)
+        for folder in (where, *self.beside):
+            shutil.rmtree(folder)
+        self.beside = {}
         return None
 
 
@@ -242,9 +246,10 @@ def _tail(stage: Path) -> str:
 # ---- progress of the runs
 
 
-def runs(estimate: bool) -> dict[str, float]:
+def runs(pair: bool) -> dict[str, float]:
     """Returns the runs that are expected with their costs."""
-    return {"main run": 1.0} | ({"coarser run": COST} if estimate else {})
+    levels = {f"{name} run": COST**k for k, name in enumerate(estimate.LEVELS, 1)}
+    return {"main run": 1.0} | (levels if pair else {})
 
 
 class Display:
@@ -256,11 +261,11 @@ class Display:
         self.part = kind if kind in line.costs else self.words
         self.seen: list[tuple[float, freefem.At]] = []
         # The upper bound [s] of the last forecast for all runs.
-        self.foretold = math.inf if kind == "coarser run" else LONG
+        self.foretold = math.inf if kind.startswith(estimate.LEVELS) else LONG
 
     def at(self, what: str, share: float = 0.0) -> None:
         """Shows the current work `what` and the completed fraction `share`, in [0, 1]."""
-        self.line.at(self.part, share, f"{self.words}, {what}", COST ** (2 - self.number))
+        self.line.at(self.part, share, f"{self.words}, {what}", COST ** (3 - self.number))
 
     def show(self, at: freefem.At) -> None:
         """Shows the progress that FreeFem++ reports. Prints a forecast if the runs will take
