@@ -231,7 +231,7 @@ def cover(table: pd.DataFrame, answers: Iterable[str] = estimate.PROMISED) -> pd
     needed: factor of the estimates (estimate.SAFETY) that gives just the coverage KEPT. It
         calibrates the estimates, with other seeds than the seeds of the page.
     """
-    answers = [name for name in answers if name in table and table[name].notna().any()]
+    answers = [name for name in answers if name in estimate.PROMISED or name in table and table[name].notna().any()]
     cases = {name: table[[name, f"{name} stated"]].dropna().set_axis(["error", "stated"], axis=1) for name in answers}
     cases = {name: case[case.max(axis=1) > LEAST] for name, case in cases.items()}
     cases["all"] = pd.concat(cases.values())

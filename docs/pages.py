@@ -64,16 +64,16 @@ OF_ESTIMATES = "".join(
         (
             "estimated errors",
             "warning / note",
-            "a warning where a promised answer is off by more than 1.5 times what was "
-            "asked; a note below that, of a contact time that scatters on every mesh, and of the "
-            "exact contact time and the peak force from twice that on",
+            "a warning where a promised answer may be off by more than 1.5 times what was "
+            "asked; a note below that, and of the exact contact time and the peak force from "
+            "twice that on",
             "take a smaller accuracy, or the error bar as it is",
         ),
         (
             "touches",
-            "warning / note",
-            "in place of these: the two runs of an estimate have different numbers of "
-            "intervals of contact",
+            "warning",
+            "the two finest runs of an estimate have different numbers of intervals of contact: "
+            "estimates may be too small",
             "take a smaller accuracy, or the impulse, which does not depend on single touches",
         ),
         (

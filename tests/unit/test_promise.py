@@ -50,10 +50,10 @@ def test_promise_is_kept_by_enough_scenes_at_no_more_than_its_price(values, good
 
 
 @pytest.mark.parametrize("values, stated, good", [
-    ([0.5] * 38 + [2.1] * 2, 2.0, True), ([0.5] * 37 + [2.1] * 3, 2.0, False), ([0.5] * 40, 2.1, False), ([0.5] * 40, 0.5, True), ([0.5] * 40, 0.49, False)])
+    ([0.5] * 37 + [2.1] * 3, 2.0, True), ([0.5] * 36 + [2.1] * 4, 2.0, False), ([0.5] * 40, 2.6, False), ([0.5] * 40, 0.5, True), ([0.5] * 40, 0.49, False)])
 def test_stated_errors_hold_and_are_not_far_too_large(values, stated, good):
-    """95 % of the cases of each promised result must be within the estimate, which may be up to
-    four times the error in the median."""
+    """95 % of the cases must be within the estimate, less what chance explains. It may be up to five
+    times the error in the median."""
     table = errors(*values, stated=stated)
     assert promise.covered(table) == good and f"{sum(value <= stated for value in values) / 40:.1%}" in promise.report(table)
 
@@ -64,7 +64,7 @@ def test_each_promised_answer_is_to_be_covered():
     table = errors(*[0.5] * 40)
     table["friction_work"] = table["friction_work stated"] = 0.0
     assert promise.covered(table) and promise.cover(table).set_index("answer").cases["friction_work"] == 0
-    table.loc[:2, ["rebound_spin", "rebound_spin stated"]] = 2.2, 2.0
+    table.loc[:4, ["rebound_spin", "rebound_spin stated"]] = 2.2, 2.0
     assert not promise.covered(table)
 
 
@@ -98,16 +98,25 @@ def test_promise_says_whether_it_is_kept(tmp_path, monkeypatch, capsys, error, c
     assert promise.main(arguments) == (0 if hard else code)
 
 
-@pytest.mark.parametrize("missed, code", [(1, 0), (2, 1)])
-def test_stated_errors_at_coarse_accuracies_are_to_hold_of_each_answer_and_accuracy(tmp_path, monkeypatch, capsys, missed, code):
-    """Two of thirty scenes with a peak force beyond the estimate fail, one does not. The table is
-    by accuracy and by result."""
+@pytest.mark.parametrize("missed, wide, code", [(0, 1.0, 0), (2, 1.0, 1), (0, 2.6, 1)])
+def test_stated_errors_are_to_hold_and_not_to_be_far_too_large_in_each_part(tmp_path, monkeypatch, capsys, missed, wide, code):
+    """Two of ten scenes of an accuracy with all results beyond the estimates is more than chance
+    explains; so are estimates of more than five times the errors. The table is by accuracy and by
+    result."""
     def compared(drawn, *_):
-        table = errors(*[0.5] * len(drawn)).assign(accuracy=[point["accuracy"] for _, point in drawn], contact_time=0.5, peak_force=0.5)
-        table[["contact_time stated", "peak_force stated"]] = 1.0
-        table.loc[:missed - 1, "peak_force"] = 1.1
+        table = errors(*[0.5] * len(drawn), stated=wide).assign(accuracy=[point["accuracy"] for _, point in drawn])
+        table.loc[:missed - 1, list(estimate.PROMISED)] = 3.0
         return table
     monkeypatch.setattr(promise, "compare", compared)
     assert promise.main(["--coarse", "--scenes", "30", "--out", str(tmp_path)]) == code
     output = capsys.readouterr().out
-    assert ("DO NOT HOLD" in output) == bool(code) and "promised, accuracy 0.03" in output and f"{1 - missed / 30:.1%}" in output
+    assert ("DO NOT HOLD" in output) == bool(code) and "accuracy 0.03" in output and f"{1 - missed / 30:.1%}" in output
+
+
+def test_drawn_scenes_of_other_families_are_accepted():
+    """Each family has about the same number of scenes; equal seeds give equal scenes."""
+    drawn = draws.others(3, 10)
+    assert drawn == draws.others(3, 10) and not any(entry in drawn for entry in draws.others(4, 10))
+    families = [draws.family(name) for name, _ in drawn]
+    assert set(families) == set(draws.OTHER_MIXTURE) and all(9 <= families.count(family) <= 11 for family in families)
+    assert all(promise.open_scene(name, point) and draws.words(point) for name, point in drawn)

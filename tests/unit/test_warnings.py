@@ -15,7 +15,7 @@ def test_what_stands_behind_a_warning_is_a_note():
     sentence is lost."""
     warnings = ["ellipticity: a", "breakdown: b", "penalty: c", "locking: d", "penetration: e", "estimated errors: f"]
     sentences = notes.settled(warnings, ["peak force: g"])
-    assert sentences["warnings"] == ["breakdown: b", "penetration: e"] and sorted(sentences["warnings"] + sentences["notes"]) == sorted([*warnings, "peak force: g"])
+    assert sentences["warnings"] == ["breakdown: b", "penetration: e", "estimated errors: f"] and sorted(sentences["warnings"] + sentences["notes"]) == sorted([*warnings, "peak force: g"])
     assert notes.settled(["touches: a", "penalty: b"], []) == {"warnings": ["touches: a"], "notes": ["penalty: b"]}
     assert notes.settled(["estimated errors: a", "steps: b", "penalty: c"], []) == {"warnings": ["estimated errors: a", "penalty: c"], "notes": ["steps: b"]}
     assert notes.settled(["penalty: a", "contact points: b"], ["peak force: c"]) == {"warnings": ["penalty: a", "contact points: b"], "notes": ["peak force: c"]}

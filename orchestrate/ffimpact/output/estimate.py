@@ -1,21 +1,23 @@
 """Estimates the error of a run from runs with larger elements and steps. Finer runs follow until the
 estimate meets the requested accuracy.
 
-The program reports the finest run. Elements and steps of the two other runs, its levels, are COARSER
-and COARSER^2 times as large. If the error is linear to quadratic in them, the difference of a result
-between successive levels is 0.4 to 1 times its error, and half to 0.7 times the next difference.
+The program reports the finest run. Elements and steps of the two other runs, its levels, are r =
+COARSER and r^2 times as large. If errors are of the order p in them, the error of the finest run is
+1/(r^p - 1) times the difference of the first two, and the next difference is r^p times as large.
 But single differences mislead: errors of elements and steps have opposite signs, and at the end of
-an impact the runs agree by chance. So the error estimate of a result is
+an impact runs agree by chance. So the error estimate of a result is
 
-    SAFETY sqrt(sum over k of (d_k^2 + h_k^2)/2^k),   k = 0, 1: pairs of successive levels
+    SAFETY/(r^p - 1) sqrt(sum over k of (d_k^2 + h_k^2)/r^(2 p k)),   k = 0, 1: pairs of levels,
 
     d_k: difference of the result between the two runs (differences());
-    h_k: root mean square difference of its time history (courses()).
+    h_k: root mean square difference of its time history (courses());
+    p: 2, of a flat strike 1, as its penalty follows the elements (scenes/front.py).
 
-All results of all scenes have the same factor SAFETY (benchmarks/promise.py has the scenes of its
-calibration). The estimate contains the error in 95 of 100 runs, and is about
-four times the usual error. It covers mesh and steps: penalty and slip velocity are the same in all
-runs, except the penalty of a flat strike, which follows the elements.
+All results of all scenes have the same factor SAFETY (benchmarks/promise.py lists the scenes of its
+calibration). The estimate contains the error in 95 of 100 runs and is about four times the usual
+error. The order is not taken from the three levels: its scatter is larger than its difference from
+p. The estimate covers mesh and steps: penalty and slip velocity are the same in all runs, except the
+penalty of a flat strike.
 
 Finer runs follow if the estimate of a promised result is above WORTH times the request. The former
 runs are then the levels of the new one. The contact time scatters with the vibration at the end of
@@ -77,9 +79,9 @@ LOOSER = 2  # factor on the accuracy for notes about results that are not promis
 WORTH = 1.5  # error estimate over the requested accuracy above which a finer run follows
 REGULARISED = ("penalty", "slip_velocity")
 NO_ANSWER = (11, 12)  # exit codes of runs that the step or the material ended
-# Error estimate over the differences, by the number of pairs of levels: of a single pair, chance
-# makes more.
-SAFETY = {1: 5.0, 2: 2.8}
+# Error estimate over that of the differences, by the number of their pairs. A single pair agrees by
+# chance more often.
+SAFETY = {1: 3.5, 2: 2.0}
 PROMISED = (
     "impulse",
     "rebound",
@@ -223,14 +225,14 @@ def error_estimates(runs: Sequence[Answers]) -> dict[str, float]:
     COARSER times the elements and steps of the one before.
     """
     pairs = [(differences(*pair), courses(*pair)) for pair in pairwise(runs)]
+    ratio = COARSER if runs[0].summary.get("front_rise") else COARSER**2
 
-    def squares(name: str) -> float:
-        return sum(
-            (apart[name] ** 2 + over_time[name] ** 2) / 2**k
-            for k, (apart, over_time) in enumerate(pairs)
-        )
+    def mean(name: str) -> float:
+        """The root of the sum of squares."""
+        return math.hypot(*(each[name] / ratio**k for k, pair in enumerate(pairs) for each in pair))
 
-    estimates = {name: SAFETY[len(pairs)] * math.sqrt(squares(name)) for name in pairs[0][0]}
+    factor = SAFETY[len(pairs)] / (ratio - 1)
+    estimates = {name: factor * mean(name) for name in pairs[0][0]}
     # All levels may have the same drift, so their differences do not show it.
     estimates["energy"] = max(estimates["energy"], runs[0].summary.get("energy_drift") or 0.0)
     return estimates | rest_errors(*runs[:2])

@@ -16,7 +16,7 @@ WIDEST = 100  # columns of a printed line
 CAUSES = ("contact points", "steps")  # warnings about causes of estimated errors
 # Warnings about the accuracy of a result. They become notes if the law has no solution or a body
 # passes through itself.
-OF_ACCURACY = ("penalty", "locking", "corner", "touches", "estimated errors", *CAUSES)
+OF_ACCURACY = ("penalty", "locking", "corner", *CAUSES)
 # By the name of a warning: the warnings that become notes beside it. Estimated errors include the
 # effect of their causes. If the mesh decides how often bodies come into contact, so does the
 # penalty.
