@@ -34,15 +34,16 @@ def order(monkeypatch):
 
 @pytest.mark.parametrize("name", SCENES)
 def test_two_at_a_time_give_the_same_to_the_last_digit(order, monkeypatch, tmp_path, name):
-    """With two cores the coarser run starts before the main one has ended and runs once. Results,
+    """With two cores the coarser runs start before the main one has ended and run once. Results,
     estimates and files equal those of sequential runs."""
     runs = {}
     for cores in (2, 1):
         monkeypatch.setattr(freefem, "CORES", cores)
         runs[cores] = go(name, tmp_path / str(cores) / "out")
         both = [event for event in order if "finer" not in event]
-        assert sorted(both) == ["coarser ends", "coarser starts", "out.part ends", "out.part starts"]
-        assert (both.index("coarser starts") < both.index("out.part ends")) == (cores == 2)
+        assert sorted(both) == sorted(f"{folder} {event}" for folder in (*estimate.LEVELS, "out.part") for event in ("ends", "starts"))
+        for folder in estimate.LEVELS:
+            assert (both.index(f"{folder} starts") < both.index("out.part ends")) == (cores == 2)
         order.clear()
     both = [{key: value for key, value in result.summary.items() if key not in EFFORT} for result in runs.values()]
     assert both[0] == both[1] and both[0]["estimated_error"]
@@ -82,7 +83,7 @@ def test_a_main_run_that_fails_takes_the_other_with_it(order, monkeypatch, tmp_p
     with pytest.raises(Failure) as error:
         go("disc-normal", tmp_path / "out", law="svk", speed="60", checkpoint_every="1")
     assert error.value.code in (11, 12) and error.value.folder == tmp_path / "out" and "coarser starts" in order
-    assert not at_work(tmp_path) and not list(tmp_path.rglob("coarser")) and not list(tmp_path.rglob("checkpoint*"))
+    assert not at_work(tmp_path) and not list(tmp_path.rglob("coarse*")) and not list(tmp_path.rglob("checkpoint*"))
 
 
 def test_a_run_beside_that_fails_is_said_where_it_was(monkeypatch, tmp_path):

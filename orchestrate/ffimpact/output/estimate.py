@@ -184,12 +184,13 @@ def settle(
         _swap(stage)
         runs = [read(stage), *runs[:2]]
         refinements += 1
+    if _lacks_contact(runs[0].summary):  # all levels lack it
+        estimated, sentences, notes = None, [], []
     sentences += touches(runs)
     for name in (*LEVELS, FINE):
         shutil.rmtree(stage / name, ignore_errors=True)
     return {
-        # All levels lack a contact that would follow.
-        "estimated_error": None if _lacks_contact(runs[0].summary) else estimated,
+        "estimated_error": estimated,
         "estimated_error_excludes": _excludes(runs[0].summary, own_mesh),
         "estimate_cpu_seconds": seconds,
         "refinements": refinements,
@@ -229,7 +230,7 @@ def error_estimates(runs: Sequence[Answers]) -> dict[str, float]:
 
     def mean(name: str) -> float:
         """The root of the sum of squares."""
-        return math.hypot(*(each[name] / ratio**k for k, pair in enumerate(pairs) for each in pair))
+        return math.hypot(*(part[name] / ratio**k for k, pair in enumerate(pairs) for part in pair))
 
     factor = SAFETY[len(pairs)] / (ratio - 1)
     estimates = {name: factor * mean(name) for name in pairs[0][0]}
