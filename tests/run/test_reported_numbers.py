@@ -166,3 +166,34 @@ def test_ringing_after_a_release_is_a_warning(tmp_path):
     said = [sentence for sentence in run.summary["warnings"] if sentence.startswith("release: support_peak_1")]
     assert rises > 0.2 and len(said) == 1
     assert float(said[0].split(" is ")[1].split(" %")[0]) == pytest.approx(100 * rises, rel=0.1)
+
+
+# ---- nothing to touch, and parts that cannot give way
+
+def test_a_free_body_needs_no_obstacle(tmp_path):
+    """A body that nothing touches runs until end_time: it flies and turns as it was thrown, and
+    nothing is said about a contact that cannot be."""
+    block = {"shape": "rectangle", "width": 0.02, "height": 0.01, "position": [0, 0], "velocity": [3, 1], "spin": 40}
+    for alone in (block, block | {"velocity": [0, 0], "spin": 0, "load": [{"where": "left", "traction": [{"t": [0, 1e-3], "x": [0, 2e3]}, 0]}]}):
+        run = bodies(tmp_path, SOFT | {"end_time": 2e-3, "body": [alone]})
+        summary, mass = run.summary, 1000 * 0.02 * 0.01
+        assert summary["ended"] == "end_time" and summary["warnings"] == []
+        assert summary["contact_intervals"] == 0 and run.history["t"][-1] == pytest.approx(2e-3)
+        thrown = [3, 1, 40] if alone is block else [0.01 * (2e3 / 2 * 1e-3 + 2e3 * 1e-3) / mass, 0, 0]
+        assert [run.history[name][-1] for name in ("vx", "vy", "spin")] == pytest.approx(thrown, rel=1e-3, abs=1e-6)
+
+
+def test_what_ended_a_flight_past_the_end_time(tmp_path):
+    """Two bodies that do not meet by the end_time: this ended the run, not an impact."""
+    discs = [{"shape": "disc", "radius": 0.01, "position": [x, 0], "velocity": [-x, 0]} for x in (-1, 1)]
+    summary = bodies(tmp_path, SOFT | {"end_time": 0.1, "body": discs}).summary
+    assert summary["ended"] == "end_time" and [sentence[:11] for sentence in summary["warnings"]] == ["no contact:"]
+
+
+def test_a_support_that_pushes_its_part_into_an_obstacle_is_named(tmp_path):
+    """The bottom of a block is moved 0.5 mm into the plane: no penalty helps, and none is advised."""
+    block = {"shape": "rectangle", "width": 0.02, "height": 0.02, "position": [0, 0.0105], "mesh_size": 0.01,
+             "support": [{"where": "bottom", "motion": [0, "-0.5*t"]}]}
+    summary = bodies(tmp_path, SOFT | {"end_time": 2e-3, "body": [block], "obstacle": [FLOOR]}).summary
+    assert [sentence.split(" near ")[0] for sentence in summary["warnings"]] == [
+        "held part: support 1 pushes its part up to 0.0005 m into obstacle1"]

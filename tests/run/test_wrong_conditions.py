@@ -22,6 +22,10 @@ def loaded(body: dict = BAR, top: dict | None = None, **load) -> dict:
     return BASE | (top or {}) | {"body": [body | {"load": [load]}]}
 
 
+def both(*supports: dict, **more) -> dict:
+    return BASE | {"body": [BAR | {"support": list(supports)} | more]}
+
+
 def moved(*motion) -> dict:
     return held(where="left", motion=list(motion))
 
@@ -45,6 +49,14 @@ WRONG = {
     "touching": (held(BAR | {"position": [0, 0.025]}, {"obstacle": [FLOOR]}, where="bottom"),
                  "body.1.support.1.where: the part is in contact with 'floor' at the start (accepted: a part without contact)"),
     "constant motion": (moved(0, 0.001), "body.1.support.1.motion.2: 0.001 does not change in time"),
+    "motion along a part": (held(where="top", fix="normal", motion=["2*t", "-0.1*t"]),
+                            "body.1.support.1.motion: moves along x, which fix = 'normal' leaves free on this part"),
+    "opposite motions": (both({"where": "top", "motion": [0, "t"]}, {"where": "top", "fix": "y", "motion": [0, "-t"]}),
+                         "body.1.support.2.motion: moves 'bar' along y otherwise than body.1.support.1, where both hold it"),
+    "load on a held side": (both({"where": "top"}, load=[{"where": "top", "pressure": 1e3}]),
+                            "body.1.load.1.where: supports hold this part of 'bar' until the end, so the pressure has no effect"),
+    "release after the end": (held(where="top", release=5e-3), "body.1.support.1.release: 0.005 is not before the end_time, 0.005 s"),
+    "columns of a component": (loaded(where="top", traction=[{"t": [0, 1], "y": [0, 1]}, 0]), "body.1.load.1.traction.1: '{"),
     "pole": (moved(0, "1/(t-0.0025)"), "body.1.support.1.motion.2: '1/(t-0.0025)' is inf, its slope nan, at t = 0.0025 s"),
     "pole elsewhere": (moved(0, "1/(t-0.0013)"), "at t = 0.0013 s (accepted: a number and a finite slope at all times)"),
     "jump": (moved(0, "abs(t-0.0013)/(t-0.0013)"), "motion.2: 'abs(t-0.0013)/(t-0.0013)' jumps, or has no limit, at t = 0.0013 s"),
@@ -65,7 +77,7 @@ WRONG = {
     "columns of a file": (held(where="left", motion="short.csv"), "'short.csv' begins with 't,x' (accepted: a CSV file with the first line 't,x,y'"),
     "words in a file": (held(where="left", motion="bad.csv"), "motion: line 3 of 'bad.csv' is '1,a,1'"),
     "times of a file": (held(where="left", motion="back.csv"), "motion.x: the time 0.5 s follows 1 s"),
-    "no list": (held(where="left", motion="up"), "motion: 'up' is no [x, y] (accepted: 2 numbers or expressions of t, or a CSV file)"),
+    "no list": (held(where="left", motion="up"), "motion: 'up' is no [x, y] (accepted: 2 numbers, expressions of t or tables, or a CSV file)"),
     "one component": (moved(0), "motion: '[0]' is no [x, y]"),
     "open cavity": (loaded(where="top", gas={"gauge_pressure": 1e3}), "body.1.load.1.where: is no closed cavity of 'bar', which a gas is in"),
     "two gases": (BASE | {"body": [RING | {"load": [{"where": "inner", "gas": {"gauge_pressure": 1e3}}] * 2}]},

@@ -286,9 +286,10 @@ def functions(
 ) -> tuple[TimeFunction, ...]:
     """The functions of an entry, one for each component in `names`.
 
-    The entry is a list of numbers and expressions, a single one for a single component, or a table
-    {t, ...} with a column for each component. Their knots are between 0 and `end_time` [s], if that
-    is not 0. Raises BadInput, with the name of the entry, for anything else.
+    The entry is a list of numbers, expressions and tables {t, x} of single components, a single one
+    for a single component, or a table {t, ...} with a column for each component. Their knots are
+    between 0 and `end_time` [s], if that is not 0. Raises BadInput, with the name of the entry, for
+    anything else.
     """
     components = _components(entry, definition, names, end_time)
     if end_time > 0:
@@ -309,11 +310,15 @@ def _components(entry: str, definition: object, names: str, end_time: float) -> 
     if not isinstance(definition, list) or len(definition) != len(names):
         raise BadInput(
             f"{entry}: '{brief(definition)}' is no [{', '.join(names)}] "
-            f"(accepted: {len(names)} numbers or expressions of t, or a CSV file)"
+            f"(accepted: {len(names)} numbers, expressions of t or tables, or a CSV file)"
         )
+    if len(names) == 1:
+        return [of_entry(entry, definition[0], end_time)]
     return [
-        of_entry(f"{entry}.{k}" if len(names) > 1 else entry, component, end_time)
-        for k, component in enumerate(definition, 1)
+        _components(f"{entry}.{k}", component, name, end_time)[0]
+        if isinstance(component, dict)
+        else of_entry(f"{entry}.{k}", component, end_time)
+        for k, (name, component) in enumerate(zip(names, definition), 1)
     ]
 
 

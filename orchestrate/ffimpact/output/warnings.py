@@ -377,7 +377,8 @@ def _chatter(e: Evidence) -> Iterator[Sentence]:
 def _contact(e: Evidence) -> Iterator[Sentence]:
     facts, record = e.facts, e.record
     if not record["contact_intervals"]:
-        if not facts["supports_move"] and not facts["loads"]:
+        touches = len(e.bodies) > 1 or facts["obstacles"]
+        if touches and not facts["supports_move"] and not facts["loads"]:
             none = " and ".join(
                 ["the bodies"] if len(e.bodies) > 1 else ["the body", e.counter_body]
             )
@@ -398,6 +399,7 @@ def _contact(e: Evidence) -> Iterator[Sentence]:
     depth = facts["penalty_share"] * (facts["exponent_used"] + 1) / 2
     if (
         (rise == 0 or rise > front)
+        and facts["held"][1] < 0
         and not all(body["rigid"] for body in e.bodies)
         and depth > SOFTEST
     ):
@@ -409,7 +411,7 @@ def _contact(e: Evidence) -> Iterator[Sentence]:
         )
     if facts["largest_force"] > 0:
         yield from _peak(e)
-    if facts["loaded_steps"] < FEWEST_STEPS:
+    if facts["loaded_steps"] < FEWEST_STEPS and (facts["held"][1] < 0 or facts["loaded_steps"]):
         yield warn(
             f"steps: {facts['loaded_steps']} steps in contact: at least {FEWEST_STEPS} are needed: "
             "take a smaller dt, or a smaller accuracy"
@@ -575,7 +577,7 @@ def _pairs(e: Evidence) -> Iterator[Sentence]:
     between these."""
     pairs = e.facts["pairs"]
     deep = [pair for pair in pairs if pair["deepest"] > DEEPEST * e.radius(pair)]
-    if deep:
+    if deep and e.facts["held"][1] < 0:
         worst = max(pairs, key=lambda pair: pair["deepest"] / e.radius(pair))
         share = worst["deepest"] / e.radius(worst)
         penalty = e.facts["penalty_used"] * (share / DEEPEST) ** e.facts["exponent_used"]
@@ -662,6 +664,18 @@ def _corners(e: Evidence) -> Iterator[Sentence]:
 
 
 # ---- supports
+
+
+def _held(e: Evidence) -> Iterator[Sentence]:
+    held = e.facts["held"]
+    if held[1] >= 0:
+        into = e.obstacle(e.facts["held_in"]) if e.facts["named"] else "the plane"
+        yield warn(
+            f"held part: support {e.facts['held_by'] + 1} pushes its part up to {rounded(held[0])} m "
+            f"into {into}{e.near(held)}, at t = {held[1]:g} s: its nodes follow the support, and no "
+            "contact force moves them: take a motion that keeps the part outside, or support "
+            "another part"
+        )
 
 
 def _release(e: Evidence) -> Iterator[Sentence]:
@@ -856,6 +870,7 @@ RULES = (
     _obstacles,
     _pairs,
     _corners,
+    _held,
     _release,
     _ending,
     _next_contact,

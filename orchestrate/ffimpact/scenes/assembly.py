@@ -111,9 +111,11 @@ def prepare(
             len(scene.bodies) == 1
             and not scene.obstacles
             and not (scene.bodies[0].supports or scene.bodies[0].loads)
+            and scene.values["end_time"] == 0
         ):
             raise BadInput(
-                "obstacle: is missing, and a second body too (accepted: one table [[obstacle]] or more, or several [[body]])"
+                "obstacle: is missing, and a second body too (accepted: one table [[obstacle]] or more, several "
+                "[[body]], or an end_time > 0)"
             )
         scene = turned(scene)
         onsets = onsets_of(scene)

@@ -189,6 +189,11 @@ def _support(table: models.Support, dimension: Dimension, end_time: float) -> Su
                     f"{table.at('motion')}: moves along {axis}, which fix = '{fix}' leaves free "
                     f"(accepted: 0 there, or fix = 'all')"
                 )
+    if table.release is not None and 0 < end_time <= table.release:
+        raise BadInput(
+            f"{table.at('release')}: {table.release:g} is not before the end_time, {end_time:g} s: nothing "
+            f"would be released (accepted: less, a larger end_time, or no release)"
+        )
     return Support(
         _part(table),
         fixed,

@@ -14,7 +14,7 @@ from ..mesh import mesh
 from ..mesh.mesh import Mesh
 from ..mesh.solid_mesh import SolidMesh
 from .bodies import Body
-from .conditions import KINDS, ON_SIDE, SIDES, Part, Support
+from .conditions import KINDS, NEVER, ON_SIDE, SIDES, Part, Support
 from .mirror import MIRROR_AXES
 
 __all__ = ["sections"]
@@ -60,6 +60,8 @@ def sections(
                 )
             )
         _refuse_all_held(body, surface)
+        _refuse_opposite(body, surface)
+        _refuse_without_effect(body, surface)
         filled: set[int] = set()  # elements of the cavities that have a gas already
         for load in body.loads:
             elements = surface.elements(load.part)
@@ -226,6 +228,13 @@ class _Surface:
                 f"{support.part.entry.rpartition('.')[0]}.fix: 'normal', but the part is not flat across x, y or z "
                 f"(accepted: all, {', '.join('xyz'[: self.dimension.axes])}, or a part that is)"
             )
+        entry = support.part.entry.rpartition(".")[0]
+        for k, function in enumerate(support.motion):
+            if k != axis and not function.is_zero:
+                raise BadInput(
+                    f"{entry}.motion: moves along {'xyz'[k]}, which fix = 'normal' leaves free on this part "
+                    f"(accepted: 0 there, or fix = 'all')"
+                )
         return tuple(axis == k for k in range(self.dimension.axes))
 
     def refuse_open(self, part: Part, elements: np.ndarray) -> None:
@@ -288,3 +297,45 @@ def _refuse_all_held(body: Body, surface: _Surface) -> None:
         raise BadInput(
             f"{body.supports[0].part.entry}: the whole boundary of '{body.name}' is held (accepted: a part of it)"
         )
+
+
+def _refuse_opposite(body: Body, surface: _Surface) -> None:
+    """Raises BadInput if two supports prescribe different motions of a component on the same
+    boundary elements, and the one that applies, the later in the scene, is not released first.
+    """
+    for j, second in enumerate(body.supports):
+        for first in body.supports[:j]:
+            elements = [surface.elements(support.part) for support in (first, second)]
+            if not np.isin(*elements).any() or second.release < first.release:
+                continue
+            fixed = [surface.fixed(*pair) for pair in zip((first, second), elements)]
+            for k, both in enumerate(zip(*fixed)):
+                if all(both) and not _alike(first.motion[k], second.motion[k]):
+                    entries = [support.part.entry.rpartition(".")[0] for support in (first, second)]
+                    raise BadInput(
+                        f"{entries[1]}.motion: moves '{body.name}' along {'xyz'[k]} otherwise than {entries[0]}, where "
+                        f"both hold it (accepted: the same motion there, parts without common facets, or "
+                        f"an earlier release of {entries[1]})"
+                    )
+
+
+def _alike(first: TimeFunction, second: TimeFunction) -> bool:
+    """Whether two motions are the same."""
+    return (first.is_zero and second.is_zero) or np.array_equal(first.knots, second.knots)
+
+
+def _refuse_without_effect(body: Body, surface: _Surface) -> None:
+    """Raises BadInput if a load acts only where supports hold all components until the end. The
+    gas in a cavity also has a volume, and may act elsewhere on its body.
+    """
+    held = np.zeros((len(surface.made.sides), surface.dimension.axes), dtype=bool)
+    for support in body.supports:
+        if support.release == NEVER:
+            elements = surface.elements(support.part)
+            held[elements] |= np.array(surface.fixed(support, elements))
+    for load in body.loads:
+        if load.kind != "gas" and held[surface.elements(load.part)].all():
+            raise BadInput(
+                f"{load.part.entry}: supports hold this part of '{body.name}' until the end, so the {load.kind} has no effect "
+                f"(accepted: a part that is free)"
+            )
