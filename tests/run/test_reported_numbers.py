@@ -22,17 +22,17 @@ CYLINDER = {"name": "cylinder", "shape": "cylinder", "radius": RADIUS, "height":
             "velocity": [0, -SPEED]}
 SHELL = {"name": "shell", "shape": "shell", "radius": OUTER, "inner_radius": INNER, "position": [0, 0.1213], "velocity": [0, -SPEED], "young": 3.1e6,
          "nu": 0, "density": 823.8, "load": [{"where": "inner", "gas": {"gauge_pressure": 7517, "exponent": 0}}]}
-THROWN = SOFT | {"dimension": "axisymmetric", "integrator": "midpoint", "end_time": 0.02, "body": [CYLINDER, SHELL],
+THROWN = SOFT | {"dimension": "axisymmetric", "integrator": "midpoint", "end_time": 0.01, "body": [CYLINDER, SHELL],
                  "obstacle": [{"kind": "bowl", "centre": [0, 0.6588], "radius": 0.6588}]}
 
 
 def test_the_balance_is_relative_to_energy_that_is_there(tmp_path):
     """Beside a load energy_drift is relative to the energy of the bodies, here that of the throw,
     not to what the load might have brought."""
-    run = bodies(tmp_path, THROWN | {"dt": 1e-4})
+    run = bodies(tmp_path, THROWN | {"dt": 5e-5})
     thrown = (1722 * math.pi * RADIUS**3 + 823.8 * 4 / 3 * math.pi * (OUTER**3 - INNER**3)) * SPEED**2 / 2
     gained = abs(run.history["balance"]).max()
-    assert gained > 1e-3 * thrown
+    assert gained > 1e-4 * thrown
     assert run.summary["energy_drift"] == pytest.approx(gained / thrown, rel=0.02)   # the gas has strained the shell
 
 
