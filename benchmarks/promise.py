@@ -184,9 +184,10 @@ def _compared(problem: scene.Scene, folder: Path) -> dict:
         used, factor = (answers.used, 1 / 2) if twice else (used, 1 / 3)
         solve(scaled(problem, problem.values, used | {"accuracy": min(STEPS_GROW, used["accuracy"])}, factor), finer)
         best = read_answers(finer)
-    # The reference itself has the share `factor` of an error of first order (bodies that strike
-    # flat), or the share `factor` squared of an error of second order.
-    share = 1 - factor if answers.summary["front_rise"] else 1 - factor**2 if twice else 1.0
+    # Sizes of the reference over those of the answer. The reference itself has this share of an
+    # error of first order (bodies that strike flat), or its square of an error of second order.
+    ratio = factor if twice else factor * estimate.COARSER ** summary["refinements"]
+    share = 1 - ratio if answers.summary["front_rise"] else 1 - ratio**2
     apart = {name: error / share for name, error in estimate.differences(answers, best).items()}
     stated = summary["estimated_error"] or {}
     row = {answer: apart[answer] / accuracy for answer in ANSWERS if answer in apart}
