@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from ffimpact.failure import BadInput
+from ffimpact.mesh.mesh import Sizes, mesh_body
+from ffimpact.scenes import assembly
 from tests.support.bodies_axisymmetric import BALL, FLOOR, SHAPES, read
 
 
@@ -14,6 +16,20 @@ def test_a_cone_is_about_its_centre_of_volume():
     its section."""
     cone, = read(SHAPES["cone"][0]).bodies
     assert cone.outline.points[:, 1].max() == pytest.approx(0.25) and cone.outline.points[:, 1].min() == pytest.approx(-0.75)
+
+
+@pytest.mark.parametrize("accuracy", [0.1, 0.02, 0.005])
+def test_the_volume_of_an_ellipsoid_is_exact_within_a_fifth_of_the_accuracy(accuracy):
+    """Its edges are straight, also far from the contact where elements of half a semi-axis would
+    do."""
+    table, volume = SHAPES["ellipsoid"]
+    scene = read(table | {"position": 0}, accuracy=accuracy)
+    made = mesh_body(assembly._boundary(scene, 0), Sizes(0.05, 0.05, np.empty((0, 2)), 0.0), 0.1)
+    corners = made.points[made.triangles]
+    sides = corners[:, 1:] - corners[:, :1]
+    areas = (sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 0, 1] * sides[:, 1, 0]) / 2
+    revolved = 2 * math.pi * (areas * corners[..., 0].mean(axis=1)).sum()
+    assert volume * (1 - accuracy / 5) < revolved < volume
 
 
 def test_a_rigid_profile_is_a_surface_of_revolution():
