@@ -91,7 +91,7 @@ OF_ESTIMATES = "".join(
         (
             "the error is not estimated",
             "warning",
-            "the second run failed, or took the same steps",
+            "the coarser run failed, or took the same steps",
             "take another accuracy and compare",
         ),
     )

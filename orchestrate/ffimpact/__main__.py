@@ -136,7 +136,7 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument(
         "--no-estimate",
         action="store_true",
-        help="make no second run, which estimates the errors",
+        help="make no coarser runs, which estimate the errors",
     )
     command.add_argument("--no-figures", action="store_true", help="draw no figures")
     command.add_argument(

@@ -48,7 +48,7 @@ def run(
     Entries of the scene are set by keywords (accuracy=0.005) or by dotted names
     (entries={"body.1.young": 2e6}). `out` is the result folder. Its default is results/NAME for a
     file or a built-in scene; a Scene object gets a folder of its own. A finished run in the folder
-    is reused unless `force` is set. With `estimate` a second run estimates the errors, and with
+    is reused unless `force` is set. With `estimate` coarser runs estimate the errors, and with
     `figures` the figures are drawn. If the scene leaves `fields` open, the run keeps 60 states. The
     folder is that of the command `ffimpact run`. Raises the exceptions of ffimpact: BadInput,
     StepFailed and so on.
