@@ -14,7 +14,7 @@ def test_a_tube_on_its_end_is_a_bar(tmp_path):
     Pappus' theorem."""
     summary = run(tmp_path, 'shape = "tube"\nradius = 0.03\ninner_radius = 0.02\nheight = 0.1\nposition = [0, 0.0501]')
     error = summary["estimated_error"]
-    assert abs(summary["restitution"] - 1) < error["rebound"] < 0.02
+    assert abs(summary["restitution"] - 1) < error["rebound"] < 0.05
     exact = 2 * 0.1 / math.sqrt(1000)
     assert abs(summary["contact_time"] / exact - 1) < error["contact_time"]
     assert summary["mass"] == pytest.approx(1000 * math.pi * (0.03**2 - 0.02**2) * 0.1, rel=1e-12)
