@@ -63,7 +63,7 @@ def _summary(evidence: warnings.Evidence) -> dict[str, Any]:
     for name, value in evidence.record.items():
         summary |= sentences if name == "diagnostics" else _at_both_ends(evidence, name, value)
         if name == "contact_time":
-            summary |= numbers
+            summary |= {run_number: numbers[run_number] for run_number in contacts.RUN_NUMBERS}
         if name == "ended":
             summary["later_contact_possible"] = evidence.later_contact_possible
     return summary

@@ -339,6 +339,8 @@ def read_summary(folder: Path) -> dict:
     path = folder / "summary.json"
     with reading(path):
         summary = json.loads(path.read_text("utf-8"))
+        if not isinstance(summary, dict) or "status" not in summary:
+            raise ValueError("it is no summary of a run")
         if summary["status"] != "ok":
             raise ValueError(f"status is {summary['status']!r}")
         for name, value in summary.items():
