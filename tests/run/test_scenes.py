@@ -260,7 +260,7 @@ def test_a_shaft_of_a_file_has_its_flats(tmp_path):
     mesh.write(mesh.Mesh(points, spokes, spokes[:, 1:], np.ones(16, dtype=int)), tmp_path / "shaft.msh")
     body = {"name": "shaft", "shape": "mesh", "file": "shaft.msh", "position": [0, 0.0101], "velocity": [0, -2], "angle": 60}
     result = run.run(read_scene(FALLING | {"body": [body], "end_time": 3e-3}, tmp_path, "shaft"), {}, tmp_path / "run")
-    assert result.summary["estimated_error_excludes"][-1] == "mesh" and any("those of the step" in sentence or "not estimated" in sentence for sentence in result.summary["warnings"] + result.summary["notes"])
+    assert result.summary["estimated_error_excludes"][-1] == "mesh" and any("those of the time step" in sentence or "not estimated" in sentence for sentence in result.summary["warnings"] + result.summary["notes"])
     area = radius**2 * (math.pi - 2 * flat + math.sin(2 * flat))
     assert result.summary["energy_initial"] == pytest.approx(area * 1722 * 2, rel=1e-4) and abs(result.summary["rebound_spin"]) > 50
     assert "outline: shaft: 14 edges on circles, 2 straight edges; 16 may touch\n" in (result.folder / "log.txt").read_text()

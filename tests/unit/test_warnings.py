@@ -73,7 +73,8 @@ def test_a_run_to_rest_prints_bounces_and_not_a_rebound():
 
 
 def test_what_is_zero_or_unknown_has_no_row():
-    """Zero by symmetry, no friction, no velocity at end_time."""
+    """Zero by symmetry, no friction, no velocity at end_time, no bounce that is over."""
+    assert printed({"until": "rest"}, first_restitutions=[], bounces=0) == ["bounces"]
     numbers = dict(rebound_vx=1e-5, rebound_vy=2.0, rebound_spin=0, final_vy=None, friction_work=0, symmetric_along=["x"])
     assert printed({}, **numbers) == ["rebound_vy"]
     assert printed({}, **numbers | {"symmetric_along": [], "final_vy": 1.0}) == ["rebound_vx", "rebound_vy", "final_vy"]

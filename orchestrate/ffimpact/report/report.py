@@ -308,7 +308,7 @@ def rows_of(result: Record, verbose: bool = False) -> list[Quantity]:
         for row in rows(dimension.per_metre(summary["provenance"]["script"]))
         if verbose or row.main(result, row.key)
         for quantity in _of_bodies(row, scene, summary)
-        if summary.get(quantity.key) is not None and quantity.when(result, quantity.key)
+        if summary.get(quantity.key) not in (None, []) and quantity.when(result, quantity.key)
     ]
     # Without a contact that is over, the velocities of the rebound are those at the end of the run.
     if scene.get("end_time") and not any(row.key.startswith("final_") for row in printed):
