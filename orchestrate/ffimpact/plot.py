@@ -44,15 +44,21 @@ class Plots:
         self.result = result
         self.per = per_metre(result["provenance"]["script"])
 
-    def force(self, ax: Axes | None = None) -> Axes:
-        """Draws normal force and friction force [N or kN] over time [ms]."""
-        history, ax = self.result.history, _axes(ax)
-        unit, factor = ("kN", 1e-3) if history.normal_force.max() >= 1e3 else ("N", 1.0)
-        ax.plot(MS * history.t, factor * history.normal_force, label="normal")
-        for name in ("friction_force", "friction_force_z"):
-            if name in history and history[name].any():
-                label = "friction" if name == "friction_force" else "friction, z"
-                ax.plot(MS * history.t, factor * history[name], label=label)
+    def force(self, ax: Axes | None = None, filter: str | None = None) -> Axes:
+        """Draws normal force and friction force [N or kN] over time [ms]. With a `filter`, as "CFC
+        600" (Result.force), the filtered forces stand before the unfiltered ones in a light colour.
+        """
+        forces, ax = self.result.force(filter), _axes(ax)
+        unit, factor = ("kN", 1e-3) if self.result.history.normal_force.max() >= 1e3 else ("N", 1.0)
+        suffix = f", {filter}" if filter else ""
+        labels = {"normal_force": "normal", "friction_force": "friction"}
+        for name, label in (labels | {"friction_force_z": "friction, z"}).items():
+            if name in forces and (name == "normal_force" or forces[name].any()):
+                [line] = ax.plot(MS * forces.t, factor * forces[name], label=label + suffix)
+                if filter:
+                    history = self.result.history
+                    x, y, colour = MS * history.t, factor * history[name], line.get_color()
+                    ax.plot(x, y, color=colour, alpha=0.35, linewidth=0.8, zorder=1)
         return _labelled(ax, f"force [{unit}{self.per}]")
 
     def energies(self, ax: Axes | None = None) -> Axes:

@@ -22,6 +22,7 @@ from .input.dimension import per_metre
 from .output import vtu
 from .output.errors import errors
 from .output.evaluate import evaluate
+from .output.filters import channel_class, filtered
 from .output.meanings import describe_results
 from .output.results import Record, numbers, read_record, read_summary
 from .places import shown
@@ -97,6 +98,21 @@ class Result:
         """
         self._path("history.csv")
         return pd.DataFrame(dict(self.record.history))
+
+    def force(self, filter: str | None = None) -> pd.DataFrame:
+        """The forces over time: t, normal_force, friction_force, and those on bodies and of
+        supports where there are any. By default these are the columns of `history`.
+
+        `filter` is a channel frequency class of SAE J211-1 and ISO 6487, "CFC 60", "CFC 180",
+        "CFC 600" or "CFC 1000". The forces are then resampled to uniform times and filtered
+        forwards and backwards. Raises BadInput for another filter.
+        """
+        names = [name for name in self.history if "force" in name or name == "normal_load"]
+        if filter is None:
+            return self.history[["t", *names]].copy()
+        columns = {name: self.history[name].to_numpy() for name in names}
+        times, values = filtered(self.history.t.to_numpy(), columns, channel_class(filter))
+        return pd.DataFrame({"t": times} | values)
 
     @cached_property
     def contacts(self) -> pd.DataFrame:

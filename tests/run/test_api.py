@@ -73,7 +73,9 @@ def test_numbers_have_errors_and_units(result):
 
 def test_units_of_a_ball_are_those_of_the_whole(tmp_path):
     """Only results in plane strain are per metre of thickness. Speeds keep their unit."""
-    ball = ff.run("ball-axisymmetric", accuracy=0.2, estimate=False, figures=False, out=tmp_path / "ball")
+    ball = ff.run(
+        "ball-axisymmetric", accuracy=0.2, estimate=False, figures=False, out=tmp_path / "ball"
+    )
     assert [ball.units[name] for name in ("impulse", "peak_force", "energy_initial", "mass")] == [
         "N s",
         "N",
@@ -107,6 +109,24 @@ def test_figures_are_drawn_into_axes(result):
         assert ax.has_data()
     with pytest.raises(ff.BadInput, match="von_mises"):
         result.plot.shapes(field="stress")
+    plt.close("all")
+
+
+def test_a_force_is_filtered(result):
+    """Filtered forces keep the impulse and are drawn before the unfiltered ones. Without a filter
+    they are those of the history."""
+    plt = pytest.importorskip("matplotlib.pyplot")
+    force, raw = result.force(filter="CFC 1000"), result.force()
+    step = force.t[1] - force.t[0]
+    assert force.normal_force.sum() * step == pytest.approx(result["impulse"], rel=0.01)
+    assert raw.normal_force.equals(result.history.normal_force)
+    assert 0.5 * raw.normal_force.max() < force.normal_force.max() < raw.normal_force.max()
+    lines = result.plot.force(filter="CFC 1000").lines
+    assert lines[0].get_label() == "normal, CFC 1000"
+    assert lines[0].get_ydata() == pytest.approx(1e-3 * force.normal_force)
+    assert lines[1].get_ydata() == pytest.approx(1e-3 * raw.normal_force)
+    with pytest.raises(ff.BadInput, match="^filter: 'CFC 10' is no channel frequency class"):
+        result.plot.force(filter="CFC 10")
     plt.close("all")
 
 
@@ -159,14 +179,23 @@ def test_results_are_compared_one_by_one_or_as_a_list(result):
 def test_a_result_is_of_one_run(tmp_path):
     """If another run has replaced the run in the folder, later reading raises an error."""
     first = ff.run(drop(), accuracy=0.2, estimate=False, figures=False, out=tmp_path / "run")
-    ff.run(drop(), {"body.1.velocity.2": -4}, accuracy=0.2, estimate=False, figures=False, out=tmp_path / "run")
+    ff.run(
+        drop(),
+        {"body.1.velocity.2": -4},
+        accuracy=0.2,
+        estimate=False,
+        figures=False,
+        out=tmp_path / "run",
+    )
     with pytest.raises(ff.Unreadable, match="another run"):
         _ = first.history
 
 
 def test_states_are_as_many_as_the_scene_says(tmp_path):
     """There are none if the scene requests none, and some if the entry is automatic."""
-    none = ff.run(drop(fields=0), accuracy=0.3, estimate=False, figures=False, out=tmp_path / "none")
+    none = ff.run(
+        drop(fields=0), accuracy=0.3, estimate=False, figures=False, out=tmp_path / "none"
+    )
     some = ff.run(drop(), accuracy=0.3, estimate=False, figures=False, out=tmp_path / "some")
     assert len(none.fields) == 0 < len(some.fields) <= 41
 
