@@ -427,13 +427,29 @@ class Gas(Entries):
 
     gauge_pressure: Annotated[
         float,
-        number(-MOST_PRESSURE, MOST_PRESSURE, "Pa", "over the pressure outside, at the start"),
+        number(
+            -MOST_PRESSURE,
+            MOST_PRESSURE,
+            "Pa",
+            "over the pressure outside, in equilibrium with the body at the start",
+        ),
     ]
     exponent: Annotated[
         float | None, number(0.0, 10.0, "", "n of p V^n; 1: isothermal, 1.4: air")
     ] = None
     ambient_pressure: Annotated[
         float | None, number(0.0, MOST_PRESSURE, "Pa", "outside; an atmosphere where it is open")
+    ] = None
+    given_shape: Annotated[
+        str | None,
+        Parameter(
+            "",
+            "word",
+            None,
+            "",
+            "of the body: unstressed (default), or inflated as at the start",
+            words=("unstressed", "inflated"),
+        ),
     ] = None
 
 

@@ -232,6 +232,18 @@ def _material(body: dict[str, Value]) -> str:
     return f"{body['law']}, young = {body['young']:g} Pa, nu = {body['nu']:g}, density = {body['density']:g} kg/m3"
 
 
+def _gases(summary: dict) -> list[str]:
+    """Returns a line for each gas: its state at the start."""
+    unit = "m2" if dimension.per_metre(summary["provenance"]["script"]) else "m3"
+    return [
+        f"gas of load {k}: {summary[name]:.4g} Pa in {summary[f'gas_volume_start_{k}']:.4g} {unit} "
+        f"at the start, radius of its body {summary[f'gas_radius_start_{k}']:.4g} m"
+        for name in summary
+        if name.startswith("gas_pressure_start_")
+        for k in [name.rsplit("_", 1)[1]]
+    ]
+
+
 def _friction(contact: dict[str, Value]) -> str:
     friction = contact.get("friction_static")
     return (
@@ -274,6 +286,7 @@ def report(result: Record, verbose: bool = False) -> str:
     lines = [
         f"{folder}: " + ("finished earlier, same scene and code" if result.reused else "finished"),
         *_scene(scene),
+        *_gases(summary),
         *_numbers(result, printed, marks),
         *warning_lines(summary, verbose),
         *(_sentence(marks[key], note, verbose) for key in footnotes for note in footnotes[key]),

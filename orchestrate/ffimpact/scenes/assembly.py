@@ -33,6 +33,7 @@ from .front import Front, fronts
 from .mirror import COPIES, MIRROR_AXES, copies
 from .parts import sections
 from .scene import Pair, Scene
+from .unstressed import find_unstressed
 
 __all__ = [
     "Asker",
@@ -124,11 +125,10 @@ def prepare(
         built = assemble(scene, onsets=onsets)
         built.write(where)
         text = to_toml(scene.with_files_in(where, built.used))
-        return (
-            built.values | {"mesh": file, "bodies": where / "scene.dat"},
-            tomllib.loads(text),
-            text,
-        )
+        flags = built.values | {"mesh": file, "bodies": where / "scene.dat"}
+        if any(body.inflated for body in scene.bodies) and not (where / "checkpoint").exists():
+            find_unstressed(scene, flags, where)
+        return flags, tomllib.loads(text), text
     description = (like or scene).description(foreign)
     if not scene.meshed:
         return scene.values, description["used"], ""

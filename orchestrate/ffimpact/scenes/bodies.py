@@ -114,6 +114,12 @@ class Body:
         )
 
     @property
+    def inflated(self) -> bool:
+        """Whether the given shape is that under the gases in the body."""
+        pressed = not self.rigid and any(load.gas[0] for load in self.loads)
+        return pressed and any(load.inflated for load in self.loads)
+
+    @property
     def carried_along(self) -> "Body":
         """The body with the mean velocity of its support on the way to the displacement farthest
         from the start. A body without supports is unchanged.

@@ -102,13 +102,15 @@ class Load:
     """A part of the boundary with a stress; `kind` is one of KINDS.
 
     `functions` of time are the components of a traction, or the pressure [Pa]. `gas` holds gauge
-    and ambient pressure [Pa] and the exponent of a gas.
+    and ambient pressure [Pa] and the exponent of a gas. `inflated` states whether the given shape
+    of the body is that under this gas.
     """
 
     part: Part
     kind: str
     functions: tuple[TimeFunction, ...]
     gas: tuple[float, float, float] = (0.0, 0.0, 1.0)
+    inflated: bool = False
 
     @property
     def largest(self) -> float:
@@ -170,7 +172,12 @@ def read_loads(
     """Returns the loads in the [[body.load]] tables of a body. Raises BadInput for whatever is
     wrong in them.
     """
-    return tuple(gathered([partial(_load, table, dimension, end_time) for table in tables]))
+    loads = tuple(gathered([partial(_load, table, dimension, end_time) for table in tables]))
+    shapes = [load.inflated for load in loads if load.kind == "gas"]
+    if len(set(shapes)) > 1:
+        entry = next(table.gas.at("given_shape") for table in tables if table.gas)
+        raise BadInput(f"{entry}: differs between gases of one body (accepted: one for all)")
+    return loads
 
 
 def _support(table: models.Support, dimension: Dimension, end_time: float) -> Support:
@@ -216,9 +223,11 @@ def _load(table: models.Load, dimension: Dimension, end_time: float) -> Load:
         gauge = replace(
             number(-ambient, models.MOST_PRESSURE), name=gas.at("gauge_pressure")
         ).check(gas.gauge_pressure)
-        return Load(
-            part, kind, (), (float(gauge), ambient, 1.0 if gas.exponent is None else gas.exponent)
-        )
+        shape, words = gas.given_shape or "unstressed", ("unstressed", "inflated")
+        if shape not in words:
+            raise BadInput(f"{gas.at('given_shape')}: {unknown(shape, words)}")
+        exponent = 1.0 if gas.exponent is None else gas.exponent
+        return Load(part, kind, (), (float(gauge), ambient, exponent), shape == "inflated")
     components = "p" if kind == "pressure" else "xyz"[: dimension.axes]
     return Load(part, kind, functions(table.at(kind), getattr(table, kind), components, end_time))
 

@@ -79,8 +79,8 @@ def sections(
                     k,
                     KINDS[load.kind],
                     *numbers,
-                    *load.gas[:2],
-                    load.gas[2],
+                    *load.gas,
+                    int(body.inflated),
                     len(elements),
                     *(first + elements),
                 )

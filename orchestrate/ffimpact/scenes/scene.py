@@ -373,6 +373,7 @@ def _of_tables(content: dict, folder: Path, name: str) -> Scene:
     _apart(scene)
     _refuse_integrator(scene)
     _refuse_start(scene)
+    _refuse_straight(scene)
     for k, body in enumerate(all_bodies, 1):
         _refuse_nu(f"body.{k}.nu" if len(all_bodies) > 1 else "nu", body.nu, body.law, values)
     mirror.copies(scene)
@@ -397,6 +398,16 @@ def _refuse_nu(entry: str, nu: float, law: str, values: Mapping[str, Value]) -> 
             )
     elif nu > 0.4999:
         raise BadInput(f"{entry}: {nu:g} is out of range (accepted: 0 to 0.4999, or 0.5: J = 1)")
+
+
+def _refuse_straight(scene: Scene) -> None:
+    """Raises BadInput for an inflated shape of straight elements, whose nodes are not moved."""
+    for b, body in enumerate(scene.bodies, 1):
+        if body.inflated and scene.values["degree"] == 1:
+            raise BadInput(
+                f"body.{b}.load: given_shape = 'inflated' needs elements of degree 2 "
+                "(accepted: degree = 2)"
+            )
 
 
 def _refuse_integrator(scene: Scene) -> None:

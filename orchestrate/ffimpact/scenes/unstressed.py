@@ -1,0 +1,85 @@
+"""Finds the unstressed shape of bodies whose given shape is that under their gases."""
+
+import math
+import shutil
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from ..failure import BadInput, of_code
+from ..freefem import freefem
+from .scene import Scene
+
+__all__ = ["find_unstressed"]
+
+MOST = 40  # iterations
+CLOSE = 1e-7  # distance of the given shape from that under the gases, over the extent
+REMEMBERED = 5  # earlier iterations that an iteration combines
+
+
+def find_unstressed(scene: Scene, flags: Mapping[str, object], where: Path) -> None:
+    """Writes the displacement W from the given shape x to the unstressed one X = x + W to the file
+    MESH.unstressed beside the mesh, for the run with these flags in the folder `where`.
+
+    In an iteration, edp/core/run/unstressed.idp displaces X by u, into equilibrium with the gases.
+    The fixed point W = -u is sought (Sellier, 2011), with Anderson's acceleration. Raises BadInput
+    if it is not found.
+    """
+    file, out = Path(f"{flags['mesh']}.unstressed"), where / "unstressed"
+    change, off = np.zeros(0), math.inf
+    next_ones: list[np.ndarray] = []
+    residuals: list[np.ndarray] = []
+    file.write_text("search 0\n")
+    for _ in range(MOST):
+        code, message = freefem.run(
+            freefem.find(),
+            f"edp/{scene.script}.edp",
+            {**flags, "out": out},
+            where / "log.txt",
+        )
+        shutil.rmtree(out, ignore_errors=True)
+        head, *lines = file.read_text().splitlines()
+        word, *numbers = head.split()
+        if word != "next":
+            if not next_ones:
+                raise of_code(code, message or f"FreeFem++ stopped with exit code {code}")
+            break
+        share, extent = map(float, numbers[1:])
+        next_ones.append(np.array(lines, float))
+        residuals.append(next_ones[-1] - (change if change.size else 0.0))
+        off = abs(residuals[-1]).max() / extent
+        ends = share == 1 and off <= CLOSE
+        change = next_ones[-1] if ends else _combined(next_ones, residuals)
+        _write(file, "found" if ends else "search", change)
+        if ends:
+            return
+    raise BadInput(
+        f"{_entry(scene)}: no unstressed shape is found; under the gas the last one is "
+        f"{off:.2g} of the extent from the given shape (accepted: a smaller gauge_pressure, or "
+        "unstressed)"
+    )
+
+
+def _combined(next_ones: list[np.ndarray], residuals: list[np.ndarray]) -> np.ndarray:
+    """The next iterate: the combination of the last ones with the smallest residual."""
+    last = slice(-1 - REMEMBERED, None)
+    steps, falls = np.diff(next_ones[last], axis=0).T, np.diff(residuals[last], axis=0).T
+    if steps.size == 0:
+        return next_ones[-1]
+    return next_ones[-1] - steps @ np.linalg.lstsq(falls, residuals[-1], rcond=1e-10)[0]
+
+
+def _write(file: Path, word: str, change: np.ndarray) -> None:
+    text = [f"{word} {len(change)}", *(f"{value:.17g}" for value in change)]
+    file.write_text("\n".join(text) + "\n")
+
+
+def _entry(scene: Scene) -> str:
+    """The entry of the first gas under which the given shape of its body is."""
+    return next(
+        f"body.{b}.load.{k}.gas.given_shape"
+        for b, body in enumerate(scene.bodies, 1)
+        for k, load in enumerate(body.loads, 1)
+        if body.inflated and load.inflated
+    )
