@@ -52,3 +52,17 @@ def test_hopping_is_no_chatter(tmp_path):
     summary = results.read_summary(tmp_path / "out")
     assert process.returncode == 0 and summary["contact_intervals"] > 40 and not any(
         "chatter" in warning for warning in summary["warnings"])
+
+
+@pytest.mark.robustness
+def test_touches_after_the_impact_are_no_chatter(tmp_path):
+    """A rod strikes one of twice its length and stays behind at rest beside it (St. Venant: e = 1/2).
+
+    Then its face touches the other one many times, with less than a thousandth of the peak force.
+    """
+    rod = {"shape": "rectangle", "height": 0.01, "mesh_size": 0.00125}
+    content = {"law": "neohookean", "young": 1e6, "nu": 0.0, "density": 1000, "accuracy": 0.02, "end_time": 0.008,
+               "body": [rod | {"width": 0.05, "position": [-0.0251, 0], "velocity": [0.1, 0]}, rod | {"width": 0.1, "position": [0.05, 0]}]}
+    summary = run.run(scene.read(content, tmp_path, "rods"), {}, tmp_path / "out", estimate=False).summary
+    assert summary["contact_intervals"] > 20 and summary["restitution"] == pytest.approx(0.5, abs=0.02)
+    assert not any("chatter" in warning for warning in summary["warnings"])
