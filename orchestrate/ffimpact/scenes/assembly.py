@@ -27,6 +27,7 @@ from ..input.parameters import Value
 from ..input.toml_text import to_toml
 from ..mesh import mesh, revolution, solid_mesh, solids
 from ..mesh.mesh import AXIS, FREE, Curve, Sizes, mesh_body, nearest
+from ..mesh.solids import Solid
 from .approach import Onset, loaded_pull, onsets_of, refuse_nothing, refuse_sinking, turned
 from .bodies import DAMPING, STIFF, Body
 from .front import Front, fronts
@@ -231,7 +232,10 @@ def _solids(
         solids.mesh_of(body, size, mirror_axes, accuracy) for body, size in zip(scene.bodies, sizes)
     ]
     meshes = [_reached(scene, k, made) for k, made in enumerate(meshes)]
-    count = sum(solid_mesh.unknowns(made.cells, scene.values["degree"]) for made in meshes)
+    count = sum(
+        0 if body.rigid else solid_mesh.unknowns(made.cells, scene.values["degree"])
+        for body, made in zip(scene.bodies, meshes)
+    )
     if count > solid_mesh.MOST_UNKNOWNS:
         raise BadInput(
             f"mesh_size: the bodies have {count} unknowns (accepted: up to {solid_mesh.MOST_UNKNOWNS}; larger mesh_size, "
@@ -510,8 +514,7 @@ def element_sizes(k: int, ask: Asker) -> Sizes:
     hits = [_hit(body, k, onset, ask) for onset in ask.onsets if k in (onset.first, onset.second)]
     mine = [front for front in ask.fronts.values() if k in front.sizes]
     if body.rigid and not body.mesh_size:
-        # A rigid body does not deform. This size only keeps its outline round.
-        bulk = float(body.outline.half_thickness) / 3
+        bulk = _bulk_of_rigid(body, min((size for size, *_ in hits), default=math.inf))
     if not body.mesh_size:
         bulk = min((front.sizes[k] for front in mine if k in front.crossed), default=bulk)
     contact = body.contact_mesh_size or min(
@@ -519,6 +522,15 @@ def element_sizes(k: int, ask: Asker) -> Sizes:
     )
     near = np.vstack([np.empty((0, ask.scene.dimension.axes)), *(points for _, points, _ in hits)])
     return Sizes(bulk, min(bulk, contact), near, max([0.0, *(slack for *_, slack in hits)]))
+
+
+def _bulk_of_rigid(body: Body, contact: float) -> float:
+    """Returns the largest element size [m] of a rigid body, which does not deform. In the plane it
+    keeps the outline round. In space solid_mesh.LARGEST does, and all corners, which may strike
+    later, have at most twice the size at the first contact as long as the body stays coarse.
+    """
+    half = float(body.outline.half_thickness)
+    return max(half / 3, min(half, 2 * contact)) if isinstance(body.outline, Solid) else half / 3
 
 
 def _hit(body: Body, k: int, onset: Onset, ask: Asker) -> tuple[float, np.ndarray, float]:
@@ -536,6 +548,9 @@ def _hit(body: Body, k: int, onset: Onset, ask: Asker) -> tuple[float, np.ndarra
     near = _near(body, k, onset, depth, points)
     # Width near contact over that of a disc: above 1 for flat faces, below 1 for corners and pegs.
     wider = body.outline.width(near, spacing) / (2 * arc * onset.radius)
+    if all(hit.rigid for hit in bodies):
+        # The penalty alone yields. It spreads the load of a corner as widely as that of a disc.
+        wider = max(1.0, wider)
     if small > 0:  # a sharp corner has radius 0, and no element size resolves it
         wider = min(
             max(1.0, wider), wider / NARROW, POINTED * small / (2 / math.pi * arc * onset.radius)
