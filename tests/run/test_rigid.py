@@ -86,6 +86,19 @@ def test_a_block_dropped_flat_rebounds_as_a_mass_on_a_spring(tmp_path):
     assert summary["contact_time"] == pytest.approx(math.pi * math.sqrt(mass / stiffness), rel=0.02)
 
 
+def test_the_penalty_may_stand_in_the_obstacle(tmp_path):
+    """It gives the answer of the same number in [contact]; a second obstacle without a number is
+    refused, as no body yields."""
+    common, _ = run(tmp_path, DROPPED, "common")
+    text = DROPPED.replace("[contact]\n", "")
+    own, _ = run(tmp_path, text, "own")
+    assert all(own[name] == common[name] for name in ("rebound_vy", "contact_time", "peak_force", "warnings"))
+    file = tmp_path / "two.toml"
+    file.write_text(text + '[[obstacle]]\nkind = "plane"\npoint = [0, 9]\nnormal = [0, -1]\n')
+    with pytest.raises(BadInput, match="contact.penalty: 'auto' follows from a body that deforms, and all are rigid"):
+        load(str(file))
+
+
 def test_explicit_steps_have_no_rigid_bodies(tmp_path, monkeypatch):
     """A rigid body has no diagonal mass. Python and the scripts refuse it with the same line."""
     file = tmp_path / "scene.toml"

@@ -86,6 +86,7 @@ WRONG = {
     "half a cavity": (loaded(RING, where=HALF | {"point": [0, 0.2], "normal": [0, 1]}, gas={"gauge_pressure": 1e3}), "no closed cavity of 'ring'"),
     "less than vacuum": (loaded(RING, where="inner", gas={"gauge_pressure": -2e5}), "gas.gauge_pressure: -200000.0 is out of range (accepted: -101325"),
     "no equilibrium": (loaded(RING, where="inner", gas={"gauge_pressure": 1e7}), "body.1.load.1.gas.gauge_pressure: 'ring' has no equilibrium with 1e+07 Pa; the largest found is "),
+    "no equilibrium below": (loaded(RING, where="inner", gas={"gauge_pressure": -101325}), " Pa (accepted: -"),
     "gas a number": (loaded(RING, where="inner", gas=5e3), "gas: '5000.0' is no table (accepted: a table with gauge_pressure,"),
     "empty gas": (loaded(RING, where="inner", gas={}), "gas.gauge_pressure: is missing"),
     "exponent": (loaded(RING, where="inner", gas={"gauge_pressure": 1, "exponent": -1}), "gas.exponent: -1 is out of range (accepted: 0 to 10)"),

@@ -1,11 +1,14 @@
 """Obstacles given by an expression of their signed distance: accepted expressions, the program, the
 gap."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from ffimpact.failure import BadInput
 from ffimpact.geometry import implicit
+from ffimpact.scenes import approach, scene
 
 POINTS = np.random.default_rng(1).uniform(-0.3, 0.3, (500, 2))
 
@@ -126,3 +129,26 @@ def test_a_far_surface_is_found():
     """A circle 50 m below, of radius 0.2 m."""
     numbers = settled("x^2 + (y + 0.2)^2 - 0.04", (0.0, 50.05), 0.1)
     assert implicit.gap(np.array([[0.0, 0.001]]), numbers) == pytest.approx([0.001], abs=1e-9)
+
+
+@pytest.mark.parametrize("text, axes", [("y - 0.006*sin(60*x)", 2), ("min(y, x^2 + (y-1)^2 - 0.04)", 2), ("sqrt(x^2 + y^2 + z^2) - 0.3", 3)])
+def test_the_least_gap_is_the_smallest_of_all(text, axes):
+    """Near the surface, far from it, beside it and across it. The number is that of the point."""
+    numbers = implicit.settled("obstacle.1", implicit.program("distance", text, "xyz"[:axes]), np.array([0.0, 0.3, 0.0][:axes]), 1.0)
+    random = np.random.default_rng(0)
+    for size in np.logspace(-3, 5, 40):
+        points = size * random.normal(size=axes) + min(size, 0.1) * random.normal(size=(50, axes))
+        gaps, (gap, number) = implicit.gap(points, numbers), implicit.least(points, numbers)
+        assert gap == gaps.min() == gaps[number]
+
+
+def test_a_body_that_flies_away_is_soon_out_of_reach(monkeypatch):
+    """An ellipse strikes a wave and turns: the search for further contacts ends after some hundred
+    gaps."""
+    calls = []
+    monkeypatch.setattr(implicit, "least", lambda *shapes, least=implicit.least: calls.append(shapes) or least(*shapes))
+    ellipse = {"shape": "ellipse", "semi_axes": [0.06, 0.035], "angle": 25, "position": [0.004, 0.0565], "velocity": [2, -5]}
+    content = {"law": "neohookean", "young": 7e6, "nu": 0.45, "density": 1722, "body": [ellipse],
+               "obstacle": [{"kind": "implicit", "distance": "y - 0.006*sin(60*x)"}]}
+    onset, = approach.onsets_of(scene.read(content, Path(), "wave"))
+    assert onset.time == pytest.approx(3.1518e-3, rel=1e-4) and len(calls) < 200

@@ -23,6 +23,7 @@ __all__ = [
     "closest",
     "gap",
     "is_mirrored",
+    "least",
     "nearest",
     "no_zero",
     "program",
@@ -47,6 +48,7 @@ SAMPLES = 4000  # number of points near which curvature is sampled
 # Largest gradient whose square does not overflow. Beyond it only the sign of D is used.
 STEEPEST = 1e150
 Interval = tuple[np.ndarray, np.ndarray]  # lower and upper bounds (n,)
+WIDEST = 1e15  # largest width of a box that is known to have no zero, over `limit`
 FARTHEST = 1e4  # largest factor by which the box of the bodies grows in search of the surface
 
 
@@ -243,13 +245,31 @@ def _bound(code: Sequence[float], points: np.ndarray, limit: float) -> np.ndarra
     half, grows = np.full(len(points), limit), no_zero(code, points, np.full(len(points), limit))
     more = grows.copy()
     while more.any():
-        more[more] = no_zero(code, points[more], 2 * half[more]) & (half[more] < 1e9 * limit)
+        more[more] = no_zero(code, points[more], 2 * half[more]) & (half[more] < WIDEST * limit)
         half[more] *= 2
     more = ~grows
     while more.any():
         half[more] /= 2
         more[more] = (half[more] > 1e-12 * limit) & ~no_zero(code, points[more], half[more])
     return half
+
+
+def _least_bound(code: Sequence[float], points: np.ndarray, limit: float) -> tuple[float, int]:
+    """The smallest _bound() [m] of points, and the number of the first point that has it."""
+
+    def fail(half: float, among: np.ndarray) -> np.ndarray:
+        return among[~no_zero(code, points[among], np.full(len(among), half))]
+
+    half, every = limit, np.arange(len(points))
+    failing = fail(half, every)
+    if not len(failing):
+        while half < WIDEST * limit and not len(failing := fail(2 * half, every)):
+            half *= 2
+        return half, int(failing[0]) if len(failing) else 0
+    while len(failing):
+        half, last = half / 2, failing
+        failing = fail(half, failing) if half > 1e-12 * limit else failing[:0]
+    return half, int(last[0])
 
 
 def _parts(code: Sequence[float]) -> list[Sequence[float]]:
@@ -281,21 +301,54 @@ def gap(points: np.ndarray, numbers: tuple[float, ...], bounds: bool = True) -> 
 
 def _gap(points: np.ndarray, code: Sequence[float], limit: float, bounds: bool) -> np.ndarray:
     """gap() of one part."""
+    gaps, value, size = _certain(points, code, limit, bounds)
+    open_ = np.isnan(gaps)
+    with np.errstate(all="ignore"):
+        if not bounds:
+            first = np.where(size < STEEPEST, value / size, np.copysign(limit, value))
+            return np.where(open_, first, gaps)
+        if open_.any():
+            gaps[open_] = np.copysign(_bound(code, points[open_], limit), value[open_])
+    return gaps
+
+
+def least(points: np.ndarray, numbers: tuple[float, ...]) -> tuple[float, int]:
+    """The smallest gap() [m] of points (n, axes), and the number of the point that has it."""
+    limit, *code = numbers
+    return min((_least(points, part, limit) for part in _parts(code)), key=lambda gap: gap[0])
+
+
+def _least(points: np.ndarray, code: Sequence[float], limit: float) -> tuple[float, int]:
+    """least() of one part. Of the bounds of uncertain points it finds the smallest one only."""
+    gaps, value, _ = _certain(points, code, limit, True)
+    open_ = np.flatnonzero(np.isnan(gaps))
+    if not (value[open_] > 0).all():
+        gaps = _gap(points, code, limit, True)
+    elif len(open_):
+        with np.errstate(all="ignore"):
+            bound, first = _least_bound(code, points[open_], limit)
+        gaps[open_], gaps[open_[first]] = np.inf, bound
+    nearest_point = int(gaps.argmin())
+    return float(gaps[nearest_point]), nearest_point
+
+
+def _certain(
+    points: np.ndarray, code: Sequence[float], limit: float, bounds: bool
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Distances (n,) [m] of points from the surface, not a number where they are not certain; D and
+    |grad D| (n,).
+    """
     with np.errstate(all="ignore"):
         value, slope = run(code, points)
-        size = np.linalg.norm(slope, axis=1)
+        size, gaps = np.linalg.norm(slope, axis=1), np.full(len(points), np.nan)
         near = abs(value) < limit * np.minimum(size, STEEPEST)
-        if bounds:
-            gaps = np.copysign(_bound(code, points, limit), value)
-        else:
-            gaps = np.where(size < STEEPEST, value / size, np.copysign(limit, value))
         if near.any():
             distance = closest(points[near], code, limit)[0]
             certain = (abs(distance) <= 2 * limit) & (
                 (distance <= 0) | ~bounds | no_zero(code, points[near], distance / 2)
             )
-            gaps[near] = np.where(certain, distance, gaps[near])
-    return gaps
+            gaps[near] = np.where(certain, distance, np.nan)
+    return gaps, value, size
 
 
 def closest(points: np.ndarray, code: list[float], limit: float) -> tuple[np.ndarray, np.ndarray]:
@@ -346,7 +399,9 @@ def nearest(
     surface, by a share that is halved until the gap decreases: the whole way is too far if the
     radius exceeds the radius of curvature of the surface.
     """
-    code = min(_parts(code), key=lambda part: float(_gap(point[None], part, limit, True)[0]))
+    parts = _parts(code)
+    if len(parts) > 1:
+        code = min(parts, key=lambda part: float(_gap(point[None], part, limit, True)[0]))
     value, slope = run(code, point[None])
     if abs(value[0]) >= limit * np.linalg.norm(slope):
         return float(gap), slope[0] / np.linalg.norm(slope)

@@ -181,11 +181,13 @@ class Loop:
         A turned ellipse remains an ellipse.
         """
         turn = rotation(angle).T
-        return replace(
+        loop = replace(
             self,
             corners=self.corners @ turn + centre,
             arc_centres=None if self.arc_centres is None else self.arc_centres @ turn + centre,
         )
+        loop.__dict__["lengths"] = self.lengths  # independent of the position: not computed again
+        return loop
 
     def gap(self, points: np.ndarray) -> np.ndarray:
         """Signed distances (n,) [m] of points (n, 2) from the loop, negative inside."""

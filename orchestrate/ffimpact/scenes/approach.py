@@ -28,7 +28,7 @@ __all__ = ["Onset", "loaded_pull", "onsets_of", "refuse_nothing", "refuse_sinkin
 STEPS = 2000  # steps of conservative advancement, after which the onset of contact is unknown
 # Gap over the smaller half thickness at which the search ends. It matters for implicit obstacles
 # and surfaces, which have no parts with a search distance.
-FAR = 1e9
+FAR = 1e6
 # Restitution of an impact that turns bodies. It is low because much energy goes into vibration, and
 # because the bodies turn during contact.
 RESTITUTION = 0.5
@@ -305,7 +305,9 @@ def turned(scene: Scene) -> Scene:
 
     So the region of small elements does not depend on the frame in which the scene is written.
     """
-    if scene.dimension is not PLANE_STRAIN:
+    if scene.dimension is not PLANE_STRAIN or not any(
+        body.outline.disc and not body.mesh for body in scene.bodies
+    ):
         return scene
     onsets = onsets_of(scene)
     bodies = list(scene.bodies)

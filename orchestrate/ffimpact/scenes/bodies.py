@@ -268,21 +268,22 @@ def _moments(table: models.Body, dimension: Dimension) -> tuple[float, ...]:
     )
 
 
-def stiffened(bodies: list[Body], penalty: Value, path: str) -> list[Body]:
+def stiffened(bodies: list[Body], penalties: list[Value], path: str) -> list[Body]:
     """Returns the bodies of a scene with `young` of the rigid ones.
 
     It is STIFF times the largest `young` of the other bodies. If all bodies are rigid it is STIFF
-    times the penalty times the largest half thickness. Raises BadInput if the penalty is automatic
-    then.
+    times the largest of the `penalties` times the largest half thickness. Raises BadInput if one of
+    the penalties is automatic then.
     """
     if not any(body.rigid for body in bodies):
         return bodies
     soft = max((body.young for body in bodies if not body.rigid), default=0.0)
-    if not soft and penalty == "auto":
+    if not soft and "auto" in penalties:
         raise BadInput(
             f"{path}: 'auto' follows from a body that deforms, and all are rigid (accepted: a number, Pa/m^m)"
         )
-    young = STIFF * (soft or float(penalty) * max(body.outline.half_thickness for body in bodies))
+    half = max(body.outline.half_thickness for body in bodies)
+    young = STIFF * (soft or max(float(penalty) for penalty in penalties) * half)
     return [replace(body, young=young) if body.rigid else body for body in bodies]
 
 

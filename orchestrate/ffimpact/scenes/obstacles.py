@@ -259,9 +259,10 @@ class Implicit(Obstacle):
         """Returns the smallest gap [m] of a body and the outward normal there. The gap is that of the
         points of the body, or of its whole circle or sphere.
         """
-        gaps, (limit, *code) = self.gap(shape.points), self.numbers
+        gap, at = implicit.least(shape.points, self.numbers)
+        limit, *code = self.numbers
         with np.errstate(all="ignore"):
-            return implicit.nearest(shape.points[gaps.argmin()], gaps.min(), code, limit, shape.disc)
+            return implicit.nearest(shape.points[at], gap, code, limit, shape.disc)
 
     def radius_at(self, point: np.ndarray, within: float) -> float:
         return implicit.radius_at(point, self.numbers)

@@ -343,12 +343,15 @@ def _of_tables(content: dict, folder: Path, name: str) -> Scene:
     )
     all_obstacles = obstacles.settled(all_obstacles, centres.mean(axis=0), half)
     index = _names(all_bodies, all_obstacles)
-    all_bodies = bodies.stiffened(all_bodies, contact["penalty"], "contact.penalty")
     pairs = _own_of_obstacles(tables.obstacles, len(all_bodies))
     for both, pair in _exceptions(tables.contact.pair or [], index).items():
         pairs[both] = (
             replace(pair, values=pairs[both].values | pair.values) if both in pairs else pair
         )
+    penalties = _penalties(contact["penalty"], pairs, list(index.values()))
+    all_bodies = bodies.stiffened(all_bodies, penalties, "contact.penalty")
+    if all(body.rigid for body in all_bodies) and contact["penalty"] == "auto":
+        contact |= {"penalty": max(penalties)}  # no pair uses it, and no body would determine it
     for k in _touching_themselves(
         tables.contact,
         contact.get("pairing", "closest-point"),
@@ -501,6 +504,17 @@ def _own_of_obstacles(
             if own
         }
     return pairs
+
+
+def _penalties(
+    common: Value, pairs: dict[tuple[int, int], Pair], surfaces: list[int]
+) -> list[Value]:
+    """Returns the penalties of all pairs of surfaces, given by their indices; `common` where a pair
+    has none of its own, and where there is no pair.
+    """
+    every = [both for both in itertools.combinations(surfaces, 2) if both[0] >= 0]
+    own = {both: pair.values["penalty"] for both, pair in pairs.items() if "penalty" in pair.values}
+    return [own.get(both, common) for both in every] or [common]
 
 
 def _exceptions(tables: list[models.Pair], index: dict[str, int]) -> dict[tuple[int, int], Pair]:
