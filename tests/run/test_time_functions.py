@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from ffimpact.__main__ import main
 from tests.support.supports import energy
 from verification.measure import bodies
 
@@ -103,6 +104,22 @@ def test_a_shaken_bar_has_the_forces_of_its_waves(tmp_path, end):
     assert abs(force[-3:] - exact[-3:]).max() < 0.1 * abs(exact).max()
     if end == "stops":
         assert abs(history["t"] - stop).min() < 1e-12 * stop
+
+
+def test_a_table_in_a_file_is_copied_to_the_results(tmp_path):
+    """The scene of the results names the copy, and runs from there with the same history."""
+    (tmp_path / "shake.csv").write_text("t,x,y\n0,0,0\n0.001,0,1e-5\n0.002,0,0\n")
+    (tmp_path / "scene.toml").write_text(
+        'law = "svk"\nyoung = 1e6\nnu = 0.3\ndensity = 1000\naccuracy = 0.3\nend_time = 0.003\n[[body]]\nshape = "rectangle"\n'
+        'width = 0.1\nheight = 0.1\nposition = [0, 1]\nmesh_size = 0.05\n[[body.support]]\nwhere = "bottom"\nmotion = "shake.csv"\n')
+    assert main(["run", str(tmp_path / "scene.toml"), "--quiet", "--no-figures", "--out", str(tmp_path / "out")]) == 0
+    (tmp_path / "shake.csv").unlink()
+    (tmp_path / "out").rename(tmp_path / "kept")
+    scene = tmp_path / "kept" / "scene.toml"
+    assert 'motion = "body-files/body-1-support-1-motion.csv"' in scene.read_text()
+    assert main(["run", str(scene), "--quiet", "--no-figures", "--out", str(tmp_path / "again")]) == 0
+    kept, again = (np.genfromtxt(tmp_path / name / "history.csv", delimiter=",", names=True) for name in ("kept", "again"))
+    assert np.array_equal(kept["support_force_y_1"], again["support_force_y_1"]) and kept["support_work"][-1] > 0
 
 
 def test_a_belt_takes_a_box_along(tmp_path):

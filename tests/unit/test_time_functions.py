@@ -1,6 +1,8 @@
 """Functions of time: extremes, integrals, kinks, and expressions that change fast."""
 
 import math
+import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -90,11 +92,32 @@ def test_a_table_holds_its_last_value_and_an_expression_goes_on():
     assert ramp(np.array([0.0, 5e-4, 1.5e-3, 2e-3, 3e-3])) == pytest.approx([0, 0, 0.5, 1, 1])
     assert float(ramp.slope(2e-3)) == pytest.approx(1e3) and float(ramp.slope(2.5e-3)) == 0
     for end in (2e-3, 3e-3):
-        (cut,) = functions("motion", {"t": [1e-3, 2e-3], "x": [0.0, 1.0]}, "x", end)
+        (cut,) = functions("motion", {"t": [1e-3, 2e-3], "x": [0.0, 1.0]}, "x", end, Path())
         assert cut.knots[[0, -1], 0] == pytest.approx([0, end]) and float(cut.slope(2e-3)) == pytest.approx(1e3)
         assert float(cut.integral(0, end)) == pytest.approx(5e-4 + (end - 2e-3), rel=1e-9)
     line = of_entry("motion", "3*t", 1.0)
     assert float(line(1.5)) == pytest.approx(4.5) and float(line.slope(1.0)) == pytest.approx(3) and not len(line.kinks)
+
+
+def test_a_table_of_300_000_rows_is_read_in_seconds(tmp_path):
+    """Reading, extremes and integral of a long CSV file take seconds of processor time."""
+    t = np.linspace(0, 1, 300_000)
+    rows = np.column_stack([t, np.sin(20 * t)])
+    np.savetxt(tmp_path / "turn.csv", rows, "%.17g", ",", header="t,r", comments="")
+    began = time.process_time()
+    (turn,) = functions("rotation", "turn.csv", "r", 0.9, tmp_path)
+    assert turn.largest_value == pytest.approx(1) and turn.largest_slope == pytest.approx(20, rel=1e-4)
+    assert float(turn.integral(0, 0.9)) == pytest.approx((1 - math.cos(18)) / 20, rel=1e-9)
+    assert len(turn.knots) == pytest.approx(0.9 * 300_000, abs=3) and time.process_time() - began < 10
+
+
+def test_rows_of_a_file_are_checked(tmp_path):
+    """A row of another length, a word, and a file without rows are named."""
+    for text, message in (("t,x\n0,0,1,1\n2,2,3,3\n", "line 2 of 'a.csv' is '0,0,1,1'"), ("t,x\n0,0\n\n1,b\n", "is '1,b'"),
+                          ("t,x\n", "motion.x: 0 times and 0 values"), ("x\n1\n", "begins with 'x'")):
+        (tmp_path / "a.csv").write_text(text)
+        with pytest.raises(BadInput, match=message):
+            functions("motion", "a.csv", "x", 1.0, tmp_path)
 
 
 def test_kinks_are_found_where_branches_change():

@@ -28,6 +28,7 @@ __all__ = [
     "displacements",
     "farthest",
     "functions",
+    "is_csv",
     "of_csv",
     "of_entry",
     "of_table",
@@ -219,14 +220,17 @@ def of_table(entry: str, times: object, values: object) -> TimeFunction:
     """
     columns = []
     for name, column in (("t", times), ("value", values)):
-        if not isinstance(column, list) or not all(
-            type(number) in (int, float) for number in column
+        if not isinstance(column, np.ndarray) and not (
+            isinstance(column, list) and all(type(number) in (int, float) for number in column)
         ):
             raise BadInput(
                 f"{entry}: '{brief(column)}' of {name} is no list of numbers "
                 f"(accepted: as many numbers as times, two or more)"
             )
-        columns.append(np.array([_limited(entry, float(number)) for number in column]))
+        numbers = np.array(column, dtype=float)
+        for number in numbers[~(abs(numbers) <= LONGEST**2)]:
+            _limited(entry, float(number))
+        columns.append(numbers)
     t, value = columns
     if len(t) != len(value) or len(t) < 2:
         raise BadInput(
@@ -250,7 +254,12 @@ def of_table(entry: str, times: object, values: object) -> TimeFunction:
     return TimeFunction(np.array([*before, *np.column_stack([t, value, slope]), *after]))
 
 
-def of_csv(entry: str, path: Path, columns: str) -> dict[str, list[float]]:
+def is_csv(definition: object) -> bool:
+    """Whether the value of an entry is the name of a CSV file."""
+    return isinstance(definition, str) and definition.lower().endswith(".csv")
+
+
+def of_csv(entry: str, path: Path, columns: str) -> dict[str, np.ndarray]:
     """The table of a CSV file as columns {"t": [...], "x": [...], ...}.
 
     The first line of the file lists t and the `columns`, one letter each, in any order. Raises
@@ -259,38 +268,59 @@ def of_csv(entry: str, path: Path, columns: str) -> dict[str, list[float]]:
     first = ",".join(["t", *columns])
     accepted = f"(accepted: a CSV file with the first line '{first}' and {len(columns) + 1} columns of numbers)"
     try:
-        with open(path, encoding="utf-8-sig", newline="") as file:
-            rows = [[cell.strip() for cell in row] for row in csv.reader(file) if any(row)]
-    except (OSError, UnicodeDecodeError, ValueError, csv.Error) as error:
+        text = path.read_text("utf-8-sig")
+    except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise BadInput(
             f"{entry}: '{brief(path.name)}' cannot be read: {reason} {accepted}"
         ) from None
-    if not rows or sorted(rows[0]) != sorted(["t", *columns]):
-        begins = ",".join(rows[0]) if rows else ""
-        raise BadInput(f"{entry}: '{brief(path.name)}' begins with '{brief(begins)}' {accepted}")
-    for number, row in enumerate(rows[1:], 2):
+    begins, _, rows = text.lstrip().partition("\n")
+    names = [name.strip() for name in next(csv.reader([begins]), [])]
+    if sorted(names) != sorted(["t", *columns]):
+        raise BadInput(
+            f"{entry}: '{brief(path.name)}' begins with '{brief(begins.strip())}' {accepted}"
+        )
+    try:
+        lines = [line for line in rows.splitlines() if line.strip()]
+        table = np.empty((0, len(names)))
+        if lines:
+            table = np.loadtxt(lines, delimiter=",", comments=None, ndmin=2)
+        if table.shape[1] != len(names):
+            raise ValueError
+    except ValueError:
+        table = _rows(entry, path.name, rows, len(names), accepted)
+    return dict(zip(names, table.T))
+
+
+def _rows(entry: str, file: str, rows: str, columns: int, accepted: str) -> np.ndarray:
+    """The numbers (n, columns) of the rows of a CSV file, read one by one. Raises BadInput for the
+    first row that is no row of numbers.
+    """
+    table = []
+    for number, row in enumerate(csv.reader(rows.splitlines()), 2):
         try:
-            if len([float(cell) for cell in row]) != len(rows[0]):
+            table += [[float(cell) for cell in row]] if row else []
+            if row and len(row) != columns:
                 raise ValueError
         except ValueError:
             raise BadInput(
-                f"{entry}: line {number} of '{brief(path.name)}' is '{brief(','.join(row))}' "
-                f"{accepted}"
+                f"{entry}: line {number} of '{brief(file)}' is '{brief(','.join(row))}' {accepted}"
             ) from None
-    return {name: [float(row[k]) for row in rows[1:]] for k, name in enumerate(rows[0])}
+    return np.array(table).reshape(-1, columns)
 
 
 def functions(
-    entry: str, definition: object, names: str, end_time: float
+    entry: str, definition: object, names: str, end_time: float, folder: Path
 ) -> tuple[TimeFunction, ...]:
     """The functions of an entry, one for each component in `names`.
 
     The entry is a list of numbers, expressions and tables {t, x} of single components, a single one
-    for a single component, or a table {t, ...} with a column for each component. Their knots are
-    between 0 and `end_time` [s], if that is not 0. Raises BadInput, with the name of the entry, for
-    anything else.
+    for a single component, or a table {t, ...} with a column for each component, also as the name
+    of a CSV file in `folder`. Their knots are between 0 and `end_time` [s], if that is not 0.
+    Raises BadInput, with the name of the entry, for anything else.
     """
+    if is_csv(definition):
+        definition = of_csv(entry, folder / str(definition), names)
     components = _components(entry, definition, names, end_time)
     if end_time > 0:
         components = [function.between(0.0, end_time) for function in components]
@@ -323,15 +353,16 @@ def _components(entry: str, definition: object, names: str, end_time: float) -> 
 
 
 def displacements(
-    entry: str, definition: object, names: str, end_time: float
+    entry: str, definition: object, names: str, end_time: float, folder: Path
 ) -> tuple[TimeFunction, ...]:
     """The functions of a motion, as `functions`, less their values at t = 0.
 
     Raises BadInput, in addition, if a component is a number other than 0: it would have no effect.
     """
-    motion = functions(entry, definition, names, end_time)
+    motion = functions(entry, definition, names, end_time, folder)
+    tabulated = isinstance(definition, dict) or is_csv(definition)
     for k, function in enumerate(motion, 1):
-        if function.is_constant and not function.is_zero and not isinstance(definition, dict):
+        if function.is_constant and not function.is_zero and not tabulated:
             name = f"{entry}.{k}" if len(names) > 1 else entry
             raise BadInput(
                 f"{name}: {function.knots[0, 1]:g} does not change in time, and a motion counts "

@@ -196,8 +196,8 @@ def _body(table: models.Body, top: models.Top, folder: Path, dimension: Dimensio
         **material,
         mesh_size=bulk,
         contact_mesh_size=contact,
-        supports=read_supports(table.support or [], dimension, end_time),
-        loads=read_loads(table.load or [], dimension, end_time),
+        supports=read_supports(table.support or [], dimension, end_time, folder),
+        loads=read_loads(table.load or [], dimension, end_time, folder),
     )
 
 

@@ -6,6 +6,7 @@ docs/how-to/supports-and-loads.md. A part is a side of the body, a region of spa
 a named group of its file. Units are SI.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -20,7 +21,7 @@ from ..input.dimension import Dimension
 from ..input.models import listed
 from ..input.rules import ALIAS, number
 
-__all__ = ["Load", "Part", "Support", "inlined", "read_loads", "read_supports"]
+__all__ = ["Load", "Part", "Support", "csv_renamed", "read_loads", "read_supports"]
 
 NEVER = 1e300  # release [s] of a support that holds until the end
 AMBIENT = 101325.0  # default pressure [Pa] outside of a cavity with gas: standard atmosphere
@@ -118,9 +119,9 @@ class Load:
         return max([abs(self.gas[0]), *(function.largest_value for function in self.functions)])
 
 
-def inlined(content: dict, folder: Path, dimension: Dimension) -> dict:
-    """Returns the tables of a scene in which CSV files of supports, loads and driven obstacles are
-    replaced by their content.
+def csv_renamed(content: dict, rename: Callable[[str, str], str]) -> dict:
+    """Returns the tables of a scene with rename(label, name) in place of the names of CSV files of
+    supports, loads and driven obstacles. A label is unique in the scene.
     """
     bodies = []
     for b, body in enumerate(listed(content, "body"), 1):
@@ -128,14 +129,12 @@ def inlined(content: dict, folder: Path, dimension: Dimension) -> dict:
         for key, names in (("support", ("motion",)), ("load", ("traction", "pressure"))):
             if key in body:
                 changed[key] = [
-                    _with_tables(f"body.{b}.{key}.{k}", table, names, folder, dimension)
-                    for k, table in enumerate(
-                        listed({f"body.{b}.{key}": body[key]}, f"body.{b}.{key}"), 1
-                    )
+                    _csv_renamed(f"body-{b}-{key}-{k}", table, names, rename)
+                    for k, table in enumerate(listed(body, key), 1)
                 ]
         bodies.append(changed)
     obstacles = [
-        _with_tables(f"obstacle.{k}", table, ("motion", "rotation"), folder, dimension)
+        _csv_renamed(f"obstacle-{k}", table, ("motion", "rotation"), rename)
         for k, table in enumerate(listed(content, "obstacle"), 1)
     ]
     return (
@@ -145,34 +144,34 @@ def inlined(content: dict, folder: Path, dimension: Dimension) -> dict:
     )
 
 
-def _with_tables(
-    path: str, table: dict, names: tuple[str, ...], folder: Path, dimension: Dimension
+def _csv_renamed(
+    label: str, table: dict, names: tuple[str, ...], rename: Callable[[str, str], str]
 ) -> dict:
-    changed = dict(table)
-    for name in names:
-        value = table.get(name)
-        if isinstance(value, str) and value.lower().endswith(".csv"):
-            columns = "p" if name == "pressure" else "xyz"[: dimension.axes]
-            changed[name] = time_functions.of_csv(f"{path}.{name}", folder / value, columns)
-    return changed
+    files = {name: table[name] for name in names if time_functions.is_csv(table.get(name))}
+    return table | {name: rename(f"{label}-{name}", file) for name, file in files.items()}
 
 
 def read_supports(
-    tables: list[models.Support], dimension: Dimension, end_time: float
+    tables: list[models.Support], dimension: Dimension, end_time: float, folder: Path
 ) -> tuple[Support, ...]:
-    """Returns the supports in the [[body.support]] tables of a body. Raises BadInput for whatever
+    """Returns the supports in the [[body.support]] tables of a body. CSV files are relative to
+    `folder`. Raises BadInput for whatever
     is wrong in them.
     """
-    return tuple(gathered([partial(_support, table, dimension, end_time) for table in tables]))
+    return tuple(
+        gathered([partial(_support, table, dimension, end_time, folder) for table in tables])
+    )
 
 
 def read_loads(
-    tables: list[models.Load], dimension: Dimension, end_time: float
+    tables: list[models.Load], dimension: Dimension, end_time: float, folder: Path
 ) -> tuple[Load, ...]:
-    """Returns the loads in the [[body.load]] tables of a body. Raises BadInput for whatever is
-    wrong in them.
+    """Returns the loads in the [[body.load]] tables of a body. CSV files are relative to `folder`.
+    Raises BadInput for whatever is wrong in them.
     """
-    loads = tuple(gathered([partial(_load, table, dimension, end_time) for table in tables]))
+    loads = tuple(
+        gathered([partial(_load, table, dimension, end_time, folder) for table in tables])
+    )
     shapes = [load.inflated for load in loads if load.kind == "gas"]
     if len(set(shapes)) > 1:
         entry = next(table.gas.at("given_shape") for table in tables if table.gas)
@@ -180,7 +179,7 @@ def read_loads(
     return loads
 
 
-def _support(table: models.Support, dimension: Dimension, end_time: float) -> Support:
+def _support(table: models.Support, dimension: Dimension, end_time: float, folder: Path) -> Support:
     axes = "xyz"[: dimension.axes]
     words = ("all", *axes, "normal")
     fix = table.fix or "all"
@@ -189,7 +188,7 @@ def _support(table: models.Support, dimension: Dimension, end_time: float) -> Su
     fixed = tuple(fix in ("all", axis) for axis in axes)
     motion = (time_functions.constant(0.0),) * dimension.axes
     if table.motion is not None:
-        motion = displacements(table.at("motion"), table.motion, axes, end_time)
+        motion = displacements(table.at("motion"), table.motion, axes, end_time, folder)
         for axis, function, held in zip(axes, motion, fixed):
             if not (held or fix == "normal") and not function.is_zero:
                 raise BadInput(
@@ -210,7 +209,7 @@ def _support(table: models.Support, dimension: Dimension, end_time: float) -> Su
     )
 
 
-def _load(table: models.Load, dimension: Dimension, end_time: float) -> Load:
+def _load(table: models.Load, dimension: Dimension, end_time: float, folder: Path) -> Load:
     kinds = [kind for kind in KINDS if kind in table]
     if len(kinds) != 1:
         raise BadInput(
@@ -229,7 +228,8 @@ def _load(table: models.Load, dimension: Dimension, end_time: float) -> Load:
         exponent = 1.0 if gas.exponent is None else gas.exponent
         return Load(part, kind, (), (float(gauge), ambient, exponent), shape == "inflated")
     components = "p" if kind == "pressure" else "xyz"[: dimension.axes]
-    return Load(part, kind, functions(table.at(kind), getattr(table, kind), components, end_time))
+    definition = getattr(table, kind)
+    return Load(part, kind, functions(table.at(kind), definition, components, end_time, folder))
 
 
 def _part(table: models.Support | models.Load) -> Part:

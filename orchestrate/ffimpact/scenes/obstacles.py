@@ -367,10 +367,10 @@ def settled(obstacles: list[Obstacle], centre: np.ndarray, half: float) -> list[
 def _obstacle(table: models.Obstacle, dimension: Dimension, end_time: float, folder: Path) -> Obstacle:
     kind = KINDS[table.kind]
     return kind(table.name or table.entry.replace(".", ""), kind.numbers_of(table, dimension, folder),
-                np.array(table.velocity or [0.0] * dimension.axes), _drive(table, dimension, end_time))
+                np.array(table.velocity or [0.0] * dimension.axes), _drive(table, dimension, end_time, folder))
 
 
-def _drive(table: models.Obstacle, dimension: Dimension, end_time: float) -> Drive | None:
+def _drive(table: models.Obstacle, dimension: Dimension, end_time: float, folder: Path) -> Drive | None:
     """Returns the motion of the entries motion, rotation, pivot and axis, or None without them."""
     if not any(key in table for key in DRIVE):
         return None
@@ -385,10 +385,11 @@ def _drive(table: models.Obstacle, dimension: Dimension, end_time: float) -> Dri
         raise BadInput(f"{table.at('axis')}: is of three dimensions (accepted: without it, about z)")
     none = time_functions.constant(0.0)
     translation = ((none,) * dimension.axes if table.motion is None
-                   else displacements(table.at("motion"), table.motion, "xyz"[:dimension.axes], end_time))
+                   else displacements(table.at("motion"), table.motion, "xyz"[:dimension.axes], end_time, folder))
     if dimension is AXISYMMETRIC and not translation[0].is_zero:
         raise BadInput(f"{table.at('motion')}.1: leaves the axis of revolution (accepted: 0)")
-    degrees = none if table.rotation is None else displacements(table.at("rotation"), table.rotation, "r", end_time)[0]
+    degrees = (none if table.rotation is None
+               else displacements(table.at("rotation"), table.rotation, "r", end_time, folder)[0])
     turn = degrees.scaled(np.pi / 180)
     axis = np.array(table.axis or [0.0, 0.0, 1.0])
     if not axis.any():

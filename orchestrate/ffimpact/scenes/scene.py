@@ -148,6 +148,7 @@ class Scene:
             for table in self.content.get(key, [])
             if "file" in table
         ]
+        conditions.csv_renamed(self.content, lambda _, name: files.append(name) or name)
         meshes = {
             name: hashlib.sha256((self.folder / name).read_bytes()).hexdigest() for name in files
         }
@@ -157,8 +158,8 @@ class Scene:
         }
 
     def with_files_in(self, where: Path, tables: dict) -> dict:
-        """Copies the files of bodies and obstacles to `where`/body-files and returns `tables` with
-        the paths of the copies.
+        """Copies the files of bodies, obstacles, supports and loads to `where`/body-files and
+        returns `tables` with the paths of the copies.
 
         A scene.toml in `where` then finds the files wherever the folder is moved. A .geo file that
         includes other files is not copied: its path becomes relative to `where`.
@@ -170,7 +171,14 @@ class Scene:
                     self._with_copy(where, surface.name, table) if "file" in table else table
                     for surface, table in zip(named, tables[key])
                 ]
-        return changed
+
+        def copied(label: str, name: str) -> str:
+            copy = Path("body-files", f"{label}.csv")
+            (where / copy).parent.mkdir(exist_ok=True)
+            shutil.copyfile(self.folder / name, where / copy)
+            return copy.as_posix()
+
+        return conditions.csv_renamed(changed, copied)
 
     def _with_copy(self, where: Path, name: str, table: dict) -> dict:
         """Copies the file of a table into `where` and returns the table with the new path."""
@@ -313,7 +321,6 @@ def read(content: dict, folder: Path, name: str) -> Scene:
 def _of_tables(content: dict, folder: Path, name: str) -> Scene:
     """Returns the scene of tables with bodies."""
     scene_dimension = dimension.of_scene(content)
-    content = conditions.inlined(content, folder, scene_dimension)
     tables = models.read(content, scene_dimension)
     if not tables.bodies:
         raise BadInput("body: is missing (accepted: one table [[body]] or more)")
