@@ -24,7 +24,7 @@ def test_the_volume_of_an_ellipsoid_is_exact_within_a_fifth_of_the_accuracy(accu
     do."""
     table, volume = SHAPES["ellipsoid"]
     scene = read(table | {"position": 0}, accuracy=accuracy)
-    made = mesh_body(assembly._boundary(scene, 0), Sizes(0.05, 0.05, np.empty((0, 2)), 0.0), 0.1)
+    made = mesh_body(assembly.boundary_curves(scene, 0), Sizes(0.05, 0.05, np.empty((0, 2)), 0.0), 0.1)
     corners = made.points[made.triangles]
     sides = corners[:, 1:] - corners[:, :1]
     areas = (sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 0, 1] * sides[:, 1, 0]) / 2

@@ -40,6 +40,7 @@ __all__ = [
     "Asker",
     "Assembly",
     "assemble",
+    "boundary_curves",
     "contact_values",
     "data_file",
     "element_sizes",
@@ -205,7 +206,7 @@ def _sections(
     image of another one are left out.
     """
     meshes = [
-        body.mesh or mesh_body(_boundary(scene, k), sizes[k], body.outline.half_thickness)
+        body.mesh or mesh_body(boundary_curves(scene, k), sizes[k], body.outline.half_thickness)
         for k, body in enumerate(scene.bodies)
     ]
     meshes = [_reached(scene, k, made) for k, made in enumerate(meshes)]
@@ -574,7 +575,7 @@ def _near(body: Body, k: int, onset: Onset, depth: float, points: np.ndarray) ->
     return points[gaps <= gaps.min() + depth]
 
 
-def _boundary(scene: Scene, k: int) -> list[list[tuple[Curve, float, int]]]:
+def boundary_curves(scene: Scene, k: int) -> list[list[tuple[Curve, float, int]]]:
     """Returns the closed curves that bound the mesh of body k, the outer one first,
     counter-clockwise. Each is a list of pieces with the largest element size [m] and the label.
     """
