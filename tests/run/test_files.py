@@ -14,6 +14,7 @@ from ffimpact import scene
 from ffimpact.failure import BadInput
 from ffimpact.freefem.describe import describe
 from ffimpact.mesh import mesh, solid_file
+from ffimpact.report import report
 from ffimpact.running import run
 from ffimpact.scenes import approach, assembly
 from ffimpact.scenes.scene import read
@@ -64,6 +65,30 @@ def test_a_file_is_sought_beside_its_scene(tmp_path, monkeypatch):
             monkeypatch.chdir(tmp_path.parent)
             volume = assembly.assemble(loaded).mesh.volumes.sum()
             assert volume == pytest.approx(VOLUME, rel=1e-9), (name, path)
+
+
+@pytest.mark.parametrize("name", ["part.step", "merges.geo"])
+def test_a_declared_unit_is_that_of_the_file(tmp_path, name):
+    """A STEP file in mm is read as such, and refuses a `scale` beside its unit."""
+    write_step(tmp_path / "part.step")
+    (tmp_path / "merges.geo").write_text('Merge "part.step";\n')
+    part = scene.read(solid(name), tmp_path, "part").bodies[0]
+    assert np.ptp(part.outline.points, axis=0) == pytest.approx([0.1, 0.06, 0.04], rel=1e-9)
+    with pytest.raises(BadInput, match=rf"^body.1.scale: '0.001' for '{name}', which declares its unit of length \(accepted: without scale, or "):
+        scene.read(solid(name, scale=0.001), tmp_path, "part")
+
+
+def test_extents_and_mass_are_in_summary_and_report(tmp_path):
+    """Those of a box of 100 x 60 x 40 mm, 1000 kg/m3, and of a tube of revolution."""
+    write_step(tmp_path / "part.step")
+    result = run.run(scene.read(solid("part.step", mesh_size=0.02) | {"end_time": 1e-4}, tmp_path, "part"), {}, tmp_path / "out", estimate=False)
+    assert [result.summary[f"extent_{axis}"] for axis in "xyz"] == pytest.approx([0.1, 0.06, 0.04], rel=1e-9)
+    assert result.summary["mass"] == pytest.approx(1000 * VOLUME, rel=1e-9)
+    assert any(line.startswith("part: mesh, 0.1 x 0.06 x 0.04 m, 0.24 kg, neohookean") for line in report.report(result).splitlines())
+    tube = {"shape": "tube", "radius": 0.05, "inner_radius": 0.03, "height": 0.04, "position": 0.0201, "velocity": -1}
+    result = run.run(scene.read(tables(tube, obstacles=[FLOOR], dimension="axisymmetric", end_time=1e-4), tmp_path, "tube"), {}, tmp_path / "tube", estimate=False)
+    assert [result.summary[name] for name in ("extent_x", "extent_y", "extent_z")] == [pytest.approx(0.1, rel=1e-9), pytest.approx(0.04, rel=1e-9), None]
+    assert result.summary["mass"] == pytest.approx(1000 * np.pi * (0.05**2 - 0.03**2) * 0.04, rel=1e-9)
 
 
 def test_gmsh_works_in_the_working_folder(tmp_path, monkeypatch):

@@ -705,7 +705,9 @@ class Mesh(Drawn):
     shape = "mesh"
     dimensions = (PLANE_STRAIN, AXISYMMETRIC, SOLID)
     file: Annotated[str | None, Text("path, from the folder of the scene on")] = None
-    scale: Annotated[float | None, number(1e-9, 1e9, "m", "a unit of length of the file")] = None
+    scale: Annotated[
+        float | None, number(1e-9, 1e9, "m", "a unit of length of the file; STEP declares its own")
+    ] = None
 
 
 BODIES: dict[str, type[Body]] = {

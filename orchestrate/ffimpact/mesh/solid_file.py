@@ -1,5 +1,6 @@
 """Reads solids from files: meshes of tetrahedra (gmsh's .msh, Medit's .mesh) or geometries that
-gmsh meshes (.geo, .step, .stp), lengths in m.
+gmsh meshes (.geo, .step, .stp), lengths in m: of STEP files converted from the unit that the file
+declares.
 
 Faces of a physical surface with the name `contact` may come into contact, other faces never do.
 Without named physical surfaces all faces may, including those of cavities.
@@ -17,10 +18,15 @@ from . import mesh
 from .mesh import FREE, Sizes, boundary, in_own_process, pieces
 from .solid_mesh import SolidMesh, cell_volumes, cells_of, generate
 
-__all__ = ["GEOMETRIES", "Geometry", "MESHES", "is_geometry", "meshed", "read", "takes_in_others"]
+__all__ = [
+    "GEOMETRIES", "Geometry", "MESHES", "declares_unit", "is_geometry", "meshed", "read",
+    "takes_in_others",
+]  # fmt: skip
 
 MESHES, GEOMETRIES = (".msh", ".mesh"), (".geo", ".step", ".stp")
 OTHERS = re.compile(r"\b(Merge|Include|ShapeFromFile)\b")  # .geo commands that read other files
+# Formats that declare their unit of length; gmsh converts their lengths to m.
+DECLARED = re.compile(r"\.(step|stp|iges|igs)\b", re.IGNORECASE)
 CONTACT = "contact"
 HEADER = b"$MeshFormat"
 # Numbers of nodes by gmsh's element types; the first three nodes are the corners.
@@ -64,6 +70,12 @@ class Geometry:
 def takes_in_others(path: Path) -> bool:
     """Whether the file is a .geo file that reads other files."""
     return path.suffix.lower() == ".geo" and bool(OTHERS.search(path.read_text(errors="replace")))
+
+
+def declares_unit(path: Path) -> bool:
+    """Whether the file, or one that a .geo file reads, declares its unit of length."""
+    text = path.read_text(errors="replace") if takes_in_others(path) else path.suffix
+    return bool(DECLARED.search(text))
 
 
 def read(path: Path) -> SolidMesh:

@@ -497,6 +497,11 @@ def _of_file(body: Mesh, folder: Path) -> tuple[Solid, SolidMesh | None, np.ndar
         file_mesh = solid_file.read(path).scaled(scale)
     except BadInput as error:
         raise BadInput(f"{body.at('file')}: {error}") from None
+    if body.scale is not None and solid_file.declares_unit(path):
+        raise BadInput(
+            f"{body.at('scale')}: '{body.value_text('scale')}' for '{path.name}', which declares its unit of length "
+            f"(accepted: without scale, or files that declare none)"
+        )
     sphere = next(
         (
             patch

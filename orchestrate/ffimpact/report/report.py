@@ -200,7 +200,7 @@ def stiffness(contact: dict[str, Value]) -> str:
     return f"{contact['penalty']:.4g} Pa/m" + f"^{m:g}" * (m != 1)
 
 
-def _scene(scene: dict[str, Value]) -> list[str]:
+def _scene(scene: dict[str, Value], summary: dict) -> list[str]:
     """Returns lines that describe the scene: bodies, speed and contact."""
     contact = scene.get("contact", scene)
     pull = f"gravity {scene['gravity']:g} m/s2, " if scene.get("gravity") else ""
@@ -215,20 +215,28 @@ def _scene(scene: dict[str, Value]) -> list[str]:
             words,
         ]
     return [
-        *(f"{body['name']}: {body['shape']}, {_material(body)}" for body in scene["body"]),
+        *(
+            f"{body['name']}: {', '.join([body['shape'], *_size(summary, k, len(scene['body'])), _material(body)])}"
+            for k, body in enumerate(scene["body"], 1)
+        ),
         *(f"{obstacle['name']}: rigid {obstacle['kind']}" for obstacle in scene["obstacle"]),
         words,
         *own,
     ]
 
 
+def _size(summary: dict, k: int, bodies: int) -> list[str]:
+    """Returns the extents and the mass of body k."""
+    end = f"_{k}" if bodies > 1 else ""
+    extents = [summary.get(f"extent_{axis}{end}") for axis in "xyz"]
+    sides = " x ".join(f"{extent:.4g}" for extent in extents if extent is not None)
+    unit = f"kg{dimension.per_metre(summary['provenance']['script'])}"
+    return [f"{sides} m", f"{summary[f'mass{end}']:.4g} {unit}"] if sides else []
+
+
 def _material(body: dict[str, Value]) -> str:
     if body.get("rigid"):
-        return "rigid, " + (
-            f"mass = {body['mass']:g} kg"
-            if "mass" in body
-            else f"density = {body['density']:g} kg/m3"
-        )
+        return "rigid" if "mass" in body else f"rigid, density = {body['density']:g} kg/m3"
     return f"{body['law']}, young = {body['young']:g} Pa, nu = {body['nu']:g}, density = {body['density']:g} kg/m3"
 
 
@@ -285,7 +293,7 @@ def report(result: Record, verbose: bool = False) -> str:
     marks = {key: f"[{k}]" for k, key in enumerate(footnotes, 1)}
     lines = [
         f"{folder}: " + ("finished earlier, same scene and code" if result.reused else "finished"),
-        *_scene(scene),
+        *_scene(scene, summary),
         *_gases(summary),
         *_numbers(result, printed, marks),
         *warning_lines(summary, verbose),

@@ -26,7 +26,7 @@ from ..input.dimension import AXISYMMETRIC, SOLID, Dimension
 from ..input.models import CONTACT, MATERIAL, OWN, listed
 from ..input.parameters import Value
 from ..input.table import MESHED, SCRIPTS
-from ..mesh.solid_file import takes_in_others
+from ..mesh.solid_file import declares_unit, takes_in_others
 from ..output.meanings import describe_results
 from . import bodies, conditions, mirror, obstacles
 from .bodies import SIZES, Body
@@ -632,10 +632,10 @@ def _apart(scene: Scene) -> None:
 
 def _units(scene: Scene, i: int, body: Body) -> str:
     """Returns a hint for a message if body i comes from a file and is wider than WIDE."""
-    width = 2 * body.outline.reach
+    width, file = 2 * body.outline.reach, scene.content["body"][i - 1].get("file")
     return (
         f"; its file is {width:.3g} m wide: other units? body.{i}.scale = 0.001 takes them as mm"
-        if width > WIDE and "file" in scene.content["body"][i - 1]
+        if file and width > WIDE and not declares_unit(scene.folder / file)
         else ""
     )
 
