@@ -171,6 +171,7 @@ def _centres_speed(answers: Answers, suffix: list[str], partner: int) -> float |
         obstacle = obstacles[-partner - 1]
         if "motion" in obstacle or "rotation" in obstacle:
             return None
-        moves = obstacle.get("velocity", 0.0)
-        after.append(np.array([0.0, moves]) if np.isscalar(moves) else np.array(moves))
+        moves = obstacle.get("velocity", 0.0)  # a number is along y
+        moves = dict(zip("xyz", [0.0, moves] if np.isscalar(moves) else moves, strict=False))
+        after.append(np.array([moves.get(axis, 0.0) for axis in axes]))
     return float(np.linalg.norm(after[0] - after[-1] if len(after) > 1 else after[0]))
