@@ -36,7 +36,7 @@ def promise(tables: Tables, path: Path) -> None:
     result."""
     rows, stated = tables[""], tables["stated"]
     figure, (errors, shares) = plt.subplots(1, 2, figsize=(9, 3.8), width_ratios=(1.2, 1))
-    kinds = rows.scene.str.partition(":")[0]
+    kinds = rows["family"] if "family" in rows else rows.scene.str.partition(":")[0]
     ends = np.array([SMALLEST / 2, 2 * np.nanmax([rows.error.max(), rows.estimated.max()])])
     for kind, colour in zip(kinds.unique(), [*COLOURS, *COLOURS]):
         group = rows[kinds == kind]

@@ -78,8 +78,9 @@ def main(argv: list[str]) -> int:
     seed, count = (default if value is None else value for default, value in zip(SCENES[kind], (options.seed, options.scenes)))
     table = compare(_drawn(options, kind, seed, max(1, count)), options.out)
     if kind != "round":
-        part = table.accuracy.map("accuracy {:g}".format) if kind == "coarse" else table.scene.str.partition(":")[0].map(draws.family)
-        return _finish_parts(options, table, part, argv, f"Whether stated errors hold {TITLES[kind]}")
+        name = table.scene.str.partition(":")[0]
+        part = table.accuracy.map("accuracy {:g}".format) if kind == "coarse" else name.map(draws.family) if kind == "others" else name
+        return _finish_parts(options, table.assign(family=part), argv, f"Whether stated errors hold {TITLES[kind]}")
     good = silent(table) == 0 if options.hard else kept(table) and covered(table)
     requirement = "the requirement on silent errors" if options.hard else "the requirement"
     text = report(table) + f"; {requirement} {'is kept' if good else 'IS NOT KEPT'}"
@@ -93,7 +94,7 @@ def shown_in(table: pd.DataFrame) -> pd.DataFrame:
     """The columns of compare() for the page: promised results, and whether a scene warns."""
     answers = [column for name in estimate.PROMISED for column in (name, f"{name} stated")]
     rows = table.assign(warnings=table.warnings.fillna("").str.len() > 0)
-    return rows[["scene", *answers, "error", "estimated", "seconds", "finer seconds", "warnings",
+    return rows[[*({"family"} & {*table}), "scene", *answers, "error", "estimated", "seconds", "finer seconds", "warnings",
                  "message"]]
 
 
@@ -106,13 +107,13 @@ def _drawn(options: Namespace, kind: str, seed: int, count: int) -> list[Drawn]:
     return [(name, point) for point in draws.draw(seed, count, options.hard, name)] if alike else draws.mixture(seed, count)
 
 
-def _finish_parts(options: Namespace, table: pd.DataFrame, part: pd.Series, argv: list[str], title: str) -> int:
+def _finish_parts(options: Namespace, table: pd.DataFrame, argv: list[str], title: str) -> int:
     """Ends a measurement of the coverage of the error estimates.
 
-    The coverage must be sufficient, and the estimates must not be too wide, in every `part` (rows,)
-    of the scenes for all results together. Returns the exit code.
+    The coverage must be sufficient, and the estimates must not be too wide, in every `family` of the
+    scenes for all results together. Returns the exit code.
     """
-    by_part = pd.concat([cover(rows, ANSWERS).tail(1).assign(answer=name) for name, rows in table.groupby(part)])
+    by_part = pd.concat([cover(rows, ANSWERS).tail(1).assign(answer=name) for name, rows in table.groupby("family")])
     coverage = pd.concat([by_part, cover(table, ANSWERS)])
     good = all(held(row) and row.times <= WIDEST for row in by_part.itertuples())
     text = "\n".join([f"Stated errors of {len(table.error.dropna())} scenes: share of the cases within them (wanted: {KEPT:.0%} of each family, "
