@@ -59,7 +59,7 @@ ENTRANCE = "scenes/assembly"
 # Of these modules, the ones that only query, start, report or read. Results do not depend on them.
 HARMLESS = {"failure", "places", "progress", "freefem/describe", "freefem/freefem"}
 # Further modules, on which the error estimates depend.
-ESTIMATING = ("output/estimate", "output/notes", "output/results", "scenes/finer")
+ESTIMATING = ("output/estimate", "output/notes", "output/rest", "output/results", "scenes/finer")
 
 
 def run(
