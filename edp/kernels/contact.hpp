@@ -89,6 +89,17 @@ class Contact {
     return ns() > 0 && std::max(script.q0.numbers().maxCoeff(), script.q1.numbers().maxCoeff()) > 0;
   }
 
+  double dampingWork() const {
+    // Energy [J/m; J] that the damping of the penalty takes in the step: sum of its force times the
+    // increment of the penetration.
+    double work = 0, t, stiff;
+    for (long s = 0; s < ns(); s++) {
+      const double q0 = script.q0[s], q1 = script.q1[s];
+      if (q0 > 0 || q1 > 0) work += law.normal(q0, q1, script.k[s], t, stiff) * (q1 - q0);
+    }
+    return work;
+  }
+
   void clearActiveSet() {
     // Removes all candidates from the active set. C remains.
     active.assign(ns(), 0);

@@ -199,11 +199,14 @@ static void addStep() {
                         Kept<double>{&halfStepVelocity}.numbers(), h,
                         gaps);
   });
-  add("kernelLaw", +[](double exponent, double slipVelocity, double bridge, double sticksBelow,
-                      std::string &regularization, bool jumps, long slips, long mostStatusChanges) {
+  add("kernelDampingWork", +[](double &work) { work = touching.dampingWork(); });
+  add("kernelLaw", +[](double exponent, double retardation, double slipVelocity, double bridge,
+                      double sticksBelow, std::string &regularization, bool jumps, long slips,
+                      long mostStatusChanges) {
     // Parameters of (10)-(13) that all contact points share; see Law and Problem.
     contact::Law &law = touching.law;
     law.exponent = exponent;
+    law.retardation = retardation;
     law.slipVelocity = slipVelocity;
     law.bridge = bridge;
     law.regularization = regularization == "sqrt" ? contact::sqrtOf

@@ -32,6 +32,7 @@ ENERGIES = {
     "contact": "contact",
     "friction_work": "friction",
     "viscous_work": "viscosity",
+    "penalty_damping_work": "damping of the penalty",
 }
 
 

@@ -31,3 +31,11 @@ def test_a_small_overlap_is_left_to_the_solver_where_something_presses():
     for tables in (slope(1.2 * small), slope(small, gravity=0.0)):
         with pytest.raises(BadInput, match=r"overlaps 'obstacle1'.*\(accepted: "):
             of(tables)
+
+
+@pytest.mark.parametrize("tables, words", [
+    (slope(contact={"penalty_damping": -1}), r"contact\.penalty_damping: -1 is out of range \(accepted: 0 to "),
+    (slope(contact={"penalty_damping": 1e-3}, integrator="newmark"), r"penalty_damping: '0.001' beside integrator = 'newmark' \(accepted: 0, or integrator = auto\|")])
+def test_damping_of_the_penalty(tables, words):
+    with pytest.raises(BadInput, match=words):
+        of(tables)

@@ -26,6 +26,7 @@ ENERGIES = (
     "vibration_energy",
     "creep_work",
     "viscous_work",
+    "penalty_damping_work",
 )
 # Numbers whose error estimate is relative to the number itself.
 OF_ITSELF = (

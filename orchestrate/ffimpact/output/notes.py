@@ -29,6 +29,7 @@ BEHIND = {
 }
 # The key of the number that a note is about, if it differs from the name of the note.
 NUMBERS = {
+    "penalty damping": "penalty_damping_work",
     "penalty": "max_penetration",
     "locking": "peak_force",
     "corner": "min_stretch",

@@ -829,7 +829,7 @@ def _friction(e: Evidence) -> Iterator[Sentence]:
             f"{e.counter_body}: up to {percent(CREEP)} is small. The regularised friction does not "
             "hold them: take a smaller slip_velocity"
         )
-    if facts["slip_velocity"] > LOOSEST * fastest:
+    if facts["slip_velocity"] > LOOSEST * fastest and not facts["starts_at_rest"]:
         yield warn(
             f"slip velocity: {facts['slip_velocity']:g} m/s is "
             f"{percent(facts['slip_velocity'] / fastest)} of the speeds of the scene: up to "
@@ -858,6 +858,17 @@ def _friction(e: Evidence) -> Iterator[Sentence]:
         )
 
 
+def _penalty_damping(e: Evidence) -> Iterator[Sentence]:
+    """Where the damping of the penalty has acted, what it has taken belongs to no material."""
+    taken = e.record.get("penalty_damping_work", 0.0)
+    if taken > 0:
+        yield note(
+            f"penalty damping: it has taken {percent(taken / e.facts['supplied_energy'])} of the "
+            "energy supplied: impulse, restitution and rebound depend on penalty_damping: "
+            "take 0 for impacts of bodies that have their own viscosity or loss"
+        )
+
+
 RULES = (
     _units,
     _law,
@@ -876,4 +887,5 @@ RULES = (
     _next_contact,
     _discretisation,
     _friction,
+    _penalty_damping,
 )

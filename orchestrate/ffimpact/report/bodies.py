@@ -217,6 +217,7 @@ def energies(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fig
     for name, column, words_of_it, sign, colour in (
         ("lost to friction", "friction_work", "+ lost", 1, "#d4a017"),
         ("lost to viscosity", "viscous_work", "+ lost", 1, VISCOUS),
+        ("lost to penalty damping", "penalty_damping_work", "+ lost", 1, "#0072b2"),
         ("external work", "external_work", "− work", -1, "#888888"),
     ):
         if np.any(history.get(column, 0)):

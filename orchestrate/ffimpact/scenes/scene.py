@@ -210,8 +210,10 @@ class Scene:
         more = description["damped"] * self.damped + description["projected"] * (
             what == "columns" and self._projected(description["plain_nu"])
         )
+        damping = (self.contact or self.values)["penalty_damping"]
         return (
             description[what]
+            + description["penalty_damped"] * bool(damping)
             + more
             + [
                 f"{name}_{b}"
@@ -314,6 +316,7 @@ def read(content: dict, folder: Path, name: str) -> Scene:
         raise BadInput(f"script: {unknown(script, scripts)}")
     set_here = {key: value for key, value in content.items() if key not in ("script", "title")}
     values = parameters.defaults(script) | parameters.check(set_here, script)
+    _refuse_damping(values, values)
     _refuse_nu("nu", values["nu"], values["law"], values)
     return Scene(name, title, script, {"title": title, "script": script} | values, folder, values)
 
@@ -384,6 +387,7 @@ def _of_tables(content: dict, folder: Path, name: str) -> Scene:
     _refuse_integrator(scene)
     _refuse_start(scene)
     _refuse_straight(scene)
+    _refuse_damping(contact, values)
     for k, body in enumerate(all_bodies, 1):
         _refuse_nu(f"body.{k}.nu" if len(all_bodies) > 1 else "nu", body.nu, body.law, values)
     mirror.copies(scene)
@@ -434,6 +438,24 @@ def _refuse_integrator(scene: Scene) -> None:
         raise BadInput(
             f"integrator: '{integrator}' has no rigid bodies (accepted with them: {'|'.join(words)})"
         )
+
+
+def _refuse_damping(contact: Mapping[str, Value], values: Mapping[str, Value]) -> None:
+    """Raises BadInput if the penalty is damped and the integrator takes contact forces at the end of
+    a step, so that their work is not exact, or if the law of the pairs has no penalty.
+    """
+    if not contact["penalty_damping"]:
+        return
+    exact = ("auto", "energy-momentum", "midpoint", "central-difference")
+    for name, value, accepted in [
+        ("integrator", values["integrator"], exact),
+        ("pairing", contact.get("pairing", "closest-point"), ("closest-point", "pairwise")),
+    ]:
+        if value not in accepted:
+            raise BadInput(
+                f"penalty_damping: '{contact['penalty_damping']:g}' beside {name} = '{value}' "
+                f"(accepted: 0, or {name} = {'|'.join(accepted)})"
+            )
 
 
 def _refuse_start(scene: Scene) -> None:
