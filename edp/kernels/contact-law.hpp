@@ -19,8 +19,8 @@ struct Candidate { double vN0, k, muStatic, muDynamic; bool sticks; };
 struct Forces { double t[3], slope[3][3]; };    // (t_N, -t_T) and d/d(penetration, slip)
 
 // m, epsilon [m/s], the share of epsilon that is a ramp, the step [s], the retardation time tau of
-// the penalty [s]; jumps: mu_f changes by a jump at epsilon; slips: number of tangential components,
-// 0 without friction.
+// the penalty [s]; jumps: mu_f changes by a jump at epsilon; slips: number of tangential
+// components, 0 without friction.
 struct Law {
   double exponent = 1, slipVelocity = 1, bridge = 0.01, dt = 1, retardation = 0;
   bool jumps = false;
@@ -29,10 +29,10 @@ struct Law {
   double penaltyForce(double vN, double k) const { return vN > 0 ? k * std::pow(vN, exponent) : 0; }
 
   double normal(double vN0, double vN1, double k, double &t, double &stiff) const {
-    // The normal force t >= 0, (10) and the damping of the penalty, and stiff = dt/dvN1. Returns the
-    // damping tau (P1 - P0)/dt, P0 and P1 the forces of (10) at the start and end of the step, or
-    // the part of it that leaves t >= 0: contact is never adhesive. P increases with v_N, so that
-    // the damping never does positive work: its product with vN1 - vN0 is >= 0.
+    // The normal force t >= 0, (10) and the damping of the penalty, and stiff = dt/dvN1. Returns
+    // the damping tau (P1 - P0)/dt, P0 and P1 the forces of (10) at the start and end of the step,
+    // or the part of it that leaves t >= 0: contact is never adhesive. P increases with v_N, so
+    // that the damping never does positive work: its product with vN1 - vN0 is >= 0.
     elastic(vN0, vN1, k, t, stiff);
     if (retardation == 0) return 0;
     const double damping = retardation / dt * (penaltyForce(vN1, k) - penaltyForce(vN0, k));

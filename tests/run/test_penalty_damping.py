@@ -5,7 +5,18 @@ import math
 import numpy as np
 import pytest
 
-from tests.support.slope import ALPHA, DEPTH, DENSITY, GRAVITY, HEIGHT, MASS, PENALTY, WIDTH, along, slope
+from tests.support.slope import (
+    ALPHA,
+    DENSITY,
+    DEPTH,
+    GRAVITY,
+    HEIGHT,
+    MASS,
+    PENALTY,
+    WIDTH,
+    along,
+    slope,
+)
 from verification.measure import bodies
 
 FLOOR = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}

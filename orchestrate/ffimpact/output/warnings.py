@@ -836,6 +836,12 @@ def _friction(e: Evidence) -> Iterator[Sentence]:
             f"{percent(LOOSEST)} is small. Friction then acts like viscosity: take a smaller "
             "slip_velocity"
         )
+    if facts["skipped_sticks"] > 0:
+        yield warn(
+            f"stick: contact points reversed their slip within a step {facts['skipped_sticks']} "
+            f"times under the weight, faster than {facts['slip_velocity']:g} m/s: they may slide "
+            "where friction_static would hold them: take a larger slip_velocity, or a smaller dt"
+        )
     unsolved = e.record["unsolved_jumps"]
     if unsolved > JUMPS * facts["loaded_jumps"]:
         instead = (
