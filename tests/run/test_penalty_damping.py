@@ -88,3 +88,9 @@ def test_the_depth_at_rest_is_that_of_the_penalty(tmp_path):
     assert run.summary["ended"] == "rest"
     assert run.history["normal_force"][-1] == pytest.approx(MASS * GRAVITY, rel=0.05)
     assert HEIGHT / 2 - run.history["y"][-1] == pytest.approx(DEPTH / math.cos(ALPHA), rel=0.05)
+
+
+def test_long_steps_do_not_skip_the_stick(tmp_path):
+    """A step in which the block would change from sliding up to sliding down is taken smaller."""
+    run = bodies(tmp_path, slope(-DEPTH, speed=1.0, end_time=0.25, contact={"penalty_damping": 1e-3}))
+    assert along(run.history, "vx", "vy")[-1] == pytest.approx(-2e-3 * math.tan(ALPHA) / 0.6, rel=1e-3)
