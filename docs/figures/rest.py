@@ -2,7 +2,7 @@
 
 import math
 
-from style import BLUE, GREY, RED, WIDTH, FOLDER, plt, save
+from style import BLUE, FOLDER, GREY, RED, WIDTH, plt, save
 
 import ffimpact as ff
 
