@@ -119,7 +119,7 @@ def data(scene: Scene) -> str:
     """The text of scene.dat (edp/core/input/scene-file.idp)."""
     def numbers(*groups) -> str:
         return " ".join(repr(float(x)) for group in groups for x in group)
-    lines = ["ffimpact-bodies-3d 1", f"copies {scene.copies}", "disc " + numbers(scene.ball), f"bodies {len(scene.bodies)}"]
+    lines = ["ffimpact-bodies-3d 1", f"copies {scene.copies}", "disc " + numbers((*scene.ball, 0.0, 0.0, 0.0, 0.0)), f"bodies {len(scene.bodies)}"]
     lines += [f"body{b} {body.material[0]} " + numbers(body.material[1:], body.centre, body.shift, body.velocity, body.spin) for b, body in enumerate(scene.bodies)]
     spheres = [f"{b} " + numbers(sphere) for b, body in enumerate(scene.bodies) for sphere in body.spheres]
     lines += [f"spheres {len(spheres)}", *spheres, "cylinders 0", "files 0", f"obstacles {len(scene.obstacles)}"]

@@ -23,11 +23,11 @@ COARSE = dict(law="neohookean", nu=0.4)
 # Flags of edp/disc-plane.edp, steps between checkpoints, and rows of the history that the last
 # checkpoint must have.
 SCENES = {
-    "energy-momentum": (COARSE | dict(accuracy=0.2, angle=60, friction_static=0.7, friction_dynamic=0.5, fields=5), 7, 20),
-    "relaxing": (COARSE | dict(accuracy=0.2, relaxation_modulus=2e6, relaxation_time=1e-3, viscosity=5), 7, 20),
-    "until rest": (COARSE | dict(accuracy=0.2, loss=2, speed=0, height=0.05, gravity=9.81, until="rest"), 7, 60),
+    "energy-momentum": (COARSE | dict(accuracy=0.1, angle=60, friction_static=0.7, friction_dynamic=0.5, fields=5), 7, 20),
+    "relaxing": (COARSE | dict(accuracy=0.1, relaxation_modulus=2e6, relaxation_time=1e-3, viscosity=5), 7, 20),
+    "until rest": (COARSE | dict(accuracy=0.1, loss=2, speed=0, height=0.05, gravity=9.81, until="rest"), 7, 60),
     "svk": (dict(accuracy=0.1, exponent=1.5, penalty=1e11, height=1e-3, gravity=9.81), 7, 20),
-    "midpoint": (COARSE | dict(accuracy=0.2, spin=50, friction_static=0.5, friction_dynamic=0.5, degree=1, integrator="midpoint"),
+    "midpoint": (COARSE | dict(accuracy=0.1, spin=50, friction_static=0.5, friction_dynamic=0.5, degree=1, integrator="midpoint"),
                  7, 20),
     "newmark": (COARSE | dict(accuracy=0.1, dt=2e-5, integrator="newmark"), 10, 100),
     "backward-euler": (COARSE | dict(accuracy=0.1, dt=2e-5, integrator="backward-euler"), 10, 100),

@@ -112,5 +112,5 @@ def test_progress_is_shown_on_a_terminal_only(fake, tmp_path):
     except OSError:  # the other end is closed
         os.close(master)
     process.communicate(timeout=60)
-    assert re.search(r"disc-normal: main run 1 of 2, t = 3.000 ms, 150 steps +55% .*, \d\d:\d\d left", seen) and process.returncode == 0
-    assert "main run 1 of 2, mesh" in seen and "coarser run 2 of 2" in seen
+    assert re.search(r"disc-normal: main run 1 of 3, t = 3.000 ms, 150 steps +51% .*, \d\d:\d\d left", seen) and process.returncode == 0
+    assert "main run 1 of 3, mesh" in seen and "coarser run 2 of 3" in seen
