@@ -8,7 +8,6 @@ and states.
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from html import escape
@@ -24,7 +23,7 @@ from .output.errors import errors
 from .output.evaluate import evaluate
 from .output.filters import channel_class, filtered
 from .output.meanings import describe_results
-from .output.results import Record, numbers, read_record, read_summary
+from .output.results import Record, numbers, read_record, read_summary, reading
 from .places import shown
 from .report import report
 
@@ -89,7 +88,8 @@ class Result:
         """The entries of the scene with the values that the run used:
         result.scene["body"][0]["young"].
         """
-        return tomllib.loads(self._path("scene.toml").read_text("utf-8"))
+        self._path("scene.toml")
+        return self.record.scene
 
     @cached_property
     def history(self) -> pd.DataFrame:
@@ -120,7 +120,8 @@ class Result:
         contacts.csv.
         """
         path = self._path("contacts.csv")
-        return pd.read_csv(path) if path.exists() else pd.DataFrame()
+        with reading(path):
+            return pd.read_csv(path) if path.exists() else pd.DataFrame()
 
     @property
     def warnings(self) -> list[str]:

@@ -135,3 +135,20 @@ def test_a_damaged_result_of_a_direct_run(whole, tmp_path, capsys, monkeypatch, 
         assert code in (0, 14) and (code == 0 or message.count("\n") == 1 and named), (what, message)
         taken += [what] * (code == 0)
     assert name != "history.csv" or not taken
+
+
+@pytest.mark.parametrize("name, of", [("scene.toml", "scene"), ("history.csv", "history"), ("contacts.csv", "contacts")])
+def test_files_damaged_after_loading_are_one_line_in_python(whole, tmp_path, name, of):
+    """A file that is gone or damaged after load() is Unreadable with its name. Without contacts.csv
+    the table of contacts is empty."""
+    ways = {"binary": lambda path: path.write_bytes(bytes(range(256))), "folder": lambda path: path.mkdir(), "gone": lambda path: None}
+    for way, damage in ways.items():
+        result = ff.load(shutil.copytree(whole, tmp_path / way))
+        (tmp_path / way / name).unlink()
+        damage(tmp_path / way / name)
+        if (of, way) == ("contacts", "gone"):
+            assert result.contacts.empty
+            continue
+        with pytest.raises(ff.Unreadable, match=name) as error:
+            getattr(result, of)
+        assert "\n" not in str(error.value)

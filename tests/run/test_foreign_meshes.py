@@ -14,7 +14,7 @@ from ffimpact import scene
 from ffimpact.failure import BadInput
 from ffimpact.freefem import freefem
 from ffimpact.freefem.describe import describe
-from ffimpact.mesh import gmsh_file, mesh
+from ffimpact.mesh import gmsh_file, mesh, solid_file
 from ffimpact.output import results
 from ffimpact.output.evaluate import evaluate
 from ffimpact.running import run
@@ -463,6 +463,33 @@ def test_names_come_before_numbers(tmp_path):
         gmsh.write(str(tmp_path / "m.msh"))
     m = load(tmp_path / "m.msh")
     assert ((m.points[m.edges, 1].max(axis=1) == 0) == (m.labels == 1)).all() and set(m.labels) == {1, 3}
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_sides_of_second_order_that_bend_too_far(tmp_path, dimension):
+    """Of second order only the corners are used. With 8 sides a disc would be an octagon with 90 %
+    of the mass; a hole with 4 sides in a block is refused, too. With 16 and 24 sides circles are
+    recognised, and straight sides are no matter."""
+    def load_circle(sides, order=2):
+        with mesh.gmsh_session() as gmsh:
+            if dimension == 2:
+                gmsh.model.occ.addDisk(0, 0, 0, RADIUS, RADIUS)
+            else:
+                occ = gmsh.model.occ
+                occ.cut([(3, occ.addBox(-2, -2, 0, 4, 4, 1))], [(3, occ.addCylinder(0, 0, -1, 0, 0, 3, 1))])
+            gmsh.model.occ.synchronize()
+            for _, curve in gmsh.model.getEntities(1):
+                if gmsh.model.getType(1, curve) in ("Circle", "Ellipse"):
+                    gmsh.model.mesh.setTransfiniteCurve(curve, sides + 1)
+            gmsh.model.mesh.generate(dimension)
+            gmsh.model.mesh.setOrder(order)
+            gmsh.write(str(tmp_path / "m.msh"))
+        return load(tmp_path / "m.msh") if dimension == 2 else solid_file.read(tmp_path / "m.msh")
+    bent, fine = (8, 16) if dimension == 2 else (4, 24)
+    with pytest.raises(BadInput, match=f"bends by {360 / bent:g} degrees, and only its ends are used .accepted: up to 30 degrees"):
+        load_circle(bent)
+    load_circle(bent, order=1)
+    load_circle(fine)
 
 
 @pytest.mark.few(2)

@@ -11,14 +11,13 @@ import math
 
 import numpy as np
 
-from .mesh import pieces
+from .mesh import WIDEST, pieces
 from .solid_mesh import Curved
 
 __all__ = ["surfaces"]
 
-# Largest angle [rad] between adjacent faces, across an edge, and between a face's normal and the
-# exact one. Also the smallest angle by which a curved surface bends in total.
-WIDEST = math.radians(30)
+# WIDEST is also the largest angle [rad] between adjacent faces and between a face's normal and the
+# exact one, and the smallest angle by which a curved surface bends in total.
 ON = 1e-9  # tolerance of distances relative to the radius, and of angles
 PLACES = 5  # smallest number of different angles of corners around the axis of a cylinder
 CORRECTIONS = 20  # number of Gauss-Newton iterations for the axis of a cylinder

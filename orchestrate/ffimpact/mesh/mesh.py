@@ -40,6 +40,7 @@ __all__ = [
     "GROWTH",
     "Mesh",
     "Sizes",
+    "WIDEST",
     "boundary",
     "counter_clockwise",
     "disc",
@@ -65,6 +66,12 @@ SIDES = {
     3: np.array([[0, 1], [1, 2], [2, 0]]),
     4: np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]]),
 }
+# Ends and middle node of the sides of triangles of 6 and tetrahedra of 10 nodes, in gmsh's order.
+MIDDLE = {
+    6: ((0, 1, 3), (1, 2, 4), (2, 0, 5)),
+    10: ((0, 1, 4), (1, 2, 5), (2, 0, 6), (3, 0, 7), (2, 3, 8), (1, 3, 9)),
+}
+WIDEST = math.radians(30)  # largest angle that an edge of a file spans on an arc
 # Installs the system libraries that gmsh's wheel needs, with their dependencies.
 LIBRARIES = "apt-get install libglu1-mesa libxcursor1 libxft2 libxinerama1 libgomp1"
 SAMPLED = 0.25  # largest step between samples of the size field on a curve, over the element size
@@ -472,11 +479,34 @@ def elements_of(
     once = np.unique(np.sort(corners, axis=1), axis=0, return_index=True)[1]
     used, elements = np.unique(corners[np.sort(once)], return_inverse=True)
     tags, coordinates, _ = model.mesh.getNodes()
-    row = np.full(int(max(tags.max(), used.max())) + 1, -1)
+    points, row = coordinates.reshape(-1, 3), np.full(int(max(tags.max(), corners.max())) + 1, -1)
     row[tags] = np.arange(len(tags))
     if (row[used] < 0).any():
         raise BadInput(f"a {singular} names node {used[row[used] < 0][0]}, which is not there")
-    return coordinates.reshape(-1, 3)[row[used]], elements.reshape(-1, min(nodes.values())), used
+    for block in by_kind:
+        _refuse_bent(block, points[row[block]])
+    return points[row[used]], elements.reshape(-1, min(nodes.values())), used
+
+
+def _refuse_bent(elements: np.ndarray, points: np.ndarray) -> None:
+    """Raises BadInput if a side of second order bends by more than an edge of a file may on an arc.
+
+    `elements` (t, n) are gmsh's numbers of the nodes at `points` (t, n, 3). Of a side only the ends
+    are used. The middle of an arc of the angle a is tan(a/4)/2 of its chord away from the chord.
+    """
+    for first, last, middle in MIDDLE.get(elements.shape[1], ()):
+        chord = points[:, last] - points[:, first]
+        arm = points[:, middle] - (points[:, first] + points[:, last]) / 2
+        length2 = (chord**2).sum(axis=1)
+        away = arm - chord * ((chord * arm).sum(axis=1) / length2)[:, None]
+        bend = 4 * np.arctan(2 * np.sqrt((away**2).sum(axis=1) / length2))
+        worst = bend.argmax()
+        if bend[worst] > WIDEST * (1 + 1e-6):
+            raise BadInput(
+                f"the side from node {elements[worst, first]} to {elements[worst, last]} bends by "
+                f"{math.degrees(bend[worst]):.3g} degrees, and only its ends are used (accepted: "
+                f"up to {math.degrees(WIDEST):g} degrees, so smaller elements)"
+            )
 
 
 def counter_clockwise(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:

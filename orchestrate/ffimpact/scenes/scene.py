@@ -400,11 +400,13 @@ def _refuse_nu(entry: str, nu: float, law: str, values: Mapping[str, Value]) -> 
     nu = 0.5 (J = 1) needs quadratic elements with projected volume, integrator = energy-momentum
     or auto, and any law but svk. Otherwise nu is at most 0.4999.
     """
-    if nu == 0.5 or law == "incompressible":
+    if law == "incompressible" and nu != 0.5:
+        raise BadInput(f"{entry}: {nu:g} of law = incompressible (accepted: 0.5)")
+    if nu == 0.5:
         volume = values.get("volume", "auto")
         keeps_volume = values["degree"] == 2 and volume != "plain"
         conserves = values["integrator"] in ("energy-momentum", "auto")
-        if not (nu == 0.5 and law != "svk" and keeps_volume and conserves):
+        if not (law != "svk" and keeps_volume and conserves):
             raise BadInput(
                 f"{entry}: {nu:g} (J = 1) of law = {law}, degree = {values['degree']}, "
                 f"volume = {volume}, integrator = {values['integrator']} (accepted: up to 0.4999, or 0.5 "
