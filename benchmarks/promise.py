@@ -52,7 +52,7 @@ ANSWERS = (*estimate.RESULTS, *estimate.HIGHEST, "support_peak_1", "support_peak
 # Columns of cover().
 COVER = {"answer": "", "cases": "", "within": ".1%", "times": ".1f", "needed": ".2f"}
 TITLES = {"coarse": "at coarse accuracies", "flat": "where faces strike flat", "held": "of what is held, loaded or rigid",
-          "others": "in scenes that set no constant"}
+          "others": "in scenes without calibration"}
 Drawn = tuple[str, study.Point]  # a built-in scene and its overrides
 
 

@@ -12,9 +12,8 @@ from ffimpact.__main__ import main
 from ffimpact.failure import BadInput
 from ffimpact.mesh import solid_mesh
 from ffimpact.output import vtu
-from ffimpact.running import run as solve
 from ffimpact.scene import load
-from ffimpact.scenes import assembly, scene as scenes
+from ffimpact.scenes import assembly
 from tests.support.rigid import DISC, FLOOR, ROLLER, run
 
 BLOCK = """
@@ -99,16 +98,13 @@ def test_the_penalty_may_stand_in_the_obstacle(tmp_path):
         load(str(file))
 
 
-def test_explicit_steps_have_no_rigid_bodies(tmp_path, monkeypatch):
-    """A rigid body has no diagonal mass. Python and the scripts refuse it with the same line."""
+def test_explicit_steps_have_no_rigid_bodies(tmp_path):
+    """A rigid body has no diagonal mass."""
     file = tmp_path / "scene.toml"
     file.write_text('integrator = "central-difference"\n' + DROPPED)
     line = "integrator: 'central-difference' has no rigid bodies (accepted with them: energy-momentum|midpoint|newmark|backward-euler|bdf2|auto)"
     with pytest.raises(BadInput, match=re.escape(line)):
         load(str(file))
-    monkeypatch.setattr(scenes, "_refuse_integrator", lambda scene: None)
-    with pytest.raises(BadInput, match=re.escape(line)):
-        solve.run(load(str(file)), {}, tmp_path / "out", estimate=False)
 
 
 PUSHED = """
