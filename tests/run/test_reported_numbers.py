@@ -168,6 +168,27 @@ def test_ringing_after_a_release_is_a_warning(tmp_path):
     assert float(said[0].split(" is ")[1].split(" %")[0]) == pytest.approx(100 * rises, rel=0.1)
 
 
+@pytest.mark.parametrize("motion", ["-0.01*t", "-0.01*max(t-0.001, 0)", "-0.01*t+0.01/1900*sin(1900*t)"], ids=["start", "kink", "smooth"])
+def test_a_support_that_starts_suddenly_is_said_to_ring(tmp_path, motion):
+    """A bar at rest on its bottom; its top starts to move at V. By characteristics its force is 3
+    rho c V A when the front is back. Behind a sharp front it rings by up to a third of the front,
+    2 rho c V A there."""
+    pressed = BAR | {"support": [{"where": "bottom"}, {"where": "top", "motion": [0, motion]}]}
+    transit = BAR["height"] * math.sqrt(1000 / SOFT["young"])
+    run = bodies(tmp_path, HELD | {"end_time": 0.001 + 3.5 * transit, "body": [pressed]})
+    front = math.sqrt(1000 * SOFT["young"]) * 0.01 * BAR["width"]
+    said = [sentence for sentence in run.summary["warnings"] if sentence.startswith("sudden support: ")]
+    if "sin" in motion:
+        assert said == []
+        return
+    begins = 0.001 if "max" in motion else 0
+    assert [sentence.split(". ")[0] for sentence in said] == [
+        f"sudden support: at t = {begins:.3g} s the velocity of support 2 jumps by 0.01 m/s, at the start from that of its body"]
+    seen = (run.history["t"] > begins + 2 * transit) & (run.history["t"] < begins + 3.4 * transit)
+    rings = abs(run.history["support_force_y_2"][seen]).max() - 3 * front
+    assert 0.1 * 2 * front < rings < 2 * front / 3
+
+
 # ---- nothing to touch, and parts that cannot give way
 
 def test_a_free_body_needs_no_obstacle(tmp_path):

@@ -108,6 +108,10 @@ def test_two_bodies_and_a_body_on_supports(tmp_path):
     stated = errors(record(tmp_path, other='support = [{where = "left"}]'))
     assert not {"restitution", "restitution_tangential", "angle_out"} & set(stated)
     assert stated["impulse_ratio"] > 0
+    assert {name[-2:] for name in stated if name.startswith(("rebound", "final"))} == {"_1"}
+    alone = record(tmp_path, other=None)
+    (tmp_path / "scene.toml").write_text('[[body]]\nname = "bar"\nsupport = [{where = "left"}]\n')
+    assert not [name for name in errors(alone) if name.startswith(("rebound", "final"))]
 
 
 def bounced(restitutions: list[float], time: float, ended: str = "rest") -> Answers:

@@ -46,7 +46,7 @@ COLUMNS = ("body", "partner", "approach", "lever", "partner_lever", "slip_before
 
 def errors(record: Record) -> dict[str, float]:
     """Returns the error estimates by the name of the number, in its unit. Numbers without an
-    estimate are left out.
+    estimate are left out, as are those that are zero without a contact.
 
     The estimates do not include the effect of penalty and slip velocity, except that of a peak
     force which single contact points dominate (`peak_uncertainty`). What symmetry makes zero has no
@@ -62,15 +62,18 @@ def errors(record: Record) -> dict[str, float]:
     estimates: dict[str, float] = {
         name: share[name] * abs(summary[name])
         for name in share
-        if (name in OF_ITSELF or name.startswith("support_peak")) and summary.get(name) is not None
+        if (name in OF_ITSELF or name.startswith("support_peak")) and summary.get(name)
     }
     estimates |= {
         name: share.get(name, 0.0) * energy
         for name in ("friction_work", "support_work", "load_work")
         if name in share
     }
+    held = held_bodies(answers.used)
     for name in names:
         kind = re.sub(r"_[0-9]+$", "", name)
+        if name[len(kind) :] in held and kind.startswith(("rebound_", "final_")):
+            continue  # of one instant of a vibration
         if kind in ENERGIES:
             estimates[name] = share["energy"] * energy
         elif re.fullmatch("impulse_[xyz]", name):
