@@ -36,6 +36,17 @@ def test_an_elastic_block_rests_under_its_weight(tmp_path):
     assert height / 2 - run.history["y"] == pytest.approx(sunk, rel=1e-4)
 
 
+@pytest.mark.parametrize("damping", [{"relaxation_modulus": 3e6, "relaxation_time": 1e-3}, {"viscosity": 100.0}])
+def test_a_damped_block_rests_as_an_elastic_one(tmp_path, damping):
+    """A relaxing branch is unstrained at rest: the block neither sinks nor rises, and nothing is dissipated."""
+    scene = SOFT | {"end_time": 5e-3, "body": [block(0.1, 0.05, 0, 0.025)], "obstacle": [FLOOR], "contact": {"penalty": 1e10}}
+    run = bodies(tmp_path, scene | damping)
+    is_still(run, 1000 * 0.1 * 0.05 * GRAVITY)
+    elastic = bodies(tmp_path, scene | {"end_time": 1e-3})
+    assert run.history["y"] == pytest.approx(elastic.history["y"][0], rel=1e-9)
+    assert run.summary["viscous_work"] < 1e-9 * run.history["elastic"].min()
+
+
 def test_a_ball_of_revolution_rests(tmp_path):
     scene = SOFT | {"dimension": "axisymmetric", "end_time": 2e-3, "obstacle": [FLOOR],
                     "body": [{"shape": "ball", "radius": 0.05, "position": 0.05, "mesh_size": 0.015, "contact_mesh_size": 0.006}]}

@@ -81,3 +81,24 @@ def test_the_given_shape_is_that_under_the_gas(tmp_path):
     assert (result["gas_pressure_start_1"], result["gas_volume_start_1"]) == (2e5, result.history.gas_volume_1[0])
     assert result["gas_radius_start_1"] == pytest.approx(outer, rel=1e-6)
     assert result["energy_initial"] == pytest.approx(energy, rel=1e-3)
+
+
+@pytest.mark.parametrize("start", ["given", "equilibrium"])
+def test_a_relaxing_shell_has_the_stated_pressure(tmp_path, start):
+    """A Maxwell branch is unstrained in the equilibrium with the gas: the shell stays as it is."""
+    law = {"law": "neohookean", "nu": 0.45, "relaxation_modulus": 2 * SHEAR, "relaxation_time": 1e-4, "end_time": 5e-4, "dt": 0, "start": start}
+    run = filled(tmp_path, 2, 5e4, 1.4, **law)
+    assert run.history["gas_pressure_1"] == pytest.approx(5e4, rel=1e-8)
+    assert run.summary["viscous_work"] < 1e-12 * run.history["elastic"][0] == pytest.approx(1e-12 * run.history["elastic"][-1], rel=1e-8)
+
+
+def test_vibration_is_what_the_impact_leaves_beside_the_flight(tmp_path):
+    """Without damping and spin, the kinetic energy that an inflated ball has lost is in its vibration. That of
+    its equilibrium with the gas, which is larger, is no vibration."""
+    ball = {"shape": "ring", "radius": OUTER, "inner_radius": INNER, "position": [0, 0.04], "velocity": [0, -3], "mesh_size": 0.004,
+            "load": [{"where": "inner", "gas": {"gauge_pressure": 1e5, "exponent": 1.4}}]}
+    run = bodies(tmp_path, RUBBER | {"law": "neohookean", "nu": 0.45, "end_time": 0, "dt": 0, "body": [ball],
+                                     "obstacle": [{"kind": "plane", "point": [0, 0], "normal": [0, 1]}]})
+    lost = run.history["kinetic"][0] - run.summary["translation_energy"] - run.summary["rotation_energy"]
+    assert run.summary["vibration_energy"] == pytest.approx(lost, rel=1e-6)
+    assert 0 < 2 * lost < run.history["elastic"][0]
