@@ -81,6 +81,18 @@ def test_a_block_thrown_up_a_slope_stops_and_stays(tmp_path):
     assert run.summary["contact_intervals"] == 1 and abs(run.history["balance"]).max() < 1e-9 * run.summary["energy_initial"]
 
 
+def test_a_block_that_bounces_on_its_penalty_is_said_to_slip(tmp_path):
+    """The same block on an undamped penalty slides down again; with what the warning advises it
+    stays."""
+    run = bodies(tmp_path, slope(speed=1.0, accuracy=0.1, end_time=0.3))
+    said = [sentence for sentence in run.summary["warnings"] if sentence.startswith("bounces: ")]
+    assert along(run.history, "vx", "vy")[-1] < -0.1 and len(said) == 1
+    advised = float(said[0].split("penalty_damping = ")[1].split(",")[0])
+    damped = bodies(tmp_path, slope(speed=1.0, accuracy=0.1, end_time=0.3, contact={"penalty_damping": advised}))
+    assert along(damped.history, "vx", "vy")[-1] == pytest.approx(-2e-3 * math.tan(ALPHA) / 0.6, rel=0.05)
+    assert not [sentence for sentence in damped.summary["warnings"] if sentence.startswith("bounces: ")]
+
+
 def test_the_depth_at_rest_is_that_of_the_penalty(tmp_path):
     """`until = "rest"` accepts the damping as what takes energy."""
     scene = dropped(0.01, 5e-4, gravity=GRAVITY, until="rest", end_time=0.0)

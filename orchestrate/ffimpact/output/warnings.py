@@ -10,6 +10,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -55,6 +56,7 @@ PEAK_WIDTH, PEAK_SHARE = (
     0.5,
     0.8,
 )  # a time over the transit time of a wave; a mean force over the peak
+BOUNCES = 5  # of a rigid body on its penalty
 BENT = 0.1  # deviation of a function of time from a straight line in a step
 CORNER = 0.05  # share of the impulse that begins at a sharp corner
 # A pair of density and modulus that no material has: waves faster than in diamond (18 km/s);
@@ -881,6 +883,32 @@ def _friction(e: Evidence) -> Iterator[Sentence]:
         )
 
 
+def _bounces(e: Evidence) -> Iterator[Sentence]:
+    """A rigid body lies on a penalty that loses nothing: it leaves for less time than it stays."""
+    if not e.facts["friction"] or e.facts["body_acceleration"] == 0:
+        return
+    if e.record.get("penalty_damping_work"):
+        return
+    stays: dict[tuple[int, int], list[Interval]] = {}
+    for interval in sorted(e.intervals, key=lambda interval: interval.start):
+        pair = interval.pair["body"], interval.pair["counter_body"]
+        if all(e.bodies[k]["rigid"] for k in pair if k >= 0):
+            stays.setdefault(pair, []).append(interval)
+    short = [
+        stay.end - stay.start
+        for row in stays.values()
+        for stay, later in pairwise(row)
+        if later.start - stay.end < stay.end - stay.start
+    ]
+    if len(short) >= BOUNCES:
+        yield warn(
+            f"bounces: under the weight rigid bodies part {len(short)} times for less time than "
+            "they touch: a penalty that loses nothing lets them bounce on, and they slip in every "
+            "flight, also where friction_static would hold them: take penalty_damping = "
+            f"{rounded(min(short) / math.pi)}, or start = equilibrium"
+        )
+
+
 def _penalty_damping(e: Evidence) -> Iterator[Sentence]:
     """Where the damping of the penalty has acted, what it has taken belongs to no material."""
     taken = e.record.get("penalty_damping_work", 0.0)
@@ -911,5 +939,6 @@ RULES = (
     _next_contact,
     _discretisation,
     _friction,
+    _bounces,
     _penalty_damping,
 )
