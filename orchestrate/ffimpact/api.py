@@ -53,6 +53,8 @@ def run(
     folder is that of the command `ffimpact run`. Raises the exceptions of ffimpact: BadInput,
     StepFailed and so on.
     """
+    if not isinstance(out or "", str | Path):
+        raise BadInput(f"out: '{out}' is no path (accepted: that of a folder)")
     with muted(progress is False):
         overrides = _overrides(entries, more)
         loaded, default_folder = _loaded(scene, overrides)
@@ -71,9 +73,9 @@ def run(
 
 def _overrides(entries: Mapping[str, Any] | None, more: dict[str, Any]) -> dict[str, Any]:
     """Returns the entries that are set, by dotted names, without the keywords that are None. Raises
-    BadInput if `entries` is not a mapping.
+    BadInput if `entries` is not a mapping from names.
     """
-    if not isinstance(entries or {}, Mapping):
+    if not isinstance(entries or {}, Mapping) or not all(isinstance(k, str) for k in entries or {}):
         raise BadInput(f"entries: '{entries}' is no table (accepted: {{\"body.1.young\": 2e6}})")
     return dict(entries or {}) | {name: value for name, value in more.items() if value is not None}
 

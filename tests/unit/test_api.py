@@ -103,6 +103,8 @@ def test_all_that_is_wrong_with_a_scene_is_told_at_once():
         (lambda: ff.Disc(radius=1, position=(0, 1), material="soft"), ("material", "soft")),
         (lambda: ff.Disc(radius=1, position=(0, 1), support=3), ("support", "3")),
         (lambda: ff.run(drop(), entries=["a"]), ("entries", "a")),
+        (lambda: ff.run(drop(), entries={1: 2}), ("entries", "1")),
+        (lambda: ff.run(drop(), out=3), ("out", "3")),
         (lambda: ff.sweep(drop(), {"accuracy": [0.1]}, workers=0), ("workers", "0")),
         (lambda: ff.run(3), ("scene", "3")),
         (lambda: ff.sweep(drop(), {}), ("sweep",)),
