@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.interpolate import PchipInterpolator
 
 from ffimpact.__main__ import main
 from tests.support.supports import energy
@@ -34,6 +35,17 @@ def test_a_pulse_gives_its_impulse(tmp_path, name, dt):
     assert before.sum() > 3 and abs(history["momentum_y"][before]).max() < 1e-9 * 0.02 * impulse
     assert abs(history["balance"]).max() < 1e-7 * energy(history).max()
     assert [warning for warning in run.summary["warnings"] if warning.startswith("functions of time: at t = 0.00")]
+
+
+@pytest.mark.parametrize("t, y", [([0, 2e-4, 4e-4], [0, -4e4, -5e4]), ([1e-4, 2e-4, 4e-4], [-1e4, -4e4, -5e4])])
+def test_the_impulse_of_a_table_that_ends_within_a_step(tmp_path, t, y):
+    """Without end_time a table may begin and end within steps, where it is constant from there on."""
+    block = BLOCK | {"position": [0, -0.486], "velocity": [0, -3], "load": [{"where": "top", "traction": {"t": t, "x": [0, 0, 0], "y": y}}]}
+    run = bodies(tmp_path, RUBBER | {"accuracy": 0.3, "dt": 1.7e-4, "body": [block], "obstacle": [FLOOR]})
+    h, table = run.history, PchipInterpolator(t, y).antiderivative()
+    exact = table(np.clip(h["t"], t[0], t[-1])) - table(t[0]) + y[0] * np.minimum(h["t"], t[0]) + y[-1] * np.maximum(h["t"] - t[-1], 0)
+    got = h["momentum_y"] - h["momentum_y"][0] - np.cumsum(h["dt"] * h["normal_force"])
+    assert got == pytest.approx(0.02 * exact, abs=1e-9 * 0.02 * abs(exact).max()) and h["t"][-1] > 4e-4
 
 
 @pytest.mark.parametrize("name", ["press", "yank"])
