@@ -176,6 +176,16 @@ def test_a_ten_times_stiffer_penalty_changes_restitution_within_its_error(tmp_pa
     assert 0.6 < own < 0.65 and not any(words.startswith("penalty") for words in results[0].summary["warnings"])
 
 
+@pytest.mark.parametrize("loss", [0.15, 0.5])
+def test_the_penalty_of_a_viscous_disc_hardly_changes_its_rebound(tmp_path, loss):
+    """On the same mesh a 30 times stiffer penalty changes it by less than a fifth of the accuracy."""
+    flags = {"young": 1e7, "density": 1000.0, "radius": 0.05, "nu": 0.3, "law": "neohookean", "speed": 2.0, "loss": loss}
+    used = describe(flags, "disc-plane")["used"]
+    meshed = flags | {name: used[name] for name in ("mesh_size", "contact_mesh_size")}
+    own, other = (disc(tmp_path, **meshed, penalty=factor * used["penalty"]).summary["rebound_vy"] / 2 for factor in (1, 30))
+    assert abs(own - other) < used["accuracy"] / 5
+
+
 @pytest.mark.parametrize("script", ["disc-plane", "ball-axisymmetric"])
 def test_a_branch_that_does_not_relax_is_part_of_the_law(script):
     """For nu = 0 G adds 2 G to young. Penalty, slip velocity and mesh are those of the stiffer law
