@@ -64,28 +64,28 @@ OF_ESTIMATES = "".join(
         (
             "estimated errors",
             "warning / note",
-            "a warning where a promised answer may be off by more than 1.5 times what was "
-            "asked; a note below that, and of the exact contact time and the peak force from "
-            "twice that on",
+            "a warning if the estimate of a requested number is above 1.5 times the accuracy; a "
+            "note if it is above the accuracy, or above twice the accuracy for contact_time and "
+            "peak_force",
             "take a smaller accuracy, or the error bar as it is",
         ),
         (
             "touches",
             "warning",
-            "the two finest runs of an estimate have different numbers of intervals of contact: "
-            "estimates may be too small",
+            "the two finest runs have different numbers of contact intervals: error estimates may "
+            "be too small",
             "take a smaller accuracy, or the impulse, which does not depend on single touches",
         ),
         (
             "mesh of the file",
             "note",
-            "estimated errors are those of the step alone: the mesh of a file is not varied",
+            "error estimates are those of the step alone: the mesh of a file is not varied",
             "compare with a finer file",
         ),
         (
             "no finer run",
             "warning",
-            "the error is above what was asked, and the run that was to make it smaller failed",
+            "the error estimate is above the accuracy, and the finer run failed",
             "see `log.txt`; take the error bar as it is",
         ),
         (

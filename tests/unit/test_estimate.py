@@ -52,7 +52,7 @@ def test_each_answer_differs_over_its_scale(change, expected):
 def test_answers_that_are_not_there_do_not_differ():
     """In a flight there are neither contact times nor a force; tables have nan for them."""
     flight = run(ANSWERS | {"contact_time": None, "thresholded_contact_time": float("nan"), "peak_force": 0.0, "impulse": 0.0}, normal_force=np.zeros(401))
-    assert not any(estimate.differences(flight, flight).values()) and not any(estimate.courses(flight, flight).values())
+    assert not any(estimate.differences(flight, flight).values()) and not any(estimate.history_differences(flight, flight).values())
 
 
 def test_largest_values_and_works_of_supports_differ_over_the_value_and_the_energy():
@@ -67,12 +67,12 @@ def test_largest_values_and_works_of_supports_differ_over_the_value_and_the_ener
 def test_time_histories_are_compared_near_their_ends():
     """A deviation of 1 % in the last quarter is one of all results, over their scales; an earlier
     one counts only where the force is high. A history with other steps does not differ."""
-    late = estimate.courses(run(), run(factor=lambda t: 0.01 * (t >= 3e-3)))
+    late = estimate.history_differences(run(), run(factor=lambda t: 0.01 * (t >= 3e-3)))
     assert late["rebound"] == late["energy"] == pytest.approx(0.01, rel=1e-2) and late["rebound_spin"] == pytest.approx(0.01, rel=1e-2)
     assert late["friction_work"] == pytest.approx(0.001, rel=1e-2) and late[estimate.OF_ITSELF] == pytest.approx(0.01, rel=1e-2)
-    early = estimate.courses(run(), run(factor=lambda t: 0.01 * ((t > 1e-3) & (t < 2.9e-3))))
+    early = estimate.history_differences(run(), run(factor=lambda t: 0.01 * ((t > 1e-3) & (t < 2.9e-3))))
     assert early["rebound"] == early["energy"] == 0 and 0.005 < early["peak_force"] < 0.01 and 0.005 < early["max_pressure"] < 0.01
-    same = estimate.courses(run(), run(steps=801))
+    same = estimate.history_differences(run(), run(steps=801))
     assert max(same.values()) < 2e-3
 
 
@@ -81,7 +81,7 @@ def test_a_later_end_is_a_difference_of_times():
     longer = run()
     longer = longer._replace(history=longer.history | {name: 1.02 * longer.history[name] for name in ("t", "dt")})
     for name in ("contact_time", "thresholded_contact_time"):
-        assert 0.01 < estimate.courses(run(), longer)[name] < 0.02
+        assert 0.01 < estimate.history_differences(run(), longer)[name] < 0.02
 
 
 # ---- estimates
@@ -286,7 +286,7 @@ def test_the_same_steps_are_no_estimate(tmp_path):
     def read(folder):
         return answers_of(folder)._replace(summary=answers_of(folder).summary | {"dofs": 260, "steps": 4})
     summary = estimate.settle(tmp_path, disc.values, True, disc.solve, read)
-    assert summary["estimated_error"] is None and "a second run took the same ones" in summary["warnings"][0]
+    assert summary["estimated_error"] is None and "a coarser run has the same elements and steps" in summary["warnings"][0]
 
 
 @pytest.mark.parametrize("name, times, kind", [
@@ -308,7 +308,7 @@ def test_runs_with_other_numbers_of_contacts_are_a_warning():
     numbers; else there is none."""
     several = [run(ANSWERS | {"contact_intervals": number}) for number in (3, 2, 3)]
     sentence, = estimate.touches(several)
-    assert sentence.startswith("touches: contact intervals 3, with 1.4 times larger elements and steps 2: ")
+    assert sentence.startswith("touches: 3 contact intervals, 2 with 1.4 times larger elements and steps: ")
     assert not estimate.touches(several[::2]) and not estimate.touches(several[:1])
 
 

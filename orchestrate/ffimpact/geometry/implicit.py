@@ -257,18 +257,19 @@ def _bound(code: Sequence[float], points: np.ndarray, limit: float) -> np.ndarra
 def _least_bound(code: Sequence[float], points: np.ndarray, limit: float) -> tuple[float, int]:
     """The smallest _bound() [m] of points, and the number of the first point that has it."""
 
-    def fail(half: float, among: np.ndarray) -> np.ndarray:
-        return among[~no_zero(code, points[among], np.full(len(among), half))]
+    def failing_of(tested: np.ndarray, half: float) -> np.ndarray:
+        """The numbers of the tested points whose boxes of half the width `half` may have a zero."""
+        return tested[~no_zero(code, points[tested], np.full(len(tested), half))]
 
     half, every = limit, np.arange(len(points))
-    failing = fail(half, every)
+    failing = failing_of(every, half)
     if not len(failing):
-        while half < WIDEST * limit and not len(failing := fail(2 * half, every)):
+        while half < WIDEST * limit and not len(failing := failing_of(every, 2 * half)):
             half *= 2
         return half, int(failing[0]) if len(failing) else 0
     while len(failing):
         half, last = half / 2, failing
-        failing = fail(half, failing) if half > 1e-12 * limit else failing[:0]
+        failing = failing_of(failing, half) if half > 1e-12 * limit else failing[:0]
     return half, int(last[0])
 
 

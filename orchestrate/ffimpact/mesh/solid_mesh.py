@@ -1,7 +1,7 @@
 """Meshes of tetrahedra: gmsh generates them, and they are written in Medit's format for FreeFEM.
 
-Balls, shells, boxes, cylinders and tubes are meshed wholly, or reduced by symmetry. Labels of boundary faces:
-1 may come into contact, 2 lies on the plane of symmetry x = 0, 3 lies on the plane of symmetry
+Balls, shells, boxes, cylinders and tubes are meshed wholly, or reduced by symmetry. Labels of
+boundary faces: 1 may come into contact, 2 lies on the plane of symmetry x = 0, 3 lies on the plane of symmetry
 z = 0, 4 never comes into contact.
 """
 
@@ -185,14 +185,28 @@ def mesh_shape(
     round_faces = labels == FREE
     if not spherical:
         round_faces &= np.ptp(points[faces] @ axis, axis=1) >= 1e-7 * scale
+    inner = _onto(patches, radii, points, faces, round_faces)
+    if kind == "shell":
+        labels[inner] = SolidMesh.NEVER
+    return SolidMesh(points, cells, faces, labels, patches)
+
+
+def _onto(
+    patches: tuple[Curved, ...],
+    radii: np.ndarray,
+    points: np.ndarray,
+    faces: np.ndarray,
+    round_faces: np.ndarray,
+) -> np.ndarray:
+    """Moves the points of `round_faces` (f,) onto the nearest of concentric patches. Returns which
+    faces (f,) are on the second, inner patch.
+    """
     away = np.linalg.norm(patches[0].arms(points[faces].mean(axis=1)), axis=1)
     nearest = abs(away[:, None] - radii).argmin(axis=1)
     for k, patch in enumerate(patches):
         corners = np.unique(faces[round_faces & (nearest == k)])
         points[corners] = patch.onto(points[corners])
-    if kind == "shell":
-        labels[round_faces & (nearest == 1)] = SolidMesh.NEVER
-    return SolidMesh(points, cells, faces, labels, patches)
+    return round_faces & (nearest == 1)
 
 
 def _occ_shape(occ, kind: str, lengths: list[float]) -> int:

@@ -16,8 +16,8 @@ a meaning are None:
   vibration or other contact pairs, or the pair does not separate;
 - restitution_tangential and angles if slip_before or the speed of the centres is below a twentieth
   of the velocity jump, and so has no direction;
-- all velocities, normals and what follows from them if a body is in contact with itself. Its force
-  is the sum of the sizes of the normal forces, as the forces of its two sides balance each other.
+- velocities, normals and numbers that follow from them, if a body is in contact with itself. The
+  force is then the sum of the sizes of the normal forces, because the resultant is zero.
 """
 
 import math
@@ -83,7 +83,7 @@ CONTACT_COLUMNS = {
     ),
     "separation": ("m/s", "the same after contact"),
     "lever": ("m", "distance of the centre of mass from the line of the normal force"),
-    "partner_lever": ("m", "that of the partner's, 0 for an obstacle"),
+    "partner_lever": ("m", "the same of the counter-body, 0 for an obstacle"),
     "slip_before": ("m/s", "velocity along the counter-body before contact"),
     "slip_after": ("m/s", "velocity along it in the direction of slip_before, after contact"),
     "restitution": ("", ""),
@@ -120,8 +120,8 @@ RUN_NUMBERS = {
     "thresholded_contact_time": ("s", "between the crossings of 1 % of the largest force"),
     "peak_uncertainty": (
         "1",
-        "share of peak_force that penalty and mesh may change, as single contact points dominate "
-        "it or it oscillates on the penalty; null where its error estimate holds without it",
+        "share by which penalty and mesh may change peak_force, if single contact points dominate "
+        "the force or it oscillates on the penalty; else null",
     ),
     "bounces": (
         "",
@@ -130,8 +130,8 @@ RUN_NUMBERS = {
     "first_restitutions": ("1", "list of the restitutions of the first bounces, up to three"),
     "rest_time": (
         "s",
-        "from then on the kinetic energy is at most accuracy^2 of the stored energy; null unless "
-        "the run ended at rest",
+        "time from which on the kinetic energy is at most accuracy^2 times the stored energy; null "
+        "unless the run ended at rest",
     ),
     "restitution": (
         "1",
@@ -367,8 +367,8 @@ def write_contacts(path: Path, intervals: list[Interval], damped: bool) -> None:
 
 
 def with_self_contact(record: dict[str, Any], intervals: list[Interval]) -> dict[str, Any]:
-    """The record of a run. If its only contacts are of bodies with themselves, the contact numbers
-    are those of these; otherwise they are those with other bodies and obstacles, as recorded.
+    """The record of a run. If bodies are in contact with themselves only, its contact numbers are
+    those of self-contact. Otherwise it is unchanged, and self-contact does not count.
     """
     own = sorted((i.start, i.end, i.over) for i in intervals if i.own)
     if record["contact_intervals"] or not own:
@@ -388,8 +388,9 @@ def with_self_contact(record: dict[str, Any], intervals: list[Interval]) -> dict
 
 
 def at_both_ends(name: str) -> list[str]:
-    """The names of a number of the record in the summary: of a velocity or spin `rebound_...` at
-    the end of contact also `final_...` at the end of the run."""
+    """The names in the summary of a number of the record. A velocity or spin has two: `rebound_...`
+    at the end of contact and `final_...` at the end of the run.
+    """
     return [name, name.replace("rebound", "final")] if name.startswith("rebound_") else [name]
 
 

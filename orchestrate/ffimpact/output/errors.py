@@ -39,7 +39,8 @@ OF_ITSELF = (
     "bounces",
     "rest_time",
 )
-# Numbers whose error follows from those of velocities and impulses, and what it takes of contacts.csv.
+# Numbers whose error follows from those of velocities and impulses; columns of contacts.csv that are
+# needed.
 PROPAGATED = ("restitution", "restitution_tangential", "angle_out", "impulse_ratio")
 COLUMNS = ("body", "partner", "approach", "lever", "partner_lever", "slip_before")
 
@@ -48,9 +49,8 @@ def errors(record: Record) -> dict[str, float]:
     """Returns the error estimates by the name of the number, in its unit. Numbers without an
     estimate are left out, as are those that are zero without a contact.
 
-    The estimates do not include the effect of penalty and slip velocity, except that of a peak
-    force which single contact points dominate (`peak_uncertainty`). What symmetry makes zero has no
-    estimate.
+    The estimates do not include the effect of penalty and slip velocity, except in a peak force
+    with a `peak_uncertainty`. Numbers that are zero by symmetry have no estimate.
     """
     summary = record.summary
     names = numbers(summary)
@@ -87,11 +87,9 @@ def errors(record: Record) -> dict[str, float]:
     path = record.folder / "contacts.csv"
     if any(name in names for name in PROPAGATED) and path.exists():
         estimates |= _of_impact(record, answers, share)
-    if "first_restitutions" in share:  # of each of the list
-        names, estimates["first_restitutions"] = (
-            [*names, "first_restitutions"],
-            share["first_restitutions"],
-        )
+    if "first_restitutions" in share:  # a list of numbers, each with this error
+        names.append("first_restitutions")
+        estimates["first_restitutions"] = share["first_restitutions"]
     if (least := summary.get("peak_uncertainty")) and "peak_force" in estimates:
         estimates["peak_force"] = max(estimates["peak_force"], least * abs(summary["peak_force"]))
     zeros = zero_by_symmetry(summary)
@@ -99,10 +97,9 @@ def errors(record: Record) -> dict[str, float]:
 
 
 def zero_by_symmetry(summary: Mapping) -> set[str]:
-    """Returns the names of velocities and spins that symmetry makes zero: those that are exactly
-    zero, and those along axes in which the scene is its own mirror image (`symmetric_along`), which
-    differ from zero only as the mesh is not symmetric. A mirror plane keeps the spin about its
-    normal.
+    """Returns the names of velocities and spins that are zero by symmetry. They are exactly zero, or
+    zero up to the asymmetry of the mesh: velocities along the axes `symmetric_along`, normal to
+    mirror planes, and spins about other axes than this normal.
     """
     axes = summary.get("symmetric_along") or []
     spins = {"spin_x": "x", "spin_y": "y", "spin": "z"}

@@ -10,7 +10,7 @@ an impact runs agree by chance. So the error estimate of a result is
     SAFETY/(r^p - 1) sqrt(sum over k of (d_k^2 + h_k^2)/r^(2 p k)),   k = 0, 1: pairs of levels,
 
     d_k: difference of the result between the two runs (differences());
-    h_k: root mean square difference of its time history (courses());
+    h_k: root mean square difference of its time history (history_differences());
     p: 2, of a flat strike 1, as its penalty follows the elements (scenes/front.py).
 
 All results of all scenes have the same factor SAFETY (benchmarks/promise.py lists the scenes of its
@@ -54,10 +54,10 @@ __all__ = [
     "SAFETY",
     "WORKS",
     "WORTH",
-    "courses",
     "differences",
     "error_estimates",
     "excess",
+    "history_differences",
     "largest",
     "loosened",
     "other",
@@ -68,10 +68,8 @@ __all__ = [
 ]
 
 COARSER = math.sqrt(2)  # ratio of elements and steps in two successive levels
-LEVELS, FINE = (
-    ("coarser", "coarsest"),
-    "finer",
-)  # folders of the other runs, in that of the main one
+# Folders of the other runs, in that of the main one.
+LEVELS, FINE = ("coarser", "coarsest"), "finer"
 MOST = 2  # largest number of refinements, after which elements and steps are half as large
 SIZES = ("mesh_size", "contact_mesh_size", "dt")
 LARGEST = 0.4  # largest accuracy that the scripts accept
@@ -96,8 +94,8 @@ AT_END = ("rebound", "final")  # velocities at the end of contact and of the run
 STEPS = ("explicit steps (", "implicit steps (")
 SCATTERS = "thresholded_contact_time"  # the promised result that scatters
 SAME_STEPS = (
-    "the error is not estimated: with steps 1.4 times larger a second run took the same ones: they are too "
-    "large for this scene: ask for a smaller accuracy"
+    "the error is not estimated: a coarser run has the same elements and steps: this scene allows no "
+    "larger ones: ask for a smaller accuracy"
 )
 FILE_MESH = (
     "mesh of the file: error estimates are those of the time step: the error of the mesh is not included: "
@@ -113,6 +111,8 @@ SHARES = np.linspace(EARLY, 0.995, 16)  # shares of the impulse at which times a
 Scaled = Callable[[Mapping, Mapping, float, bool], dict[str, Value]]
 # Runs the scene with these values in a folder, and raises Failure if the run fails.
 Solve = Callable[[dict[str, Value], Path], None]
+# Runs the scene with a factor on elements and steps in a folder; returns the failure or None.
+Failed = Callable[[float, Path], Failure | None]
 
 
 def settle(
@@ -147,20 +147,8 @@ def settle(
         entries = (scaled or other)(values, runs[0].used, factor, own_mesh)
         return _ended(solve, entries | chosen, where)
 
-    sentences, notes, estimated, refinements, before = [], [], None, 0, math.inf
-    for k, name in enumerate(LEVELS, 1):
-        if failure := failed(COARSER**k, stage / name):
-            break
-        runs.append(read(stage / name))
-        if _same(*runs[-2:]):
-            runs.pop()
-            break
-    if len(runs) == 1:
-        sentences = [
-            f"the error is not estimated: the run with {COARSER:.1f} times larger elements and steps ended with: {failure}"
-            if failure
-            else SAME_STEPS
-        ]
+    sentences = _add_levels(runs, stage, failed, read)
+    notes, estimated, refinements, before = [], None, 0, math.inf
     seconds = sum(run.summary["cpu_seconds"] for run in runs[1:])
     while len(runs) > 1:
         estimated = error_estimates(runs)
@@ -200,6 +188,28 @@ def settle(
     }
 
 
+def _add_levels(
+    runs: list[Answers], stage: Path, failed: Failed, read: Callable[[Path], Answers]
+) -> list[str]:
+    """Appends the coarser levels of the run in `stage` to `runs`, until one fails or has the elements
+    and steps of the one before. Returns a message if there are none.
+    """
+    for k, name in enumerate(LEVELS, 1):
+        if failure := failed(COARSER**k, stage / name):
+            break
+        level = read(stage / name)
+        if _same(runs[-1], level):
+            break
+        runs.append(level)
+    if len(runs) > 1:
+        return []
+    if not failure:
+        return [SAME_STEPS]
+    return [
+        f"the error is not estimated: the run with {COARSER:.1f} times larger elements and steps ended with: {failure}"
+    ]
+
+
 def _same(fine: Answers, coarse: Answers) -> bool:
     """Whether two runs have the same unknowns and steps."""
     names = ("dofs", "steps")
@@ -225,7 +235,7 @@ def error_estimates(runs: Sequence[Answers]) -> dict[str, float]:
     """Returns the error estimates of the results of the first run, the finest. Each further one has
     COARSER times the elements and steps of the one before.
     """
-    pairs = [(differences(*pair), courses(*pair)) for pair in pairwise(runs)]
+    pairs = [(differences(*pair), history_differences(*pair)) for pair in pairwise(runs)]
     ratio = COARSER if runs[0].summary.get("front_rise") else COARSER**2
 
     def mean(name: str) -> float:
@@ -354,7 +364,7 @@ def differences(fine: Answers, coarse: Answers) -> dict[str, float]:
     return {name: float(number) for name, number in apart_by_name.items()}
 
 
-def courses(fine: Answers, coarse: Answers) -> dict[str, float]:
+def history_differences(fine: Answers, coarse: Answers) -> dict[str, float]:
     """Returns the root mean square differences of the time histories of two runs, by result and
     relative to the scales of differences().
 
@@ -365,22 +375,8 @@ def courses(fine: Answers, coarse: Answers) -> dict[str, float]:
     """
     summary, energy = fine.summary, fine.summary["largest_energy"]
     work, lasts = summary["friction_work"] or 0.0, summary["contact_time"]
-    ends = [run.history["t"] for run in (fine, coarse)]
-    t = np.union1d(*ends)
-    t = t[t <= min(times[-1] for times in ends)]
-    # the time that each point stands for
-    share = np.diff(np.concatenate([t[:1], (t[1:] + t[:-1]) / 2, t[-1:]]))
-    late = t >= t[0] + EARLY * (t[-1] - t[0])
-
-    def apart(columns: Callable[[Answers], list[np.ndarray]], scale: float, when=late) -> float:
-        first, second = (
-            np.array([np.interp(t, run.history["t"], column) for column in columns(run)])
-            for run in (fine, coarse)
-        )
-        if not scale or not share[when].any():
-            return 0.0
-        squares = ((first - second) ** 2).sum(axis=0)[when]
-        return math.sqrt(np.average(squares, weights=share[when])) / abs(scale)
+    shared = _SharedRecord(fine, coarse)
+    apart = shared.apart
 
     def of_bodies(names: Sequence[str], scales: Mapping[str, float]) -> float:
         columns = {s: [n + s for n in names if n + s in fine.history] for s in scales}
@@ -392,11 +388,6 @@ def courses(fine: Answers, coarse: Answers) -> dict[str, float]:
             default=0.0,
         )
 
-    def while_high(name: str) -> float:
-        values = [np.interp(t, run.history["t"], _column(run, name)) for run in (fine, coarse)]
-        largest = _column(fine, name).max()
-        return apart(lambda run: [_column(run, name)], largest, np.maximum(*values) > largest / 2)
-
     over_time = {
         "impulse": apart(lambda run: [_impulse(run.history)], summary["impulse"]),
         "rebound": of_bodies(("vx", "vy", "vz"), dict.fromkeys(_free(fine), fine.speed)),
@@ -405,7 +396,7 @@ def courses(fine: Answers, coarse: Answers) -> dict[str, float]:
         "friction_work": apart(lambda run: [run.history["friction_work"]], energy),
         OF_ITSELF: apart(lambda run: [run.history["friction_work"]], work),
     }
-    over_time |= {name: while_high(name) for name in ("peak_force", *_highest(fine))}
+    over_time |= {name: shared.apart_while_high(name) for name in ("peak_force", *_highest(fine))}
     over_time |= {
         name: apart(lambda run, name=name: [run.history[name]], energy)
         for name in WORKS
@@ -414,6 +405,45 @@ def courses(fine: Answers, coarse: Answers) -> dict[str, float]:
     reached = [_times_of_shares(run.history) for run in (fine, coarse)]
     delay = math.sqrt(np.mean((reached[0] - reached[1]) ** 2)) / lasts if lasts else 0.0
     return over_time | dict.fromkeys(("thresholded_contact_time", "contact_time"), delay)
+
+
+class _SharedRecord:
+    """The times [s] at which either of two runs has a step, up to the end of the shorter one."""
+
+    def __init__(self, fine: Answers, coarse: Answers):
+        self.runs = fine, coarse
+        ends = [run.history["t"] for run in self.runs]
+        t = np.union1d(*ends)
+        self.t = t = t[t <= min(times[-1] for times in ends)]
+        # the time that each point stands for
+        self.share = np.diff(np.concatenate([t[:1], (t[1:] + t[:-1]) / 2, t[-1:]]))
+        self.late = t >= t[0] + EARLY * (t[-1] - t[0])
+
+    def apart(
+        self,
+        columns: Callable[[Answers], list[np.ndarray]],
+        scale: float,
+        when: np.ndarray | None = None,
+    ) -> float:
+        """The root mean square difference of a vector with these columns, over `scale`, at the times
+        `when` (by default the last quarter).
+        """
+        when = self.late if when is None else when
+        first, second = (
+            np.array([np.interp(self.t, run.history["t"], column) for column in columns(run)])
+            for run in self.runs
+        )
+        if not scale or not self.share[when].any():
+            return 0.0
+        squares = ((first - second) ** 2).sum(axis=0)[when]
+        return math.sqrt(np.average(squares, weights=self.share[when])) / abs(scale)
+
+    def apart_while_high(self, name: str) -> float:
+        """apart() of a result that is a largest value, while a run is above half of this value."""
+        values = [np.interp(self.t, run.history["t"], _column(run, name)) for run in self.runs]
+        largest = _column(self.runs[0], name).max()
+        high = np.maximum(*values) > largest / 2
+        return self.apart(lambda run: [_column(run, name)], largest, high)
 
 
 def _impulse(history: Mapping) -> np.ndarray:
@@ -479,9 +509,9 @@ def touches(runs: Sequence[Answers]) -> list[str]:
     seen = [run.summary.get("contact_intervals") for run in runs[:2]]
     return (
         [
-            f"touches: contact intervals {seen[0]}, with {COARSER:.1f} times larger elements and steps {seen[1]}: "
-            "the two runs have different intervals of contact, so error estimates may be too small: see "
-            "contacts.csv, or ask for a smaller accuracy"
+            f"touches: {seen[0]} contact intervals, {seen[1]} with {COARSER:.1f} times larger elements and steps: "
+            "results of runs with different numbers of contacts may differ by more than the error estimates: "
+            "see contacts.csv, or ask for a smaller accuracy"
         ]
         if len(set(seen)) > 1
         else []

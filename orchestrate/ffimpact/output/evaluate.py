@@ -70,11 +70,11 @@ def _summary(evidence: warnings.Evidence) -> dict[str, Any]:
 
 
 def _at_both_ends(evidence: warnings.Evidence, name: str, value: Any) -> dict[str, Any]:
-    """An entry of the record. Of a velocity or spin the record has that at the end of the run,
-    which is `final_...` if the run goes on after the contact until its end_time.
+    """The entries of the summary that follow from an entry of the record.
 
-    That at the end of contact t_e is continued from the step after it, in which no contact force
-    acts: v(t_1) + (t_e - t_1) dv/dt.
+    The record has a velocity or spin at the end of the run: it is `final_...` if the run goes on
+    after the contact until its end_time. The value at the end of contact t_e is then extrapolated
+    from the following step, in which no contact force acts: v(t_e) = v(t_1) + (t_e - t_1) dv/dt.
     """
     rebound, *final = contacts.at_both_ends(name)
     t, end = evidence.history["t"], evidence.facts["contact_end"]

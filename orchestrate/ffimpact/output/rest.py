@@ -1,8 +1,8 @@
 """Estimates the errors of a run until rest: of the number of bounces, of the first restitutions and
 of the time of rest.
 
-The flights of two runs have different lengths, so their velocities differ by whole bounces at the
-same time. Differences of time histories then say nothing about these results.
+The flights of two runs have different durations, so one run may be a bounce ahead of the other.
+Differences of time histories then do not estimate the errors of these results.
 """
 
 import math
@@ -26,7 +26,7 @@ def rest_errors(fine: Answers, coarse: Answers) -> dict[str, float]:
     - `bounces` (relative): their number grows as 1/ln(1/e). So the estimate is de/(e ln(1/e)), and
       at least the difference of the runs.
     - `rebound`, `rebound_spin` (over the speed) and `energy` (over the largest energy): the
-      velocities and the energy of what rests, of both runs.
+      remaining velocities and energy of either run, which are zero at rest.
     """
     summary, other = fine.summary, coarse.summary
     if not summary.get("ended") == other.get("ended") == "rest":

@@ -57,6 +57,7 @@ PEAK_WIDTH, PEAK_SHARE = (
     0.8,
 )  # a time over the transit time of a wave; a mean force over the peak
 BOUNCES = 5  # of a rigid body on its penalty
+NO_ESTIMATE = " and have no error estimate"
 BENT = 0.1  # deviation of a function of time from a straight line in a step
 CORNER = 0.05  # share of the impulse that begins at a sharp corner
 # A pair of density and modulus that no material has: waves faster than in diamond (18 km/s);
@@ -119,13 +120,18 @@ class Evidence:
 
     @property
     def later_contact_possible(self) -> bool:
-        """Whether the run ended before a contact that may belong to the impact, or that vibration
-        alone may bring within twice the time for which contacts belong to the impact."""
+        """Whether the run ended before a contact that may belong to the impact, or one that vibration
+        alone may cause within twice the duration of the impact."""
         again, until = self.facts["contact_again_at"], self.facts["impact_until"]
         near = (
             self.facts["vibrates_again"] and again - until <= until - self.record["contact_start"]
         )
         return bool(again >= 0 and (again <= until or near))
+
+    @property
+    def is_pushed_in(self) -> bool:
+        """Whether a support pushes its part into an obstacle."""
+        return bool(self.facts["held"][1] >= 0)
 
     @property
     def slowest_wave(self) -> float:
@@ -281,8 +287,8 @@ def _law(e: Evidence) -> Iterator[Sentence]:
 
 
 def _volume(e: Evidence) -> Iterator[Sentence]:
-    """Below LOCKING_QUADRATIC elements whose volume is constrained at points do not lock. A finer
-    mesh does not help: the largest difference at the edge of a contact grows.
+    """The advice: volume=plain, whose elements do not lock below LOCKING_QUADRATIC. A finer mesh does
+    not help, because the difference at the edge of a contact grows with it.
     """
     spread, nu = e.facts["volume_spread"], max(body["nu"] for body in e.bodies)
     if spread[0] > SPREAD:
@@ -401,7 +407,7 @@ def _contact(e: Evidence) -> Iterator[Sentence]:
     depth = facts["penalty_share"] * (facts["exponent_used"] + 1) / 2
     if (
         (rise == 0 or rise > front)
-        and facts["held"][1] < 0
+        and not e.is_pushed_in
         and not all(body["rigid"] for body in e.bodies)
         and depth > SOFTEST
     ):
@@ -413,7 +419,7 @@ def _contact(e: Evidence) -> Iterator[Sentence]:
         )
     if facts["largest_force"] > 0:
         yield from _peak(e)
-    if facts["loaded_steps"] < FEWEST_STEPS and (facts["held"][1] < 0 or facts["loaded_steps"]):
+    if facts["loaded_steps"] < FEWEST_STEPS and (facts["loaded_steps"] or not e.is_pushed_in):
         yield warn(
             f"steps: {facts['loaded_steps']} steps in contact: at least {FEWEST_STEPS} are needed: "
             "take a smaller dt, or a smaller accuracy"
@@ -425,8 +431,8 @@ def _contact(e: Evidence) -> Iterator[Sentence]:
 
 
 def peak_uncertainty(e: Evidence) -> float | None:
-    """The share of the largest force that penalty and mesh may change, None where the error
-    estimate of the peak holds.
+    """The share of the largest force that penalty and mesh may change; None if its error estimate
+    includes that change.
     """
     if not e.record["contact_intervals"] or not e.facts["largest_force"] > 0:
         return None
@@ -579,7 +585,7 @@ def _pairs(e: Evidence) -> Iterator[Sentence]:
     between these."""
     pairs = e.facts["pairs"]
     deep = [pair for pair in pairs if pair["deepest"] > DEEPEST * e.radius(pair)]
-    if deep and e.facts["held"][1] < 0:
+    if deep and not e.is_pushed_in:
         worst = max(pairs, key=lambda pair: pair["deepest"] / e.radius(pair))
         share = worst["deepest"] / e.radius(worst)
         penalty = e.facts["penalty_used"] * (share / DEEPEST) ** e.facts["exponent_used"]
@@ -670,7 +676,7 @@ def _corners(e: Evidence) -> Iterator[Sentence]:
 
 def _held(e: Evidence) -> Iterator[Sentence]:
     held = e.facts["held"]
-    if held[1] >= 0:
+    if e.is_pushed_in:
         into = e.obstacle(e.facts["held_in"]) if e.facts["named"] else "the plane"
         yield warn(
             f"held part: support {e.facts['held_by'] + 1} pushes its part up to {rounded(held[0])} m "
@@ -698,8 +704,8 @@ def _sudden(e: Evidence) -> Iterator[Sentence]:
 
 
 def _release(e: Evidence) -> Iterator[Sentence]:
-    """The support whose force rises most at a release beyond what it was before. The exact force of
-    an elastic bar changes its sign there, not its size.
+    """The support whose largest force increases most by a release. In an elastic bar the exact force
+    changes its sign at the release, not its size.
     """
     rises = [
         (e.record[f"support_peak_{k}"] / before, before, k)
@@ -709,10 +715,11 @@ def _release(e: Evidence) -> Iterator[Sentence]:
     ratio, before, k = max(rises, default=(0.0, 0.0, 0))
     if ratio > 1 + e.facts["accuracy"]:
         yield warn(
-            f"release: support_peak_{k} is {percent(ratio - 1)} above the {rounded(before)} "
-            f"N{e.facts['per_metre']} until the release at t = {e.facts['first_release']:g} s: a "
-            "sudden release starts a front that elements and steps do not resolve, and forces ring "
-            "behind it: take a motion that unloads the part before its release"
+            f"release: support_peak_{k} is {percent(ratio - 1)} above its value "
+            f"{rounded(before)} N{e.facts['per_metre']} before the release at "
+            f"t = {e.facts['first_release']:g} s: a sudden release starts a front that elements "
+            "and steps do not resolve, and forces ring behind it: take a motion that unloads the "
+            "part before its release"
         )
 
 
@@ -764,8 +771,7 @@ def _next_contact(e: Evidence) -> Iterator[Sentence]:
         yield warn(
             f"not over: {who} may strike again, at t = {again:g} s or later, as {why}: contacts "
             f"until t = {facts['impact_until']:g} s belong to the impact. Impulse, rebound and "
-            f"times lack that contact{'' if cut else ', and have no error estimate'}: take a "
-            "larger end_time"
+            f"times do not include that contact{'' if cut else NO_ESTIMATE}: take a larger end_time"
         )
     else:
         yield note(
@@ -804,10 +810,10 @@ def _discretisation(e: Evidence) -> Iterator[Sentence]:
         )
     if facts["bend"] > BENT:
         yield warn(
-            f"functions of time: at t = {facts['bend_at']:.3g} s one changes by "
+            f"functions of time: at t = {facts['bend_at']:.3g} s a load or motion changes by "
             f"{percent(facts['bend'])} of its largest value within {facts['dt_largest']:.2g} s, "
-            "faster than steps and mesh resolve. Its impulse and displacement are exact, the waves "
-            "that it sends are not: take a smaller accuracy, or a smaller mesh_size and dt"
+            "faster than steps and mesh resolve. Impulse and displacement are exact, waves that "
+            "start there are not: take a smaller accuracy, or a smaller mesh_size and dt"
         )
     turn, largest = facts["driven_turn"], facts["most_driven_turn"]
     if turn > largest * (1 + 1e-9):
@@ -910,7 +916,7 @@ def _bounces(e: Evidence) -> Iterator[Sentence]:
 
 
 def _penalty_damping(e: Evidence) -> Iterator[Sentence]:
-    """Where the damping of the penalty has acted, what it has taken belongs to no material."""
+    """The energy that the damping of the penalty has taken. It is not a property of a material."""
     taken = e.record.get("penalty_damping_work", 0.0)
     if taken > 0:
         yield note(

@@ -55,7 +55,7 @@ def draw(folder: Path) -> list[Path]:
         for name, figure in reversed(drawn.items()):
             figure.suptitle(wrapped(title(scene), figure.get_figwidth()))
             save(figure, target / f"{name}.png")
-    # An earlier version of the program may have drawn more. A library may be missing for `solid`.
+    # Figures that this version does not draw; `solid` stays, for which a library may be missing.
     for name in set(FIGURES) - {*drawn, "solid"}:
         (target / f"{name}.png").unlink(missing_ok=True)
     return [target / f"{name}.png" for name in drawn]

@@ -301,7 +301,7 @@ def report(result: Record, verbose: bool = False) -> str:
         *(_sentence(marks[key], note, verbose) for key in footnotes for note in footnotes[key]),
     ]
     if not summary["provenance"].get("estimate"):
-        lines.append("  ±         not estimated: no second run was made")
+        lines.append("  ±         not estimated: no coarser runs were made")
     lines += [f"  released  {sentence}" for sentence in summary.get("released", [])]
     if summary.get("skipped"):
         lines.append(f"  skipped   {', '.join(summary['skipped'])}")

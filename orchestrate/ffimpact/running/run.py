@@ -77,9 +77,9 @@ def run(
 
     `force` runs again from the start, even if the folder is up to date. Otherwise an interrupted
     run continues from its last checkpoint. `progress` states whether a progress line is shown
-    (None: only on a terminal and in a notebook). With `estimate` coarser runs estimate
-    the error; finer runs follow until the error is below the requested accuracy
-    (output/estimate.py). Raises Failure with the exit code of the run contract.
+    (None: only on a terminal and in a notebook). With `estimate` coarser runs estimate the error;
+    finer runs follow until the error is below the requested accuracy (output/estimate.py). Raises
+    Failure with the exit code of the run contract.
     """
     started = time.monotonic()
     scene = scene.override(_sizes_left_to(mesh_file, scene) | (overrides or {}))

@@ -155,8 +155,7 @@ def read_supports(
     tables: list[models.Support], dimension: Dimension, end_time: float, folder: Path
 ) -> tuple[Support, ...]:
     """Returns the supports in the [[body.support]] tables of a body. CSV files are relative to
-    `folder`. Raises BadInput for whatever
-    is wrong in them.
+    `folder`. Raises BadInput for whatever is wrong in them.
     """
     return tuple(
         gathered([partial(_support, table, dimension, end_time, folder) for table in tables])
@@ -222,11 +221,10 @@ def _load(table: models.Load, dimension: Dimension, end_time: float, folder: Pat
         gauge = replace(
             number(-ambient, models.MOST_PRESSURE), name=gas.at("gauge_pressure")
         ).check(gas.gauge_pressure)
-        shape, words = gas.given_shape or "unstressed", ("unstressed", "inflated")
-        if shape not in words:
-            raise BadInput(f"{gas.at('given_shape')}: {unknown(shape, words)}")
         exponent = 1.0 if gas.exponent is None else gas.exponent
-        return Load(part, kind, (), (float(gauge), ambient, exponent), shape == "inflated")
+        return Load(
+            part, kind, (), (float(gauge), ambient, exponent), gas.given_shape == "inflated"
+        )
     components = "p" if kind == "pressure" else "xyz"[: dimension.axes]
     definition = getattr(table, kind)
     return Load(part, kind, functions(table.at(kind), definition, components, end_time, folder))

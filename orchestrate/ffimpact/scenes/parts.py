@@ -16,6 +16,7 @@ from ..mesh.solid_mesh import SolidMesh
 from .bodies import Body
 from .conditions import KINDS, NEVER, ON_SIDE, SIDES, Part, Support
 from .mirror import MIRROR_AXES
+from .obstacles import Drive
 
 __all__ = ["sections"]
 
@@ -37,82 +38,62 @@ def sections(
     have its support or load.
     """
     functions: list[TimeFunction] = []
-    supports, loads, first = [], [], 0
+    supports: Lines = []
+    loads: Lines = []
+    first = 0
     for k, (body, made) in enumerate(zip(bodies, meshes)):
         surface = _Surface(body, made, dimension, copies)
         for support in body.supports:
             elements = surface.elements(support.part)
-            fixed = surface.fixed(support, elements)
             _refuse_touching(support.part, surface.placed(elements), k, bodies, obstacles)
-            numbers = _numbered(
-                functions,
-                [function if held else None for function, held in zip(support.motion, fixed)],
-            )
-            supports.append(
-                (
-                    k,
-                    *map(int, fixed),
-                    *[0] * (3 - dimension.axes),
-                    support.release,
-                    *numbers,
-                    len(elements),
-                    *(first + elements),
-                )
-            )
+            row = _support_row(support, surface, elements, functions)
+            supports.append((k, *row, len(elements), *(first + elements)))
         _refuse_all_held(body, surface)
         _refuse_opposite(body, surface)
         _refuse_without_effect(body, surface)
-        filled: set[int] = set()  # elements of the cavities that have a gas already
+        _refuse_two_gases(body, surface)
         for load in body.loads:
             elements = surface.elements(load.part)
-            if load.kind == "gas":
-                surface.refuse_open(load.part, elements)
-                if filled & set(elements.tolist()):
-                    raise BadInput(
-                        f"{load.part.entry}: there is a gas in this cavity of '{body.name}' already "
-                        f"(accepted: one gas a cavity)"
-                    )
-                filled |= set(elements.tolist())
             numbers = _numbered(functions, list(load.functions))
-            loads.append(
-                (
-                    k,
-                    KINDS[load.kind],
-                    *numbers,
-                    *load.gas,
-                    int(body.inflated),
-                    len(elements),
-                    *(first + elements),
-                )
-            )
+            row = (KINDS[load.kind], *numbers, *load.gas, int(body.inflated))
+            loads.append((k, *row, len(elements), *(first + elements)))
         first += len(made.sides)
-    drives = []
-    for k, obstacle in enumerate(obstacles):
-        if obstacle.drive:
-            numbers = _numbered(functions, list(obstacle.drive.translation))[:3]
-            turn = _numbered(functions, [obstacle.drive.turn])[0]
-            drives.append(
-                (
-                    k,
-                    *numbers,
-                    turn,
-                    *obstacle.drive.pivot,
-                    *[0.0] * (3 - dimension.axes),
-                    *obstacle.drive.axis,
-                )
-            )
-    lines: Lines = []
-    if functions:
-        lines += [("functions", len(functions)), *map(_line, functions)]
+    drives = [
+        (k, *_drive_row(obstacle.drive, dimension, functions))
+        for k, obstacle in enumerate(obstacles)
+        if obstacle.drive
+    ]
     kinks = sorted(
         (time, change / function.largest_value)
         for function in functions
         for time, change in function.kinks.tolist()
     )
-    lines += [("kinks", len(kinks)), *kinks] if kinks else []
-    lines += [("drives", len(drives)), *drives] if drives else []
-    lines += [("supports", len(supports)), *supports] if supports else []
-    return lines + ([("loads", len(loads)), *loads] if loads else [])
+    rows_of = {
+        "functions": [_line(function) for function in functions],
+        "kinks": kinks,
+        "drives": drives,
+        "supports": supports,
+        "loads": loads,
+    }
+    return [line for name, rows in rows_of.items() if rows for line in ((name, len(rows)), *rows)]
+
+
+def _support_row(
+    support: Support, surface: "_Surface", elements: np.ndarray, functions: list[TimeFunction]
+) -> tuple:
+    """The row of a support between body and elements: fixed components, release, functions."""
+    fixed = surface.fixed(support, elements)
+    moved = [function if held else None for function, held in zip(support.motion, fixed)]
+    padding = [0] * (3 - surface.dimension.axes)
+    return *map(int, fixed), *padding, support.release, *_numbered(functions, moved)
+
+
+def _drive_row(drive: Drive, dimension: Dimension, functions: list[TimeFunction]) -> tuple:
+    """The row of a driven obstacle after its number: functions, pivot, axis."""
+    numbers = _numbered(functions, list(drive.translation))[:3]
+    turn = _numbered(functions, [drive.turn])[0]
+    padding = [0.0] * (3 - dimension.axes)
+    return *numbers, turn, *drive.pivot, *padding, *drive.axis
 
 
 def _line(function: TimeFunction) -> tuple:
@@ -322,6 +303,22 @@ def _refuse_opposite(body: Body, surface: _Surface) -> None:
 def _alike(first: TimeFunction, second: TimeFunction) -> bool:
     """Whether two motions are the same."""
     return (first.is_zero and second.is_zero) or np.array_equal(first.knots, second.knots)
+
+
+def _refuse_two_gases(body: Body, surface: _Surface) -> None:
+    """Raises BadInput if a gas is not in a closed cavity, or if a cavity has two gases."""
+    filled: set[int] = set()  # elements of the cavities that have a gas already
+    for load in body.loads:
+        if load.kind != "gas":
+            continue
+        elements = surface.elements(load.part)
+        surface.refuse_open(load.part, elements)
+        if filled & set(elements.tolist()):
+            raise BadInput(
+                f"{load.part.entry}: there is a gas in this cavity of '{body.name}' already "
+                f"(accepted: one gas a cavity)"
+            )
+        filled |= set(elements.tolist())
 
 
 def _refuse_without_effect(body: Body, surface: _Surface) -> None:

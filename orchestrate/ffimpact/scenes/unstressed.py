@@ -15,7 +15,7 @@ __all__ = ["find_unstressed"]
 
 MOST = 40  # iterations
 CLOSE = 1e-7  # distance of the given shape from that under the gases, over the extent
-REMEMBERED = 5  # earlier iterations that an iteration combines
+REMEMBERED = 5  # number of earlier iterates that the next one combines
 
 
 def find_unstressed(scene: Scene, flags: Mapping[str, object], where: Path) -> None:
@@ -28,7 +28,7 @@ def find_unstressed(scene: Scene, flags: Mapping[str, object], where: Path) -> N
     """
     file, out = Path(f"{flags['mesh']}.unstressed"), where / "unstressed"
     change, off = np.zeros(0), math.inf
-    next_ones: list[np.ndarray] = []
+    iterates: list[np.ndarray] = []
     residuals: list[np.ndarray] = []
     file.write_text("search 0\n")
     for _ in range(MOST):
@@ -42,15 +42,15 @@ def find_unstressed(scene: Scene, flags: Mapping[str, object], where: Path) -> N
         head, *lines = file.read_text().splitlines()
         word, *numbers = head.split()
         if word != "next":
-            if not next_ones:
+            if not iterates:
                 raise of_code(code, message or f"FreeFem++ stopped with exit code {code}")
             break
         share, extent = map(float, numbers[1:])
-        next_ones.append(np.array(lines, float))
-        residuals.append(next_ones[-1] - (change if change.size else 0.0))
+        iterates.append(np.array(lines, float))
+        residuals.append(iterates[-1] - (change if change.size else 0.0))
         off = abs(residuals[-1]).max() / extent
         ends = share == 1 and off <= CLOSE
-        change = next_ones[-1] if ends else _combined(next_ones, residuals)
+        change = iterates[-1] if ends else _combined(iterates, residuals)
         _write(file, "found" if ends else "search", change)
         if ends:
             return
@@ -61,13 +61,13 @@ def find_unstressed(scene: Scene, flags: Mapping[str, object], where: Path) -> N
     )
 
 
-def _combined(next_ones: list[np.ndarray], residuals: list[np.ndarray]) -> np.ndarray:
+def _combined(iterates: list[np.ndarray], residuals: list[np.ndarray]) -> np.ndarray:
     """The next iterate: the combination of the last ones with the smallest residual."""
     last = slice(-1 - REMEMBERED, None)
-    steps, falls = np.diff(next_ones[last], axis=0).T, np.diff(residuals[last], axis=0).T
+    steps, falls = np.diff(iterates[last], axis=0).T, np.diff(residuals[last], axis=0).T
     if steps.size == 0:
-        return next_ones[-1]
-    return next_ones[-1] - steps @ np.linalg.lstsq(falls, residuals[-1], rcond=1e-10)[0]
+        return iterates[-1]
+    return iterates[-1] - steps @ np.linalg.lstsq(falls, residuals[-1], rcond=1e-10)[0]
 
 
 def _write(file: Path, word: str, change: np.ndarray) -> None:
