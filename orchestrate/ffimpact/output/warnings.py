@@ -57,7 +57,6 @@ PEAK_WIDTH, PEAK_SHARE = (
     0.8,
 )  # a time over the transit time of a wave; a mean force over the peak
 BOUNCES = 5  # of a rigid body on its penalty
-NO_ESTIMATE = " and have no error estimate"
 BENT = 0.1  # deviation of a function of time from a straight line in a step
 CORNER = 0.05  # share of the impulse that begins at a sharp corner
 # A pair of density and modulus that no material has: waves faster than in diamond (18 km/s);
@@ -767,11 +766,12 @@ def _next_contact(e: Evidence) -> Iterator[Sentence]:
         why = "gravity bends their flight, which ends the run"
     else:
         why = "they vibrate near each other"
+    without = "" if cut else " and have no error estimate"
     if e.later_contact_possible:
         yield warn(
             f"not over: {who} may strike again, at t = {again:g} s or later, as {why}: contacts "
             f"until t = {facts['impact_until']:g} s belong to the impact. Impulse, rebound and "
-            f"times do not include that contact{'' if cut else NO_ESTIMATE}: take a larger end_time"
+            f"times do not include that contact{without}: take a larger end_time"
         )
     else:
         yield note(
