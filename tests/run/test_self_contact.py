@@ -95,6 +95,8 @@ def test_which_bodies_touch_themselves(tmp_path):
     own = {"self_contact": "off", "pair": [{"bodies": ["thick", "thick"], "penalty": 1e9}]}
     assert partners(tables | {"contact": {"self_contact": "off"}}) == [] and partners(tables | {"contact": own}) == [(2, 2)]
     assert partners(tables | {"obstacle": [], "contact": {"pairing": "pairwise"}}) == []
+    rigid = {"body": [PIN, RING | {"position": [0.3, 0.1], "rigid": True}]}
+    assert partners(SCENE | rigid) == [(0, 0)] == partners(SCENE | rigid | {"contact": {"self_contact": "on"}})
     for contact, message in (({"self_contact": "yes"}, "^contact.self_contact: 'yes' is not known .accepted: auto|on|off"), ({"self_contact": "on", "pairing": "pairwise"}, "^contact.self_contact: on, but pairing = 'pairwise'")):
         with pytest.raises(BadInput, match=message):
             read(tables | {"contact": contact})

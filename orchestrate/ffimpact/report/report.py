@@ -201,13 +201,19 @@ def stiffness(contact: dict[str, Value]) -> str:
     return f"{contact['penalty']:.4g} Pa/m" + f"^{m:g}" * (m != 1)
 
 
+def _partners(pair: dict[str, Value]) -> str:
+    """Returns the names of the two partners of a contact pair."""
+    first, second = pair["bodies"]
+    return f"{first} with itself" if first == second else f"{first} and {second}"
+
+
 def _scene(scene: dict[str, Value], summary: dict) -> list[str]:
     """Returns lines that describe the scene: bodies, speed and contact."""
     contact = scene.get("contact", scene)
     pull = f"gravity {scene['gravity']:g} m/s2, " if scene.get("gravity") else ""
     words = f"{pull}penalty {stiffness(contact)}{_friction(contact)}"
     own = [
-        f"{' and '.join(pair['bodies'])}: penalty {stiffness(contact | pair)}{_friction(contact | pair) or ', no friction'}"
+        f"{_partners(pair)}: penalty {stiffness(contact | pair)}{_friction(contact | pair) or ', no friction'}"
         for pair in contact.get("pair", [])
     ]
     if "body" not in scene:

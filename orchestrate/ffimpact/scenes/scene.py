@@ -572,7 +572,8 @@ def _touching_themselves(
 ) -> list[int]:
     """Returns the bodies that may come into contact with themselves, by `self_contact`.
 
-    "auto" takes bodies in the plane or of revolution that close at a bending strain below FOLDING.
+    "auto" takes bodies in the plane or of revolution that close at a bending strain below FOLDING,
+    and nothing takes rigid ones.
     A body that is `alone`, without obstacles or other bodies, always may.
     """
     self_contact = contact.self_contact or "auto"
@@ -589,8 +590,11 @@ def _touching_themselves(
     return [
         k
         for k, body in enumerate(all_bodies)
-        if self_contact == "on"
-        or (flat and body.outline.folding(scene_dimension is AXISYMMETRIC) < FOLDING)
+        if not body.rigid
+        and (
+            self_contact == "on"
+            or (flat and body.outline.folding(scene_dimension is AXISYMMETRIC) < FOLDING)
+        )
     ]
 
 
