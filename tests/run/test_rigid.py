@@ -255,6 +255,9 @@ def test_a_rigid_body_on_a_corner_has_a_coarse_mesh(tmp_path, monkeypatch):
     file.write_text(TILTED)
     tilted = assembly.assemble(load(str(file)))
     assert 1000 < len(tilted.mesh.cells) < 10_000 and tilted.used["body"][0]["contact_mesh_size"] > 0.001
+    monkeypatch.setattr(solid_mesh, "MOST_RIGID_CELLS", 1000)
+    with pytest.raises(BadInput, match="contact_mesh_size: the rigid bodies have [0-9]+ tetrahedra .accepted: up to 1000;"):
+        assembly.assemble(load(str(file)))
     with pytest.raises(BadInput, match="mesh_size: the bodies have [0-9]+ unknowns"):
         file.write_text(TILTED.replace("rigid = true\nmass = 1", "law = 'svk'\nyoung = 1e7\nnu = 0.3\ndensity = 1000\nmesh_size = 0.01\ncontact_mesh_size = 0.01"))
         assembly.assemble(load(str(file)))

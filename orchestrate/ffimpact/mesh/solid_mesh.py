@@ -19,6 +19,7 @@ __all__ = [
     "Curved",
     "DEPTH",
     "MOST_CELLS",
+    "MOST_RIGID_CELLS",
     "MOST_UNKNOWNS",
     "SolidMesh",
     "cell_volumes",
@@ -38,6 +39,9 @@ MOST_SOURCES = 2000  # largest number of points from which the size field measur
 FILL = 0.118  # volume of a regular tetrahedron over the cube of its edge
 MOST_CELLS = 400_000  # largest expected number of tetrahedra of a body
 MOST_UNKNOWNS = 150_000  # largest number of displacement unknowns of a run
+MOST_RIGID_CELLS = (
+    60_000  # of rigid bodies, which have few unknowns: FreeFem++ takes 40 kB for each
+)
 
 
 @dataclass(frozen=True)

@@ -242,6 +242,12 @@ def _solids(
             f"mesh_size: the bodies have {count} unknowns (accepted: up to {solid_mesh.MOST_UNKNOWNS}; larger mesh_size, "
             f"contact_mesh_size or accuracy, coarser files, degree = 1)"
         )
+    rigid = sum(len(made.cells) for body, made in zip(scene.bodies, meshes) if body.rigid)
+    if rigid > solid_mesh.MOST_RIGID_CELLS:
+        raise BadInput(
+            f"contact_mesh_size: the rigid bodies have {rigid} tetrahedra (accepted: up to "
+            f"{solid_mesh.MOST_RIGID_CELLS}; a larger contact_mesh_size or accuracy, or a smaller penalty, whose contacts are wider)"
+        )
     centres = side_by_side(meshes, 1)
     surfaces = [
         (k, *(centre + patch.centre), *patch.axis, patch.radius)
