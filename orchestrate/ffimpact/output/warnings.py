@@ -56,7 +56,7 @@ PEAK_WIDTH, PEAK_SHARE = (
     0.5,
     0.8,
 )  # a time over the transit time of a wave; a mean force over the peak
-BOUNCES = 5  # of a rigid body on its penalty
+BOUNCES = 5  # smallest number of short flights of a rigid body that are a warning
 BENT = 0.1  # deviation of a function of time from a straight line in a step
 CORNER = 0.05  # share of the impulse that begins at a sharp corner
 # A pair of density and modulus that no material has: waves faster than in diamond (18 km/s);
@@ -686,8 +686,8 @@ def _held(e: Evidence) -> Iterator[Sentence]:
 
 
 def _sudden(e: Evidence) -> Iterator[Sentence]:
-    """A jump of a support's velocity sends a front whose ringing, up to a third of it, may be seen
-    in the peak of the support's force.
+    """A jump of the velocity of a support starts a front. Forces ring behind it by up to a third of
+    the force of the front, which may be part of support_peak.
     """
     facts = e.facts
     peak = e.record.get(f"support_peak_{facts['sudden_support'] + 1}", 0.0)
@@ -696,9 +696,9 @@ def _sudden(e: Evidence) -> Iterator[Sentence]:
         yield warn(
             f"sudden support: at t = {facts['sudden_at']:.3g} s the velocity of support "
             f"{facts['sudden_support'] + 1} jumps by {rounded(facts['sudden_speed'])} m/s, at the "
-            "start from that of its body. Elements and steps do not resolve the front that it sends, "
+            "start from that of its body. Elements and steps do not resolve the front that it starts, "
             "and forces ring behind it: support_peak may be too large by a third of the front, "
-            "which is not in its error estimate: take a motion that starts and stops smoothly"
+            "which its error estimate does not contain: take a motion that starts and stops smoothly"
         )
 
 
@@ -890,7 +890,7 @@ def _friction(e: Evidence) -> Iterator[Sentence]:
 
 
 def _bounces(e: Evidence) -> Iterator[Sentence]:
-    """A rigid body lies on a penalty that loses nothing: it leaves for less time than it stays."""
+    """A rigid body rests on a penalty without damping: its flights are shorter than its contacts."""
     if not e.facts["friction"] or e.facts["body_acceleration"] == 0:
         return
     if e.record.get("penalty_damping_work"):
@@ -908,10 +908,10 @@ def _bounces(e: Evidence) -> Iterator[Sentence]:
     ]
     if len(short) >= BOUNCES:
         yield warn(
-            f"bounces: under the weight rigid bodies part {len(short)} times for less time than "
-            "they touch: a penalty that loses nothing lets them bounce on, and they slip in every "
-            "flight, also where friction_static would hold them: take penalty_damping = "
-            f"{rounded(min(short) / math.pi)}, or start = equilibrium"
+            f"bounces: under their weight rigid bodies had {len(short)} flights that were shorter "
+            "than the contact before: without damping the penalty lets them bounce forever. They "
+            "slip in each flight, although friction_static would hold them in contact: take "
+            f"penalty_damping = {rounded(min(short) / math.pi)}, or start = equilibrium"
         )
 
 
