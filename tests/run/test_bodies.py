@@ -273,6 +273,7 @@ BAD = [
 TABLES = [
     ({"obstacle": []}, "body: is missing (accepted: one table [[body]] or more)"),
     ({"body": {"shape": "disc"}}, "body: '{'shape': 'disc'}' is no list of tables (accepted: [[body]])"),
+    ({"body": [DISC], "obstacle": [], "contact": {"self_contact": "off"}}, "contact.self_contact: off, but a body without obstacles and other bodies may come into contact with itself (accepted: auto|on"),
     ({"body": [{}]}, "body.1.shape: is missing (accepted: disc|"),
     ({"body": [3]}, "body.1: '3' is no table (accepted: [[body]])"),
     ({"body": [DISC], "obstacle": [3]}, "obstacle.1: '3' is no table (accepted: [[obstacle]])"),

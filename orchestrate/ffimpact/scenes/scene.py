@@ -582,6 +582,11 @@ def _touching_themselves(
             f"{contact.at('self_contact')}: on, but pairing = '{pairing}' is between bodies "
             f"(accepted: auto|off, or pairing = 'closest-point')"
         )
+    if alone and self_contact == "off":
+        raise BadInput(
+            f"{contact.at('self_contact')}: off, but a body without obstacles and other bodies may "
+            f"come into contact with itself (accepted: auto|on, or an obstacle)"
+        )
     if alone:
         return [0]
     if self_contact == "off" or pairing != "closest-point":
