@@ -107,3 +107,19 @@ def test_a_block_slides_on_a_steeper_slope(tmp_path):
 def test_deeper_overlaps_are_refused(tmp_path):
     with pytest.raises(Failure, match=r"exit code 10.*overlaps obstacle1 by .* which takes a force of .*\(accepted: "):
         bodies(tmp_path, slope(-3 * DEPTH, end_time=0.1))
+
+
+def test_a_gas_does_not_excuse_an_overlap(tmp_path):
+    """The gas in a ball presses on no obstacle: without weight no overlap is that at rest."""
+    ball = {"shape": "ring", "radius": 0.05, "inner_radius": 0.04, "position": [0, 0.05274], "velocity": [0, -0.5],
+            "load": [{"where": "inner", "gas": {"gauge_pressure": 5e4, "exponent": 1.4}}]}
+    scene = SOFT | {"start": "given", "young": 3e6, "nu": 0.45, "gravity": 0.0, "body": [ball], "obstacle": [FLOOR]}
+    with pytest.raises(Failure, match=r"exit code 10.*load\.1\.gas: the gas inflates body1, and body1 overlaps obstacle1 by .*\(accepted: a gap that is "):
+        bodies(tmp_path, scene)
+
+
+def test_the_peak_of_a_support_in_less_than_a_step(tmp_path):
+    """A bar that starts stretched by its load pulls at its support, also until the end of half a step."""
+    bar = block(0.1, 0.025, 0, 0, support=[{"where": "left"}], load=[{"where": "right", "traction": [1e3, 0]}])
+    run = bodies(tmp_path, SOFT | {"gravity": 0.0, "nu": 0.0, "end_time": 1e-6, "body": [bar]})
+    assert run.summary["support_peak_1"] == pytest.approx(1e3 * 0.025, rel=1e-6)
