@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ffimpact.failure import Failure
-from tests.support.slope import ALPHA, DEPTH, GRAVITY, MASS, along, slope
+from tests.support.slope import ALPHA, DEPTH, GRAVITY, MASS, PENALTY, along, slope
 from verification.measure import bodies
 
 FLOOR = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}
@@ -102,6 +102,13 @@ def test_a_block_slides_on_a_steeper_slope(tmp_path):
     assert -along(run.history, "vx", "vy")[-1] == pytest.approx(epsilon + fall * (0.1 - creeps), rel=5e-3)
     # Friction tilts the block, which oscillates about that tilt.
     assert run.history["normal_force"][1:] == pytest.approx(MASS * GRAVITY * math.cos(ALPHA), rel=0.05)
+
+
+def test_the_depth_at_rest_on_a_soft_penalty_is_accepted(tmp_path):
+    """A hundred times softer, 2 % of the half thickness: the weight is carried from the start on."""
+    soft = {"penalty": PENALTY / 100, "friction_dynamic": 0.6}
+    run = bodies(tmp_path, slope(-100 * DEPTH, end_time=0.02, contact=soft))
+    assert run.history["normal_force"][1] == pytest.approx(MASS * GRAVITY * math.cos(ALPHA), rel=0.03)
 
 
 def test_deeper_overlaps_are_refused(tmp_path):

@@ -62,7 +62,7 @@ WIDE = 100.0  # width [m] of a body from a file above which its units are doubtf
 TOUCHING = 1e-9  # overlap at the start that is round-off, over half the thickness of the body
 # Overlap, likewise, that may be the depth at rest under weight or loads. The solver knows the penalty
 # and judges it by its force (edp/core/run/start.idp).
-SUNK = 1e-3
+SUNK = 0.05
 
 
 @dataclass(frozen=True)
