@@ -138,3 +138,14 @@ def test_the_errors_of_a_run_until_rest(tmp_path):
     later = rest_errors(fine, bounced([0.8, 0.82, 0.81], 5.0))
     assert later["rest_time"] == pytest.approx(0.25) and later["first_restitutions"] == 0
     assert rest_errors(fine, bounced([0.8], 4.0, "end_time")) == {}
+
+
+def test_a_body_that_is_set_down_has_no_error_of_the_restitution(tmp_path):
+    """Its approach is 0."""
+    result = record(tmp_path)
+    head, *rows = (tmp_path / "contacts.csv").read_text().splitlines()
+    where = head.split(",").index("approach")
+    cells = [row.split(",") for row in rows]
+    rows = [",".join([*row[:where], "0", *row[where + 1 :]]) for row in cells]
+    (tmp_path / "contacts.csv").write_text("\n".join([head, *rows]) + "\n")
+    assert "restitution" not in errors(result) and "impulse_ratio" in errors(result)

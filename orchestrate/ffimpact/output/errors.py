@@ -147,7 +147,8 @@ def _of_impact(record: Record, answers: Answers, share: Mapping[str, float]) -> 
         lever / summary[f"reach{end}"] * rim for lever, end in zip(levers, suffix, strict=False)
     ]
     every = math.sqrt(len(bodies))
-    estimates["restitution"] = math.hypot(every * velocity, *turning) / float(rows.approach[0])
+    if rows.approach[0] > 0:  # else the body is set down without a velocity
+        estimates["restitution"] = math.hypot(every * velocity, *turning) / float(rows.approach[0])
     if rows.slip_before[0] > 0:
         estimates["restitution_tangential"] = (
             every * math.hypot(velocity, rim) / float(rows.slip_before[0])

@@ -24,8 +24,8 @@ runs are then the levels of the new one. The contact time scatters with the vibr
 contact (by 0.8 % rms in hard impacts, on any mesh and with any step that was tried). If it alone is
 above, a second finer run follows only if the gain of the first one, gained again, brings its
 estimate there. An estimate that is still above WORTH times the request is a warning. One that is
-above the request by less, or of a result that is not promised, is a note (notes.py). Runs with
-different numbers of contact intervals are a warning (touches()).
+above the request by less, that scatters, or of a result that is not promised, is a note
+(notes.py). Runs with different numbers of contact intervals are a warning (touches()).
 """
 
 import math
@@ -159,7 +159,7 @@ def settle(
         scatter = above == [SCATTERS] and estimated[SCATTERS] ** 2 / before > WORTH * accuracy
         before = estimated[SCATTERS]
         exceeding = excess(estimated, accuracy, values["accuracy_of"])
-        sentences, notes = (exceeding, []) if above else ([], exceeding)
+        sentences, notes = ([], exceeding) if scatter or not above else (exceeding, [])
         lost = runs[0].summary.get("ellipticity_lost_time") is not None
         if not above or scatter or fixed or lost or refinements == MOST:
             break
