@@ -117,8 +117,8 @@ def test_compare_goes_on_after_a_failure(fake, tmp_path, capsys):
     """A failed scene is reported, the others run, and the exit code is that of the failure."""
     fake("step")
     assert main(["compare", "disc-oblique-svk", "disc-oblique", "--out", str(tmp_path)]) == 11
-    # With two cores, the run for the error estimate may start beside each.
-    assert 2 <= fake.starts() <= 4
+    # With two cores, the runs for the error estimate may start beside each.
+    assert 2 <= fake.starts() <= 6
     captured = capsys.readouterr()
     assert captured.out.count("failed: step: no convergence") == 2 and captured.err.count("\n") == 1
 

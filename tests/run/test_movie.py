@@ -61,13 +61,13 @@ def test_film_is_drawn_again_only_for_another_run(fake, no_ffmpeg, tmp_path, mon
     call = lambda *more: movie.main(["disc-normal", "--frames", "3", "--out", str(tmp_path / "out"), *more])   # noqa: E731
     call()
     call()
-    # The run, and the coarser run for its error estimate.
-    assert len(drawn) == 1 and fake.starts() == 2
+    # The run, and the two coarser runs for its error estimate.
+    assert len(drawn) == 1 and fake.starts() == 3
     os.utime(tmp_path / "out/disc-normal.gif", (0, 0))
     call()
-    assert len(drawn) == 2 and fake.starts() == 2
+    assert len(drawn) == 2 and fake.starts() == 3
     call("--set", "speed=4")
-    assert len(drawn) == 3 and fake.starts() == 4
+    assert len(drawn) == 3 and fake.starts() == 6
 
 
 def stop_at_third_frame(writer, monkeypatch) -> None:

@@ -24,10 +24,10 @@ from .figures import (
     LAWS,
     ORANGE,
     PURPLE,
-    STYLE,
     numbers_of_the_paper,
     per_metre,
     save,
+    styled,
     touched,
 )
 
@@ -85,7 +85,7 @@ def draw(results: dict[str, Record], path: Path) -> None:
     """
     mixed = len({per_metre(result.scene) for result in results.values()}) > 1
     rubs = any(result.history["friction_force"].any() for result in results.values())
-    with plt.rc_context(STYLE):
+    with styled():
         figure, grid = plt.subplots(2, 2, figsize=(8.2, 5.6), sharex=True, layout="constrained")
         (force, drag), (energy, velocity) = grid
         for k, ((name, result), colour) in enumerate(

@@ -13,7 +13,7 @@ from ..output import vtu
 from ..output.folder import FIGURES
 from ..output.results import Contents, body_names, check_files, read_history, read_json, read_scene
 from . import bodies, contact as contacts, impacts, solid
-from .figures import BODY, STYLE, as_written, is_half, material, per_metre, plt, save, touched
+from .figures import BODY, as_written, is_half, material, per_metre, save, styled, touched
 
 __all__ = ["LETTERS", "MOST_LINES", "draw", "title", "wrapped"]
 
@@ -37,7 +37,7 @@ def draw(folder: Path) -> list[Path]:
     names = body_names(scene) if several else ["body"]
     # without free flight
     contact = Contents({name: column[max(0, int(np.argmax(touches)) - 1):] for name, column in history.items()}, history.path)
-    with plt.rc_context(STYLE):
+    with styled():
         drawn = bodies.draw(history, contact, scene, snapshots)
         if (folder / "fields/contact.csv").exists():
             table = contacts.read(folder)

@@ -2,11 +2,13 @@
 force, stick and slip, and flight, like figures 4 and 5 of the paper.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from warnings import catch_warnings, filterwarnings
 
+import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import TriMesh
@@ -70,6 +72,7 @@ __all__ = [
     "save",
     "scale_bar",
     "side_by_side",
+    "styled",
     "touched",
 ]
 
@@ -135,6 +138,17 @@ DASHED = (0, (4, 2))
 ORIGIN = np.zeros(2)
 # Converts digits to superscript letters. Parsing a formula takes as long as drawing a picture.
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+@contextmanager
+def styled() -> Iterator[None]:
+    """Figures in the STYLE of the program. The first figure of a process loads the backend, and that
+    of a notebook makes matplotlib interactive, which must outlive the style.
+    """
+    with plt.rc_context(STYLE):
+        yield
+        interactive = plt.isinteractive()
+    matplotlib.interactive(interactive)
 
 
 def save(figure: plt.Figure, path: Path) -> None:

@@ -13,7 +13,7 @@ from ..freefem import freefem
 from ..input import parameters
 from ..output.folder import result_folder
 from ..places import RESULTS, shown
-from .figures import BELOW, BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, STYLE, legend, save
+from .figures import BELOW, BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, legend, save, styled
 
 __all__ = ["VALUES", "draw", "main", "tabulate"]
 
@@ -82,7 +82,7 @@ def draw(laws: pd.DataFrame, values: dict[str, float], path: Path) -> None:
     of a law both sides are separate.
     """
     laws = laws.assign(size_=laws.v / values["slip_velocity"])
-    with plt.rc_context(STYLE):
+    with styled():
         figure, (a, b, c) = plt.subplots(1, 3, figsize=(10.2, 3.9))
         for axes in (a, b, c):
             axes.axhline(0, color=GREY, linewidth=0.6)

@@ -29,7 +29,6 @@ from .figures import (
     GREY,
     ORANGE,
     STRESS,
-    STYLE,
     Body,
     deformed,
     diameter,
@@ -37,6 +36,7 @@ from .figures import (
     is_half,
     legend,
     per_metre,
+    styled,
 )
 
 __all__ = ["Motion", "PlaneStage", "SolidStage", "Stage", "main", "stage_of", "write"]
@@ -101,7 +101,7 @@ def write(film: Path, result: Record, frames: int) -> None:
     """Writes `frames` frames, evenly spaced from the first to the last snapshot, as a film of
     SECONDS seconds. An incomplete film is removed. Raises NotInstalled if ffmpeg fails.
     """
-    with plt.rc_context(STYLE):
+    with styled():
         stage = stage_of(result)
         part = film.with_suffix(f".part{film.suffix}")
         writer = (FFMpegWriter if film.suffix == ".mp4" else PillowWriter)(fps=frames / SECONDS)

@@ -37,11 +37,11 @@ from ..report.figures import (
     ORANGE,
     PURPLE,
     SMALL,
-    STYLE,
     as_written,
     legend,
     numbers_of_the_paper,
     save,
+    styled,
 )
 from . import study
 
@@ -164,7 +164,7 @@ def draw(sweep, rows: pd.DataFrame, out: Path) -> None:
     """Draws DIR/sweep.png, if the sweep has a figure."""
     if not sweep.figure:
         return
-    with plt.rc_context(STYLE):
+    with styled():
         figure = {"lines": draw_lines, "map": _map, "histories": _histories}[sweep.figure["kind"]](
             sweep, rows, out
         )
