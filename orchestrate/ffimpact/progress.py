@@ -34,25 +34,26 @@ _thread = _Thread()
 
 
 @contextlib.contextmanager
-def forward(tell: Tell) -> Iterator[None]:
+def _in_this_thread(name: str, value: object) -> Iterator[None]:
+    """Sets a value of this thread inside the `with`."""
+    before = getattr(_thread, name)
+    setattr(_thread, name, value)
+    try:
+        yield
+    finally:
+        setattr(_thread, name, before)
+
+
+def forward(tell: Tell) -> contextlib.AbstractContextManager[None]:
     """Sends the progress of the lines that this thread makes inside the `with` to `tell`, which
     shows it as part of another line.
     """
-    before, _thread.tell = _thread.tell, tell
-    try:
-        yield
-    finally:
-        _thread.tell = before
+    return _in_this_thread("tell", tell)
 
 
-@contextlib.contextmanager
-def muted(quiet: bool = True) -> Iterator[None]:
+def muted(quiet: bool = True) -> contextlib.AbstractContextManager[None]:
     """Announces no work of this thread inside the `with` if `quiet`."""
-    before, _thread.muted = _thread.muted, quiet
-    try:
-        yield
-    finally:
-        _thread.muted = before
+    return _in_this_thread("muted", quiet)
 
 
 @contextlib.contextmanager

@@ -178,6 +178,10 @@ class Evidence:
             else f"obstacle {number + 1}"
         )
 
+    def hit_obstacle(self, fact: str) -> str:
+        """The obstacle with the number in this fact, as a message names it."""
+        return self.obstacle(self.facts[fact]) if self.facts["named"] else "the plane"
+
     def pair(self, pair: Mapping[str, Any]) -> str:
         """The names of a contact pair."""
         body, other = pair["body"], pair["counter_body"]
@@ -569,7 +573,7 @@ def _obstacles(e: Evidence) -> Iterator[Sentence]:
             )
     sunk = e.facts["sunk"]
     if sunk[1] >= 0:
-        into = e.obstacle(e.facts["sunk_in"]) if e.facts["named"] else "the plane"
+        into = e.hit_obstacle("sunk_in")
         yield warn(
             f"sinks: {e.bodies[e.facts['sunk_body']]['name']} is up to {rounded(sunk[0])} m inside "
             f"{into}{e.near(sunk)}, at t = {sunk[1]:g} s, at a part of "
@@ -676,7 +680,7 @@ def _corners(e: Evidence) -> Iterator[Sentence]:
 def _held(e: Evidence) -> Iterator[Sentence]:
     held = e.facts["held"]
     if e.is_pushed_in:
-        into = e.obstacle(e.facts["held_in"]) if e.facts["named"] else "the plane"
+        into = e.hit_obstacle("held_in")
         yield warn(
             f"held part: support {e.facts['held_by'] + 1} pushes its part up to {rounded(held[0])} m "
             f"into {into}{e.near(held)}, at t = {held[1]:g} s: its nodes follow the support, and no "
