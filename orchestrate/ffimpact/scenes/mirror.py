@@ -54,14 +54,14 @@ def _is_mirrored_in_plane(scene, axis: int) -> bool:
     of its first body. Shapes are compared by their signed distances.
     """
     values, at = scene.values, scene.bodies[0].position[axis]
-    reach = max(body.placed.reach for body in scene.bodies)
+    radius = max(body.placed.reach for body in scene.bodies)
     image = np.where(np.arange(2) == axis, -1.0, 1.0)
 
     def mirrored(points: np.ndarray) -> np.ndarray:
         return points * image + (1 - image) * at
 
     def is_its_image(body: Body) -> bool:
-        own = np.abs(body.placed.gap(mirrored(body.placed.points))).max() <= ALIKE * reach
+        own = np.abs(body.placed.gap(mirrored(body.placed.points))).max() <= ALIKE * radius
         moves = body.position[axis] != at or body.velocity[axis] != 0 or body.spin != 0
         conditions = body.supports or body.loads
         return (
@@ -73,12 +73,12 @@ def _is_mirrored_in_plane(scene, axis: int) -> bool:
         return False
     centres = np.array([body.position for body in scene.bodies])
     points = np.random.default_rng(1).uniform(
-        centres.min(axis=0) - 2 * reach, centres.max(axis=0) + 2 * reach, (SAMPLES, 2)
+        centres.min(axis=0) - 2 * radius, centres.max(axis=0) + 2 * radius, (SAMPLES, 2)
     )
     return all(
         obstacle.velocity[axis] == 0
         and obstacle.drive is None
-        and np.abs(obstacle.gap(points) - obstacle.gap(mirrored(points))).max() <= ALIKE * reach
+        and np.abs(obstacle.gap(points) - obstacle.gap(mirrored(points))).max() <= ALIKE * radius
         for obstacle in scene.obstacles
     )
 
