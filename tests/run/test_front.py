@@ -5,6 +5,7 @@ import tomllib
 import pytest
 
 from ffimpact import scene
+from ffimpact.running import run
 from ffimpact.scenes import assembly, finer
 from tests.support.front import BLOCK, scene_of
 
@@ -30,3 +31,24 @@ def test_what_the_user_gives_stays(tmp_path):
     used = tomllib.loads(assembly.to_toml(assembly.assemble(problem).used))
     assert used["contact"]["penalty"] == 1e9 and used["contact"].get("pair", []) == [] and used["body"][0]["mesh_size"] == 0.02
     assert finer.scaled(problem, problem.values, used, 2.0)["contact.penalty"] == 1e9
+
+
+BAR = BLOCK.replace("width = 0.2", "width = 0.04")
+
+
+@pytest.mark.parametrize("nu, share", [(0.0, 0.05), (0.3, 0.2)])
+def test_a_bar_needs_elements_along_it_only(nu, share, tmp_path):
+    """A bar that lands flat has at most 0.6 of the unknowns of equal sides, and impulse and rebound
+    differ by less than a share of the accuracy: its front is plane, and for nu > 0 waves from its
+    sides follow."""
+    bar = BLOCK.replace("width = 0.2", "width = 0.04")
+    problem, accuracy = scene_of(bar, tmp_path, body__1__nu=nu, accuracy=0.01), 0.01
+    long = run.run(problem, {}, tmp_path / "long", estimate=False)
+    size, stretch = (long.scene["body"][0][name] for name in ("mesh_size", "mesh_stretch"))
+    plain = run.run(problem, {"body.1.mesh_size": size, "body.1.mesh_stretch": 1}, tmp_path / "plain", estimate=False)
+    first, second = long.summary, plain.summary
+    assert stretch > 2 and first["dofs"] < 0.6 * second["dofs"]
+    assert abs(first["rebound_vy"] - second["rebound_vy"]) < share * accuracy * 0.3
+    assert first["impulse"] == pytest.approx(second["impulse"], rel=share * accuracy)
+    if nu == 0:
+        assert first["rebound_vy"] == pytest.approx(0.3, rel=accuracy)

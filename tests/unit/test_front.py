@@ -91,8 +91,53 @@ def test_the_penalty_lets_the_front_rise_in_its_time(exponent, tmp_path):
 
 def test_the_unknowns_of_a_front_are_limited(tmp_path):
     """The number of elements of a thin plate is bounded."""
-    plate = scene_of(BLOCK, tmp_path, body__1__width=2.0, body__1__height=0.02, body__1__position=[0, 0.01], accuracy=0.001)
+    plate = scene_of(BLOCK, tmp_path, body__1__width=2.0, body__1__height=0.02, body__1__position=[0, 0.01], accuracy=0.0001)
     strike, = fronts(plate)
-    assert 9.5 * 2.0 * 0.02 / strike.sizes[0]**2 == pytest.approx(front.MOST_UNKNOWNS[2])
+    stretch = front.stretch_of(0, [strike], strike.sizes[0])
+    assert 9.5 * 2.0 * 0.02 / stretch / strike.sizes[0]**2 == pytest.approx(front.MOST_UNKNOWNS[2])
     body = replace(plate.bodies[0], nu=0.4999)
     assert np.isfinite(body.wave_speed) and body.wave_speed == replace(body, nu=0.45).wave_speed
+
+
+def stretch(problem: scene.Scene, k: int = 0) -> float:
+    strikes = fronts(problem)
+    return front.stretch_of(k, strikes, strikes[0].sizes[k])
+
+
+def test_elements_are_long_across_a_plane_front(tmp_path):
+    """Half the thickness without lateral stress, and less the larger its ratio to that along the
+    normal, nu / (1 - nu), and the smaller the accuracy."""
+    half, size = 0.05, front.PER_ACCURACY * 0.02 * 0.1
+    assert stretch(scene_of(BLOCK, tmp_path)) == pytest.approx(half / size)
+    fine = dict(accuracy=0.0032, body__1__nu=0.4)
+    size *= 0.0032 / 0.02
+    expected = front.ACROSS * math.sqrt(0.0032) / (0.4 / 0.6) * half / size
+    assert 1 < expected < front.LONGER
+    assert stretch(scene_of(BLOCK, tmp_path, **fine)) == pytest.approx(expected)
+    assert stretch(scene_of(BLOCK, tmp_path, accuracy=1e-3)) == front.LONGER
+    assert [stretch(scene_of(BARS, tmp_path), k) for k in (0, 1)] == pytest.approx([2.5, 2.5])
+
+
+TRAPEZOID = [[-0.1, 0], [0.1, 0], [0.08, 0.1], [-0.08, 0.1]]
+
+
+@pytest.mark.parametrize("change", [
+    ('shape = "rectangle"\nwidth = 0.2\nheight = 0.1', f'shape = "polygon"\nvertices = {TRAPEZOID}'),
+    ("[[obstacle]]", '[[body.load]]\nwhere = "top"\npressure = 10\n[[obstacle]]'),
+    ("[[obstacle]]", '[[body]]\nshape = "disc"\nradius = 0.02\nposition = [0, 0.3]\nvelocity = [0, -1]\n[[obstacle]]'),
+    ("[[obstacle]]\n", '[[body]]\nshape = "rectangle"\nwidth = 0.6\nheight = 0.1\nposition = [0, -0.05]\n[[obstacle]]\nname = "low"\n'),
+    ("height = 0.1", "height = 0.1\nmesh_size = 0.01"),
+], ids=["slanted sides", "load", "struck by a disc", "lands on a wider face", "own size"])
+def test_no_elements_are_long_where_a_front_does_not_stay_plane(change, tmp_path):
+    """Bodies that scatter a front, or that something else deforms, have elements of equal sides."""
+    problem = scene_of(BLOCK.replace(*change).replace("point = [0, 0]", "point = [0, -9]" if "low" in change[1] else "point = [0, 0]"), tmp_path)
+    assert fronts(problem) and stretch(problem) == 1
+
+
+def test_the_normal_turns_with_the_body(tmp_path):
+    """A block that lands flat on a slope: its elements are long along its own side."""
+    c, s = math.cos(math.pi / 6), math.sin(math.pi / 6)
+    turned = scene_of(BLOCK, tmp_path, body__1__angle=30.0, body__1__position=[-0.05 * s, 0.05 * c], body__1__velocity=[0.3 * s, -0.3 * c],
+                      obstacle__1__normal=[-s, c])
+    strike, = fronts(turned)
+    assert strike.onset.own_normal(0, turned.bodies[0]) == pytest.approx([0, 1]) and stretch(turned) == pytest.approx(stretch(scene_of(BLOCK, tmp_path)))

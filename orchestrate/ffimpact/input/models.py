@@ -63,6 +63,7 @@ __all__ = [
     "Load",
     "MATERIAL",
     "MOST_PRESSURE",
+    "MOST_STRETCH",
     "Material",
     "Mesh",
     "MooneyRivlin",
@@ -97,6 +98,7 @@ __all__ = [
 PLACEMENTS = ("centroid", "as-drawn")
 MOST_PRESSURE = 1e15  # largest accepted pressure [Pa]
 MOST_TURN = 36000.0  # largest accepted angle [degrees]
+MOST_STRETCH = 20.0  # largest accepted ratio of the lengths of an element
 SIDES = ("left", "right", "bottom", "top", "back", "front", "all", "outer", "inner", "axis")
 
 
@@ -482,6 +484,7 @@ class Body(Entries):
     dimensions: ClassVar[tuple[Dimension, ...]] = (PLANE_STRAIN,)
     nested = {"support": Support, "load": Load}
     only = {
+        "mesh_stretch": (PLANE_STRAIN, AXISYMMETRIC),
         "angle": (PLANE_STRAIN, SOLID), "turn": (SOLID,), "spin": (PLANE_STRAIN, SOLID), "speed": (PLANE_STRAIN,),
         "direction": (PLANE_STRAIN,),
     }  # fmt: skip
@@ -505,6 +508,16 @@ class Body(Entries):
     contact_mesh_size: Annotated[
         float | None,
         shared("contact_mesh_size", "element size at the contact boundary; 0 = from accuracy"),
+    ] = None
+    mesh_stretch: Annotated[
+        float | None,
+        number(
+            0.0,
+            MOST_STRETCH,
+            "",
+            "length of the elements across the normal of the first contact over that along it, from"
+            " 1; 0 = by accuracy where a face lands flat, else 1",
+        ),
     ] = None
     support: Annotated[list[Support] | None, BeforeValidator(several)] = None
     load: Annotated[list[Load] | None, BeforeValidator(several)] = None

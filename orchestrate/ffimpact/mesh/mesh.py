@@ -128,20 +128,40 @@ class Sizes:
     """The size field of a body: element sizes [m] in the bulk and at the expected contact.
 
     `near` (n, axes) [m] are the outline points of the expected contact, in the coordinates of the
-    body's mesh. The size `contact` applies up to the distance `slack` from these points.
+    body's mesh. The size `contact` applies up to the distance `slack` from these points. Across
+    the unit vector `along` (axes,) elements are `stretch` times as long.
     """
 
     bulk: float
     contact: float
     near: np.ndarray
     slack: float  # half the spacing of points on the outline [m]
+    along: np.ndarray | None = None
+    stretch: float = 1.0
 
     def at(self, points: np.ndarray) -> np.ndarray:
-        """Element sizes (n,) [m] at points (n, axes), linear in the distance from the contact."""
+        """Element sizes (n,) [m] at points (n, axes), linear in the distance from the contact: both
+        in the coordinates of squeezed().
+        """
         if not len(self.near):
             return np.full(len(points), self.bulk)
-        away = np.maximum(nearest(points, self.near) - self.slack, 0.0)
-        return np.minimum(self.bulk, self.contact + GROWTH * away)
+        away = nearest(self.squeezed(points), self.squeezed(self.near))
+        return np.minimum(self.bulk, self.contact + GROWTH * np.maximum(away - self.slack, 0.0))
+
+    def squeezed(self, points: np.ndarray) -> np.ndarray:
+        """Coordinates (n, axes) [m] in which lengths across `along` are divided by `stretch`. The
+        elements have equal sides in them.
+        """
+        return self._with_across(points, 1 / self.stretch)
+
+    def restored(self, points: np.ndarray) -> np.ndarray:
+        """Points (n, axes) [m] with these squeezed() coordinates."""
+        return self._with_across(points, self.stretch)
+
+    def _with_across(self, points: np.ndarray, factor: float) -> np.ndarray:
+        if self.along is None or factor == 1.0:
+            return points
+        return factor * points + (1 - factor) * np.outer(points @ self.along, self.along)
 
 
 def nearest(points: np.ndarray, others: np.ndarray) -> np.ndarray:
@@ -230,7 +250,7 @@ def mesh_body(boundary: list[list[tuple[Curve, float, int]]], sizes: Sizes, scal
     # Lengths are divided by `scale`, because gmsh's tolerances are absolute.
     bulk, inside = (
         round(sizes.bulk / scale, DIGITS),
-        [np.round(nodes / scale, DIGITS) for nodes in loops],
+        [np.round(sizes.squeezed(nodes) / scale, DIGITS) for nodes in loops],
     )
     with gmsh_session() as gmsh:
         tags, curves = zip(*(_loop(gmsh.model, nodes) for nodes in inside))
@@ -240,7 +260,7 @@ def mesh_body(boundary: list[list[tuple[Curve, float, int]]], sizes: Sizes, scal
         corners = np.searchsorted(
             used, [gmsh.model.mesh.getNodes(0, tag)[0][0] for tag in np.concatenate(tags)]
         )
-    points = points[:, :2] * scale
+    points = sizes.restored(points[:, :2] * scale)
     points[corners] = np.vstack(loops)
     triangles = counter_clockwise(points, triangles)
     ends = np.split(corners, np.cumsum([len(nodes) for nodes in loops])[:-1])
@@ -257,8 +277,8 @@ def nodes_on(curve: Curve, largest: float, sizes: Sizes) -> np.ndarray:
     s, size = np.array([0.0, 1.0]), np.array([])
     # Intervals are halved until the size field, which is Lipschitz, is resolved between samples.
     while len(size) < len(s):
-        size = np.minimum(sizes.at(curve(s)), largest)
-        step = np.linalg.norm(np.diff(curve(s), axis=0), axis=1)
+        size = np.minimum(sizes.at(curve(s)), largest / sizes.stretch)
+        step = np.linalg.norm(np.diff(sizes.squeezed(curve(s)), axis=0), axis=1)
         coarse = step > SAMPLED * np.minimum(size[1:], size[:-1])
         s = np.sort(np.concatenate([s, (s[1:] + s[:-1])[coarse] / 2]))
         if len(s) > MOST_ON_CURVE:

@@ -68,6 +68,16 @@ class Onset:
     never: bool = False
     pressed: float = 0.0
 
+    def own_normal(self, k: int, body: Body) -> np.ndarray:
+        """Returns the normal in the axes of body number k, not turned, without the round-off of the
+        onset, because a mesh changes with every digit.
+        """
+        shape = self.outlines[0 if k == self.first else 1]
+        axes = np.vstack([np.zeros(len(self.normal)), np.eye(len(self.normal))])
+        carried = body.outline.carried(shape, axes)
+        normal = np.round((carried[1:] - carried[0]) @ self.normal, 6)
+        return normal / np.linalg.norm(normal)
+
     def gaps(self, body: int, points: np.ndarray) -> np.ndarray:
         """Returns the gaps (n,) [m] between points of `body`, where it is at the onset, and the
         other surface. They serve for element sizes.

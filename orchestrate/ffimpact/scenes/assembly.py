@@ -30,7 +30,7 @@ from ..mesh.mesh import AXIS, FREE, Curve, Sizes, mesh_body, nearest
 from ..mesh.solids import Solid
 from .approach import Onset, loaded_pull, onsets_of, refuse_nothing, refuse_sinking, turned
 from .bodies import DAMPING, STIFF, Body
-from .front import Front, fronts
+from .front import Front, fronts, stretch_of
 from .mirror import COPIES, MIRROR_AXES, copies
 from .parts import sections
 from .scene import Pair, Scene
@@ -467,6 +467,7 @@ def used_tables(
         )
         used |= {"density": body.density} if body.rigid and not body.mass else {}
         used |= {"mesh_size": size.bulk, "contact_mesh_size": size.contact} if size else {}
+        used |= {"mesh_stretch": size.stretch} if size and size.stretch > 1 else {}
         used |= (
             {"file": str((scene.folder / body_table["file"]).resolve())}
             if "file" in body_table
@@ -524,11 +525,28 @@ def element_sizes(k: int, ask: Asker) -> Sizes:
         bulk = _bulk_of_rigid(body, min((size for size, *_ in hits), default=math.inf))
     if not body.mesh_size:
         bulk = min((front.sizes[k] for front in mine if k in front.crossed), default=bulk)
+    stretch = body.mesh_stretch or stretch_of(k, mine, bulk)
+    along = _first_normal(k, ask) if stretch > 1 else None
     contact = body.contact_mesh_size or min(
-        [bulk, *(size for size, *_ in hits), *(front.sizes[k] for front in mine)]
+        [bulk, *(size / stretch for size, *_ in hits), *(front.sizes[k] for front in mine)]
     )
     near = np.vstack([np.empty((0, ask.scene.dimension.axes)), *(points for _, points, _ in hits)])
-    return Sizes(bulk, min(bulk, contact), near, max([0.0, *(slack for *_, slack in hits)]))
+    slack = max([0.0, *(slack for *_, slack in hits)])
+    return Sizes(bulk, min(bulk, contact), near, slack, along, stretch)
+
+
+def _first_normal(k: int, ask: Asker) -> np.ndarray:
+    """Returns the normal of the first contact of body k, in its own axes. Raises BadInput if there is
+    no contact.
+    """
+    body = ask.scene.bodies[k]
+    onsets = [onset for onset in ask.onsets if k in (onset.first, onset.second)]
+    if not onsets:
+        raise BadInput(
+            f"body.{k + 1}.mesh_stretch: {body.mesh_stretch:g}, but '{body.name}' never comes into "
+            f"contact (accepted: 0 or 1)"
+        )
+    return min(onsets, key=lambda onset: onset.time).own_normal(k, body)
 
 
 def _bulk_of_rigid(body: Body, contact: float) -> float:

@@ -18,7 +18,7 @@ from ..geometry import tumbling
 from ..geometry.outlines import Outline
 from ..input import models, parameters
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
-from ..input.models import MATERIAL
+from ..input.models import MATERIAL, MOST_STRETCH
 from ..input.parameters import Value
 from ..input.rules import SHORTEST
 from ..mesh import flat, mesh, revolution, solids
@@ -48,8 +48,8 @@ class Body:
     """One body of a scene.
 
     `outline` and `mesh` (of a mesh file, else None) are about the centre of area (or volume) and
-    not turned. `angle` [rad] is a vector in three dimensions, as is `spin` [rad/s]. A mesh size of
-    0 is automatic, or that of the mesh file.
+    not turned. `angle` [rad] is a vector in three dimensions, as is `spin` [rad/s]. A mesh size or
+    stretch of 0 is automatic, or that of the mesh file.
     """
 
     name: str
@@ -71,6 +71,7 @@ class Body:
     loss: float
     mesh_size: float
     contact_mesh_size: float
+    mesh_stretch: float
     supports: tuple[Support, ...] = ()
     loads: tuple[Load, ...] = ()
     rigid: bool = False
@@ -173,7 +174,7 @@ def _body(table: models.Body, top: models.Top, folder: Path, dimension: Dimensio
             f"{table.entry}: is {2 * outline.half_thickness:.3g} m thick (accepted: from {2 * SHORTEST:g} m)"
         )
     bulk, contact = _sizes(table, None if body_mesh else top)
-    if body_mesh and (sizes := [key for key in SIZES if getattr(table, key)]):
+    if body_mesh and (sizes := [key for key in (*SIZES, "mesh_stretch") if getattr(table, key)]):
         raise BadInput(
             f"{table.at(sizes[0])}: '{table.value_text(sizes[0])}' for a mesh from a file, "
             f"which has its own element sizes (accepted: {', '.join(SIZES)} where gmsh makes "
@@ -182,6 +183,10 @@ def _body(table: models.Body, top: models.Top, folder: Path, dimension: Dimensio
     if not table.rigid and (refused := [key for key in ("mass", "inertia") if key in table]):
         raise BadInput(
             f"{table.at(refused[0])}: is of a rigid body (accepted: with rigid = true, or density)"
+        )
+    if 0 < (stretch := table.mesh_stretch or 0.0) < 1:
+        raise BadInput(
+            f"{table.at('mesh_stretch')}: {stretch:g} is below 1 (accepted: 0, or from 1 to {MOST_STRETCH:g})"
         )
     material = _rigid(table, top, dimension, outline) if table.rigid else _material(table, top)
     end_time = top.end_time or 0.0
@@ -196,6 +201,7 @@ def _body(table: models.Body, top: models.Top, folder: Path, dimension: Dimensio
         **material,
         mesh_size=bulk,
         contact_mesh_size=contact,
+        mesh_stretch=stretch,
         supports=read_supports(table.support or [], dimension, end_time, folder),
         loads=read_loads(table.load or [], dimension, end_time, folder),
     )

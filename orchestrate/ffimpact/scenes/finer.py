@@ -5,7 +5,8 @@ from collections.abc import Mapping
 from ..input.parameters import Value
 from ..output import estimate
 from .approach import onsets_of
-from .front import fronts
+from .bodies import SIZES
+from .front import fronts, stretch_of
 from .scene import Scene
 
 __all__ = ["scaled"]
@@ -26,14 +27,22 @@ def scaled(
     entries = {f"contact.{name}": used["contact"][name] for name in kept}
     if used["contact"].get("pair"):
         entries["contact.pair"] = _pairs(scene, used["contact"]["pair"], factor)
-    for k, (body, table) in enumerate(zip(scene.bodies, used["body"]), 1):
+    entries["accuracy"] = estimate.loosened(used["accuracy"], factor)
+    stretched = any("mesh_stretch" in table for table in used["body"])
+    finer = scene.override({"accuracy": entries["accuracy"]})
+    strikes = fronts(finer, onsets_of(scene)) if stretched else []
+    for k, (body, table) in enumerate(zip(scene.bodies, used["body"])):
         if not body.mesh:
             bulk = min(factor * table["mesh_size"], body.outline.half_thickness)
-            contact = min(bulk, factor * table["contact_mesh_size"])
-            entries |= {f"body.{k}.mesh_size": bulk, f"body.{k}.contact_mesh_size": contact}
+            before = table.get("mesh_stretch", 1.0)
+            stretch = before if body.mesh_stretch else stretch_of(k, strikes, bulk)
+            contact = min(bulk, factor * table["contact_mesh_size"] * before / stretch)
+            sizes = dict(zip(SIZES, (bulk, contact))) | (
+                {"mesh_stretch": stretch} if stretched else {}
+            )
+            entries |= {f"body.{k + 1}.{name}": value for name, value in sizes.items()}
     if used["dt"] > 0:
         entries["dt"] = factor * used["dt"]
-    entries["accuracy"] = estimate.loosened(used["accuracy"], factor)
     return entries | estimate.output(factor)
 
 

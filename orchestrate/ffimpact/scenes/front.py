@@ -15,16 +15,25 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..geometry.outlines import Shape, TubeOutline
+from ..geometry.outlines import Outline, Shape, TubeOutline
 from ..input.dimension import SOLID
 from .approach import Onset
 from .bodies import Body
 from .scene import Scene
 
-__all__ = ["Front", "fronts"]
+__all__ = ["Front", "fronts", "stretch_of"]
 
 FLAT = 0.3  # smallest share of a body's width that lands while the front passes an element
 PER_ACCURACY = 5.0  # element size / (length along the normal * accuracy)
+# A front stays plane in a body whose whole width lands and whose sides are parallel to the normal:
+# the least share of the width, and of the box around the body that the body fills; 1 - |cosine of
+# the angle| of two normals that count as one.
+WHOLE, FILLED, ALIKE = 0.9, 0.98, 1e-6
+# Waves from free sides change a plane front by the ratio of its stresses across and along the
+# normal, lambda/(lambda + 2 mu). Length of elements across the normal over (half thickness *
+# sqrt(accuracy) / this ratio); it is at most the half thickness.
+ACROSS = 3.0
+LONGER = 10.0  # largest ratio of the lengths of an element across and along the normal
 STEEPNESS = 1.5  # transit of the front through an element over its rise time
 LONGEST = 0.02  # largest rise time of the front over its transit across the body
 BRIEF = 30.0  # transits after a strike: in longer runs the front does not matter
@@ -40,8 +49,9 @@ class Front:
 
     `onset` is the onset of contact, `tau` [s] the time in which the front passes an element,
     `transit` [s] the shortest time in which it crosses a body. `sizes` are the element sizes [m] by
-    the number of the body, `crossed` the numbers of the bodies that a plane front crosses as a
-    whole.
+    the number of the body, `crossed` the numbers of the bodies that a front crosses as a whole.
+    Elements of body k may have the length `across[k]` [m] across the normal if they are shorter
+    along it; 0 if the front does not stay plane.
     """
 
     onset: Onset
@@ -49,6 +59,7 @@ class Front:
     transit: float
     sizes: dict[int, float]
     crossed: tuple[int, ...]
+    across: dict[int, float]
 
     @property
     def rise(self) -> float:
@@ -78,29 +89,96 @@ def fronts(scene: Scene, onsets: list[Onset]) -> list[Front]:
     if scene.values["until"] == "rest":
         return []
     strikes = [onset for onset in onsets if math.isfinite(onset.time) and onset.closing > 0]
-    landings = [front for onset in strikes if (front := _front(scene, onset))]
+    landings = [front for onset in strikes if (front := _front(scene, onset, []))]
+    plane = [k for k in range(len(scene.bodies)) if _stays_plane(scene, k, onsets, landings)]
+    if plane:
+        landings = [front for old in landings if (front := _front(scene, old.onset, plane))]
     end = scene.values["end_time"]
     return [front for front in landings if end <= front.onset.time + BRIEF * front.transit]
 
 
-def _front(scene: Scene, onset: Onset) -> Front | None:
-    """Returns the front at an onset of contact, None if no body lands flat."""
+def stretch_of(k: int, strikes: list[Front], size: float) -> float:
+    """Returns the length of the elements of body k across the normals of flat strikes over the
+    length `size` [m] along them.
+    """
+    return min(
+        (_stretch(size, front.across[k]) for front in strikes if k in front.crossed), default=1.0
+    )
+
+
+def _front(scene: Scene, onset: Onset, plane: list[int]) -> Front | None:
+    """Returns the front at an onset of contact, None if no body lands flat. The front stays plane
+    in the bodies `plane`.
+    """
     bodies = {k: scene.bodies[k] for k in (onset.first, onset.second) if k >= 0}
-    sizes = {k: body.mesh_size or _size(scene, onset, k) for k, body in bodies.items()}  # [m]
+    across = {k: _across(scene, body) if k in plane else 0.0 for k, body in bodies.items()}
+    sizes = {k: body.mesh_size or _size(scene, onset, k, across[k]) for k, body in bodies.items()}
     crossed = tuple(
-        k for k, body in bodies.items() if not body.rigid and _lands_flat(onset, k, body, sizes[k])
+        k
+        for k, body in bodies.items()
+        if not body.rigid and _landing(onset, k, body, sizes[k]) >= FLAT
     )
     if not crossed:
         return None
     tau = min(sizes[k] / bodies[k].wave_speed for k in crossed)
     transit = min(_length(onset, k) / bodies[k].wave_speed for k in crossed)
     alike = {k: tau * body.wave_speed for k, body in bodies.items()}
-    return Front(onset, tau, transit, alike, crossed)
+    return Front(onset, tau, transit, alike, crossed, across)
 
 
-def _size(scene: Scene, onset: Onset, k: int) -> float:
-    """Returns the element size [m] of body k: that of the mesh file, or the size that the accuracy
-    requires.
+def _stretch(size: float, across: float) -> float:
+    """Returns the ratio of the lengths of elements across the normal [m] and along it, `size`."""
+    return min(LONGER, max(1.0, across / size))
+
+
+def _across(scene: Scene, body: Body) -> float:
+    """Returns the length [m] that elements of a body may have across a plane front."""
+    wave, shear = body.moduli
+    lateral = max(1 - 2 * shear / wave, 1e-9)
+    return body.outline.half_thickness * min(1.0, ACROSS * math.sqrt(_accuracy(scene)) / lateral)
+
+
+def _stays_plane(scene: Scene, k: int, onsets: list[Onset], landings: list[Front]) -> bool:
+    """Whether only plane fronts may cross body k, all along one normal, and the program makes its
+    mesh in the plane. The body is a prism that nothing holds or loads, and on each surface that it
+    may come into contact with its whole width lands, and that of the other body.
+    """
+    body = scene.bodies[k]
+    if scene.dimension is SOLID or body.mesh or body.mesh_size or body.supports or body.loads:
+        return False
+    possible = [onset for onset in onsets if k in (onset.first, onset.second) and not onset.never]
+    mine = [
+        front
+        for front in landings
+        if k in front.crossed
+        and all(
+            scene.bodies[j].rigid or _landing(front.onset, j, scene.bodies[j], size) >= WHOLE
+            for j, size in front.sizes.items()
+        )
+    ]
+    if not mine or len(mine) < len(possible):
+        return False
+    normals = np.array([front.onset.own_normal(k, body) for front in mine])
+    alike = abs(normals @ normals[0]) > 1 - ALIKE
+    return bool(alike.all()) and _fills_box(body.outline, normals[0])
+
+
+def _fills_box(outline: Outline, normal: np.ndarray) -> bool:
+    """Whether an outline is a rectangle with sides along the normal."""
+    points = outline.loops[0].polygon
+    box = np.ptp(points @ normal) * np.ptp(points @ _tangents(normal)[0])
+    area = outline.loops[0].area if isinstance(outline, TubeOutline) else outline.area
+    return bool(area >= FILLED * box)
+
+
+def _accuracy(scene: Scene) -> float:
+    """Returns the accuracy that the element sizes of a front are chosen for."""
+    return scene.values["accuracy"] / (1 if scene.values["accuracy_of"] == "promised" else 2)
+
+
+def _size(scene: Scene, onset: Onset, k: int, across: float = 0.0) -> float:
+    """Returns the element size [m] of body k along the normal, and up to `across` [m] across it:
+    that of the mesh file, or the size that the accuracy requires.
 
     The latter keeps the body below MOST_UNKNOWNS, and gives at least four elements across the
     thickness.
@@ -110,10 +188,10 @@ def _size(scene: Scene, onset: Onset, k: int) -> float:
     if body.mesh:
         cells = body.mesh.cells if scene.dimension is SOLID else body.mesh.triangles
         return (content / len(cells) / ELEMENT[axes]) ** (1 / axes)
-    accuracy = scene.values["accuracy"] / (1 if scene.values["accuracy_of"] == "promised" else 2)
-    least = (UNKNOWNS[axes] * content / MOST_UNKNOWNS[axes]) ** (1 / axes)
-    required = max(least, PER_ACCURACY * accuracy * _length(onset, k))
-    return min(body.outline.half_thickness / 2, required)
+    required = PER_ACCURACY * _accuracy(scene) * _length(onset, k)
+    stretch = _stretch(required, across)
+    least = (UNKNOWNS[axes] * content / stretch ** (axes - 1) / MOST_UNKNOWNS[axes]) ** (1 / axes)
+    return min(body.outline.half_thickness / 2, max(least, required))
 
 
 def _shape(onset: Onset, k: int) -> Shape:
@@ -126,9 +204,9 @@ def _length(onset: Onset, k: int) -> float:
     return float(np.ptp(_shape(onset, k).points @ onset.normal))
 
 
-def _lands_flat(onset: Onset, k: int, body: Body, size: float) -> bool:
-    """Whether at least the share FLAT of the width of body k lands while the front passes an
-    element of the given size [m].
+def _landing(onset: Onset, k: int, body: Body, size: float) -> float:
+    """Returns the share of the width of body k that lands while the front passes an element of the
+    given size [m].
     """
     points, spacing = body.outline.samples(min(size, body.outline.half_thickness / 2))
     moved = body.outline.carried(_shape(onset, k), points)
@@ -136,7 +214,7 @@ def _lands_flat(onset: Onset, k: int, body: Body, size: float) -> bool:
     landing = moved[gaps <= gaps.min() + onset.closing * size / body.wave_speed]
     walls = moved[moved[:, 0] > 0] if isinstance(body.outline, TubeOutline) else moved
     width = min(np.ptp(walls @ axis) for axis in _tangents(onset.normal))
-    return len(landing) > 1 and bool(body.outline.width(landing, spacing) >= FLAT * width)
+    return body.outline.width(landing, spacing) / width if len(landing) > 1 else 0.0
 
 
 def _tangents(normal: np.ndarray) -> list[np.ndarray]:
