@@ -439,6 +439,7 @@ MORE = {"results": ("plot.Plots", "result.Fields")}  # classes of results that a
 # The documented members; "" means all members.
 SHOWN_OF = {
     "Scene": "set, save, load",
+    "Plan": "",
     "Result": "",
     "Study": "",
     "plot.Plots": "",

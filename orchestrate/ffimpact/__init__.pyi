@@ -3,7 +3,9 @@ use.
 """
 
 from .api import (
+    Plan as Plan,
     Study as Study,
+    plan as plan,
     run as run,
     sweep as sweep,
 )

@@ -140,6 +140,11 @@ def _parser() -> argparse.ArgumentParser:
     )
     command.add_argument("--no-figures", action="store_true", help="draw no figures")
     command.add_argument(
+        "--plan",
+        action="store_true",
+        help="make no run, but foretell its mesh, steps, processor time and memory",
+    )
+    command.add_argument(
         "--quiet", action="store_true", help="print warnings and errors only, on stderr"
     )
     command.add_argument(
@@ -192,7 +197,25 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
+def _plan(options: argparse.Namespace) -> None:
+    from . import scene
+    from .input import parameters
+    from .running import run
+
+    for name in ("out", "checkpoint_every", "force", "no_figures", "quiet", "verbose"):
+        if getattr(options, name):
+            raise BadInput(
+                f"--plan: makes no run, so --{name.replace('_', '-')} has no meaning "
+                "(accepted: --set, --mesh, --no-estimate)"
+            )
+    loaded, overrides = scene.load(options.scene), parameters.overrides(options.set)
+    overrides = run.states(loaded) | overrides
+    print(run.plan(loaded, overrides, mesh_file=options.mesh, estimate=not options.no_estimate))
+
+
 def _run(options: argparse.Namespace) -> None:
+    if options.plan:
+        return _plan(options)
     from . import progress, scene
     from .input import parameters
     from .report import report

@@ -1,4 +1,6 @@
-"""The functions run() and sweep(), which run scenes from a Python script or a notebook."""
+"""The functions run(), sweep() and plan(), which run scenes from a Python script or a notebook, or
+foretell what a run will take.
+"""
 
 from __future__ import annotations
 
@@ -23,12 +25,13 @@ from .progress import muted
 from .report import report
 from .result import Result
 from .running import run as running
+from .running.plan import Plan
 from .sweeps.study import side_by_side
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["Study", "run", "sweep"]
+__all__ = ["Plan", "Study", "plan", "run", "sweep"]
 
 
 def run(
@@ -49,7 +52,8 @@ def run(
     (entries={"body.1.young": 2e6}). `out` is the result folder. Its default is results/NAME for a
     file or a built-in scene; a Scene object gets a folder of its own. A finished run in the folder
     is reused unless `force` is set. With `estimate` coarser runs estimate the errors, and with
-    `figures` the figures are drawn. If the scene leaves `fields` open, the run keeps 60 states. The
+    `figures` the figures are drawn. Progress is shown unless `progress` is False: as a line that
+    changes, in a pipe or a file as a line every 20 s or more. If the scene leaves `fields` open, the run keeps 60 states. The
     folder is that of the command `ffimpact run`. Raises the exceptions of ffimpact: BadInput,
     StepFailed and so on.
     """
@@ -69,6 +73,23 @@ def run(
         if figures:
             report.draw(record)
     return Result(record)
+
+
+def plan(
+    scene: Scene | str | Path,
+    entries: Mapping[str, Any] | None = None,
+    *,
+    estimate: bool = True,
+    **more: Any,
+) -> Plan:
+    """Foretells what run() with the same arguments will take: mesh, steps, processor time and memory.
+
+    The mesh is made and the solver started. It takes steps for a second, whose time is extrapolated.
+    Nothing is written. Printing the Plan shows it as a table. Raises the exceptions of run().
+    """
+    overrides = _overrides(entries, more)
+    loaded, _ = _loaded(scene, overrides)
+    return running.plan(loaded, overrides, estimate=estimate)
 
 
 def _overrides(entries: Mapping[str, Any] | None, more: dict[str, Any]) -> dict[str, Any]:

@@ -1,5 +1,6 @@
-"""Progress of a computation as one line on a terminal or in a notebook: the current work, the
-completed fraction and the remaining time.
+"""Progress of a computation: the current work, the completed fraction and the remaining time. On a
+terminal or in a notebook it is one line that changes. In a pipe or a file it is a line from time to
+time.
 
 Work that consists of parts has one line for all of them. The progress lines of its parts are merged
 into that line, both for parts in the same thread (Line.part, in_turn) and for parts in other
@@ -11,12 +12,16 @@ import contextlib
 import math
 import sys
 import threading
+import time
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 
 __all__ = ["Line", "forward", "in_notebook", "in_turn", "muted", "work"]
 
 FORMAT = "{desc} {percentage:3.0f}% |{bar}| {elapsed}, {remaining} left"
 SLOW = 1.5  # duration [s] from which on work is announced
+# In a pipe the first line comes after SELDOM [s], the next ones when the elapsed time has grown by
+# SELDOM or by its share LATER, whichever is longer. A run of ten hours has some 80 lines.
+SELDOM, LATER = 20.0, 0.1
 # A receiver of progress: the completed fraction, in [0, 1], and a description of the current work.
 Tell = Callable[[float, str], None]
 
@@ -84,9 +89,61 @@ def in_notebook() -> bool:
     return "ipykernel" in sys.modules
 
 
+class _Printed:
+    """Progress in a pipe or a file: whole lines on stderr, with long intervals (SELDOM)."""
+
+    def __init__(self) -> None:
+        self.start = self.last = time.monotonic()
+
+    def show(self, share: float, words: str) -> None:
+        """Prints a line if the last one was long enough ago."""
+        now = time.monotonic()
+        elapsed = now - self.start
+        if now - self.last < max(SELDOM, LATER * elapsed):
+            return
+        self.last = now
+        remaining = f", {_clock(elapsed * (1 / share - 1))} left" if share > 0 else ""
+        _say(f"ffimpact: {100 * share:.0f} % after {_clock(elapsed)}{remaining}: {words}")
+
+    def close(self) -> None:
+        """Prints nothing: what follows is the report of the run."""
+
+
+def _clock(seconds: float) -> str:
+    """Returns a duration as hours:minutes:seconds."""
+    minutes, rest = divmod(round(seconds), 60)
+    return (
+        f"{minutes // 60}:{minutes % 60:02}:{rest:02}" if minutes >= 60 else f"{minutes}:{rest:02}"
+    )
+
+
+class _Bar:
+    """Progress on a terminal or in a notebook: a line that changes."""
+
+    def __init__(self, words: str) -> None:
+        if in_notebook():
+            from tqdm.auto import tqdm
+        else:
+            from tqdm import tqdm
+        from tqdm.contrib import DummyTqdmFile
+
+        self.leaving = contextlib.ExitStack()
+        if sys.stdout.isatty():  # printed text appears above the line
+            self.leaving.enter_context(contextlib.redirect_stdout(DummyTqdmFile(sys.stdout)))
+        self.bar = tqdm(total=1.0, desc=words, leave=False, bar_format=FORMAT)
+
+    def show(self, share: float, words: str) -> None:
+        self.bar.n = share
+        self.bar.set_description_str(words)
+
+    def close(self) -> None:
+        self.bar.close()
+        self.leaving.close()
+
+
 class Line(contextlib.AbstractContextManager):
-    """Progress of the work `name`. `costs` maps each part to its cost, in any unit. `watched`
-    states whether the line is shown; None: only on a terminal and in a notebook.
+    """Progress of the work `name`. `costs` maps each part to its cost, in any unit. With `watched` =
+    False nothing is shown.
     """
 
     def __init__(
@@ -97,25 +154,15 @@ class Line(contextlib.AbstractContextManager):
         words: str = "",
     ):
         self.name, self.costs, self.shares = name, dict(costs), dict.fromkeys(costs, 0.0)
-        self.outer, self.bar, self.quiet = _thread.tell, None, watched is False
-        if not self.outer and (
-            watched or watched is None and (sys.stderr.isatty() or in_notebook())
-        ):
-            if in_notebook():
-                from tqdm.auto import tqdm
-            else:
-                from tqdm import tqdm
-            from tqdm.contrib import DummyTqdmFile
-
-            self.leaving = contextlib.ExitStack()
-            if sys.stdout.isatty():  # printed text appears above the line
-                self.leaving.enter_context(contextlib.redirect_stdout(DummyTqdmFile(sys.stdout)))
-            self.bar = tqdm(total=1.0, desc=self._words(words), leave=False, bar_format=FORMAT)
+        self.outer, self.quiet = _thread.tell, watched is False
+        self.shown: _Bar | _Printed | None = None
+        if not (self.outer or self.quiet):
+            on_screen = sys.stderr.isatty() or in_notebook()
+            self.shown = _Bar(self._words(words)) if on_screen else _Printed()
 
     def __exit__(self, *_) -> None:
-        if self.bar is not None:
-            self.bar.close()
-            self.leaving.close()
+        if self.shown:
+            self.shown.close()
 
     def at(self, part: Hashable, share: float, words: str = "", cost: float = 1.0) -> None:
         """Reports that the fraction `share`, in [0, 1], of a part is completed. A part that was not
@@ -132,9 +179,8 @@ class Line(contextlib.AbstractContextManager):
         )
         if self.outer:
             self.outer(done, self._words(words))
-        elif self.bar is not None:
-            self.bar.n = done
-            self.bar.set_description_str(self._words(words))
+        elif self.shown:
+            self.shown.show(done, self._words(words))
 
     def _words(self, words: str) -> str:
         return f"{self.name}: {words}" if words else self.name

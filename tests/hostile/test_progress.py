@@ -6,13 +6,12 @@ from ffimpact.freefem import freefem
 
 
 @pytest.mark.robustness
-@pytest.mark.parametrize("script, flags, apart", [("disc-plane", {"accuracy": 0.003}, 1), ("disc-block", {"accuracy": 0.01, "end_time": 3e-3}, 2)])
-def test_scripts_report_the_share_of_their_steps(tmp_path, script, flags, apart):
-    """Near half of its steps a script reports this share, to a fifth, with the unknowns and the
-    spread of the waves of its bodies."""
+@pytest.mark.parametrize("script, flags", [("disc-plane", {"accuracy": 0.003}), ("disc-block", {"accuracy": 0.01, "end_time": 3e-3})])
+def test_scripts_report_the_share_of_their_steps(tmp_path, script, flags):
+    """Near half of its steps a script reports this share, to a fifth, with the unknowns."""
     seen = []
     assert freefem.run(freefem.find(), f"edp/{script}.edp", flags | {"without": "kernels", "out": tmp_path / "out"}, tmp_path / "log.txt", seen.append)[0] == 0
     taken = (tmp_path / "out/history.csv").read_text().count("\n") - 2
     middle = min(seen, key=lambda at: abs(at.steps / taken - 0.5))
     assert middle.share == pytest.approx(middle.steps / taken, abs=0.2) and middle.steps / taken > 0.2
-    assert middle.unknowns > 100 and middle.apart == pytest.approx(apart) and 0 < seen[0].share < 0.3 and 0 < seen[0].t < 1e-3
+    assert middle.unknowns > 100 and 0 < seen[0].share < 0.3 and 0 < seen[0].t < 1e-3

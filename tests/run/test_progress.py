@@ -3,6 +3,7 @@
 import re
 import subprocess
 import sys
+import tempfile
 import time
 import types
 
@@ -58,8 +59,7 @@ def test_parts_in_parts_have_one_line(shown):
 
 
 def test_nobody_looks(shown, capsys):
-    """If display is switched off, nothing is shown or printed. Outside of a terminal or a notebook
-    there is no line."""
+    """If display is switched off, nothing is shown or printed. Short work prints no line in a pipe."""
     with progress.Line("run", {1: 1.0}, watched=False) as line:
         line.at(1, 0.5)
         line.say("long")
@@ -67,6 +67,18 @@ def test_nobody_looks(shown, capsys):
     with progress.Line("run", {1: 1.0}) as line:
         line.at(1, float("nan"))
     assert not shown and capsys.readouterr() == ("", "")
+
+
+def test_a_pipe_gets_whole_lines(fake):
+    """In a pipe progress is whole lines on stderr: share, elapsed and remaining time, work. --quiet prints
+    none."""
+    program = "from ffimpact import __main__, progress; progress.SELDOM = progress.LATER = 0.0; __main__.start()"
+    words = ["run", "disc-normal", "--force", "--no-figures", "--no-estimate", "--set", "fields=0", "--out"]
+    for quiet in ([], ["--quiet"]):
+        with tempfile.TemporaryDirectory() as folder:
+            err = subprocess.run([sys.executable, "-c", program, *words, folder, *quiet], cwd=ROOT, capture_output=True).stderr.decode()
+        shares = re.findall(r"(?m)^ffimpact: (\d+) % after 0:\d\d(?:, \d+:\d\d left)?: disc-normal: main run 1 of 1, .*$", err)
+        assert "\r" not in err and (not shares if quiet else {"25", "50", "75"} <= set(shares) and sorted(map(int, shares)) == list(map(int, shares)))
 
 
 class Instant:

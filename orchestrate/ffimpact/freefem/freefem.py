@@ -52,7 +52,7 @@ DESCRIBE = "edp/describe.edp"
 CLOCK = ROOT / "edp/clock.c"
 OPEN_FILES = "/proc/self/fd/"
 BANNER = re.compile(r"FreeFem\+\+ v(\d+\.\d\d?)\b")
-SAYS = re.compile(r"progress (\S+) t=(\S+) steps=(\S+)(?: unknowns=(\S+) apart=(\S+))?$")
+SAYS = re.compile(r"progress (\S+) (t=\S+ steps=\S+.*)$")
 POLL = 0.1  # time [s] between two checks of a process, its log and its limits
 # setpriv (util-linux) asks the kernel to kill the process that it starts as soon as the thread that
 # started setpriv ends, even by SIGKILL. Without setpriv FreeFem++ continues to its end. Its folder
@@ -67,14 +67,26 @@ HOW = f"install it: {WAYS}" if INSTALLED else f"run: make setup   (or: {WAYS})"
 
 
 class At(NamedTuple):
-    """The progress of a run."""
+    """The progress of a run, as its solver prints it (edp/core/run/march.idp)."""
 
     share: float  # estimated fraction of its steps that is completed, in [0, 1]
     t: float  # time in the run [s]
     steps: int
     unknowns: int = 0
-    # Transit time of waves across the slowest body, divided by that across the quickest one.
-    apart: float = 1.0
+    expected: float = 0.0  # estimated number of all steps, 0 if it is not known yet
+    longer: float = 1.0  # factor by which later contacts may make an impact longer
+    step: float = 0.0  # largest step [s]
+    seconds: float = 0.0  # processor time of the process [s]
+    memory: float = 0.0  # largest memory of the process [bytes]
+
+    @classmethod
+    def read(cls, share: str, entries: str) -> "At":
+        """Returns the progress of a line "progress <share> <name>=<value> ..."."""
+        texts = dict(entry.split("=") for entry in entries.split())
+        kinds = {"steps": int, "unknowns": int}
+        return cls(
+            float(share), **{name: kinds.get(name, float)(text) for name, text in texts.items()}
+        )
 
 
 Progress = Callable[[At], None]
@@ -322,7 +334,7 @@ class Process:
         this thread.
 
         Returns the exit code, negative for a signal, and the script's message for the user, or "".
-        Lines "progress <share> t=<time> steps=<n> ..." of the log are passed to `progress`.
+        The lines "progress ..." of the log are passed to `progress`.
         """
         unread, code = "", None
         with open(self.log, errors="replace") as lines:
@@ -332,15 +344,7 @@ class Process:
                     code = self.child.wait(POLL)
                 *whole, unread = (unread + lines.read()).split("\n")
                 for match in filter(None, map(SAYS.match, whole if progress else ())):
-                    progress(
-                        At(
-                            *(
-                                kind(text)
-                                for kind, text in zip(At.__annotations__.values(), match.groups())
-                                if text
-                            )
-                        )
-                    )
+                    progress(At.read(*match.groups()))
         self.errors.seek(0)
         stderr = self.errors.read()
         with open(self.log, "a") as file:

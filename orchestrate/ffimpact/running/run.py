@@ -13,6 +13,7 @@ import re
 import subprocess
 import time
 from collections.abc import Iterable
+from dataclasses import replace as changed
 from functools import cache
 from pathlib import Path
 
@@ -45,13 +46,26 @@ from ..output.results import (
     write_json,
 )
 from ..places import INSTALLED, PACKAGE, RESULTS, ROOT, shown
-from ..progress import Line
+from ..progress import Line, work
 from ..scene import Scene
 from ..scenes.bodies import SIZES
 from ..scenes.mirror import symmetric_along
-from .solver import FAILURES, USED, Solver, runs
+from .forecast import cure, runs
+from .outcome import FAILURES
+from .plan import Plan, measure
+from .solver import USED, Solver
 
-__all__ = ["ENTRANCE", "HARMLESS", "states", "code_hash", "commit", "imported", "reusable", "run"]
+__all__ = [
+    "ENTRANCE",
+    "HARMLESS",
+    "states",
+    "code_hash",
+    "commit",
+    "imported",
+    "plan",
+    "reusable",
+    "run",
+]
 
 STATES = 60  # states that a run keeps by default, for figures and the player
 # The module that makes flags, mesh and scene.dat. Results depend on it and on all that it imports.
@@ -76,17 +90,15 @@ def run(
     results/<scene>), or reuses the finished run in that folder. Returns the Record of the run.
 
     `force` runs again from the start, even if the folder is up to date. Otherwise an interrupted
-    run continues from its last checkpoint. `progress` states whether a progress line is shown
-    (None: only on a terminal and in a notebook). With `estimate` coarser runs estimate the error;
+    run continues from its last checkpoint. Progress is shown unless `progress` is False
+    (progress.py). With `estimate` coarser runs estimate the error;
     finer runs follow until the error is below the requested accuracy (output/estimate.py). Raises
     Failure with the exit code of the run contract.
     """
     started = time.monotonic()
     scene = scene.override(_sizes_left_to(mesh_file, scene) | (overrides or {}))
     folder = result_folder(Path(out or RESULTS / scene.name))
-    mesh_file = mesh_file and _mesh_path(Path(mesh_file))
-    foreign = gmsh_file.load(mesh_file, alone=True) if mesh_file else None
-    scene.description(foreign, mesh_file)  # raises BadInput before any file is made
+    mesh_file, foreign = _mesh_of_file(scene, mesh_file)
     finished = finished_in(folder, force)
     if not force and (there := reusable(scene, folder, mesh_file, estimate)):
         return there
@@ -115,9 +127,7 @@ def run(
             write_json(stage / "checkpoint.json", request)
 
         try:
-            with Solver(
-                program, scene, mesh_file, foreign, stage, lock, line, pair=estimate
-            ) as solve:
+            with Solver(program, scene, foreign, stage, lock, line, pair=estimate) as solve:
                 solve({}, stage)
                 settled = (
                     stage,
@@ -146,6 +156,28 @@ def run(
         _finish(stage, scene, estimated | {"total_seconds": time.monotonic() - started}, provenance)
         _put(stage, folder, scene, mesh_file)
     return Record(folder, read_summary(folder), reused=False)
+
+
+def plan(
+    scene: Scene,
+    overrides: dict[str, Value] | None = None,
+    *,
+    mesh_file: Path | str | None = None,
+    estimate: bool = True,
+) -> Plan:
+    """Foretells what run() with these arguments will take. Writes nothing. Raises Failure as
+    run().
+    """
+    scene = scene.override(_sizes_left_to(mesh_file, scene) | (overrides or {}))
+    _, foreign = _mesh_of_file(scene, mesh_file)
+    if scene.meshed and not foreign:
+        mesh.start_gmsh()
+    with work("foretelling the run"):
+        made = measure(scene, foreign, estimate)
+    if not made.is_long:
+        return made
+    with work("seeking an entry that makes the run short"):
+        return changed(made, advice=cure(scene, foreign, made.total_seconds, estimate))
 
 
 def states(scene: Scene) -> dict[str, Value]:
@@ -317,6 +349,16 @@ def _sizes_left_to(mesh_file: Path | str | None, scene: Scene) -> dict[str, Valu
     of the scene are meant for another mesh. A scene of bodies keeps its sizes.
     """
     return dict.fromkeys(SIZES, 0) if mesh_file and not scene.bodies else {}
+
+
+def _mesh_of_file(scene: Scene, mesh_file: Path | str | None) -> tuple[Path | None, bytes | None]:
+    """Returns the path and the content of a mesh file. Raises BadInput for a scene or a mesh that
+    is not accepted, before any file is made.
+    """
+    path = _mesh_path(Path(mesh_file)) if mesh_file else None
+    foreign = gmsh_file.load(path, alone=True) if path else None
+    scene.description(foreign, path)
+    return path, foreign
 
 
 def _mesh_path(mesh_file: Path) -> Path:

@@ -1,57 +1,31 @@
-"""The FreeFem++ runs of a scene: the main run and the runs that estimate its error. The module
-checks what each run has left and shows the progress. For a long run it prints a forecast of its
-duration and the entry of the scene that makes it long.
-"""
+"""The FreeFem++ runs of a scene: the main run and the runs that estimate its error."""
 
-import bisect
-import math
 import os
 import shutil
-import signal
 import threading
-import time
 from collections.abc import Mapping
 from contextlib import AbstractContextManager, ExitStack, suppress
 from functools import partial
 from pathlib import Path
 
-import numpy as np
-
-from ..failure import Failure, NotInstalled, Unreadable, of_code
+from ..failure import Failure
 from ..freefem import freefem
 from ..input.parameters import Value
 from ..output import estimate
 from ..output.evaluate import RECORD, evaluate
-from ..output.results import read_history, read_json, read_summary, write_json
+from ..output.results import write_json
 from ..progress import Line, work
 from ..scene import Scene
 from ..scenes.assembly import prepare
 from ..scenes.finer import scaled
+from .forecast import Display
+from .outcome import check
 
-__all__ = ["FAILURES", "Solver", "Display", "USED", "between", "entry", "forecast", "runs"]
+__all__ = ["USED", "Solver"]
 
-FAILURES = {
-    10: "bad input",
-    11: "step failed",
-    12: "material broke down",
-    13: "not installed",
-    14: "unreadable",
-}
-# Cost ratio of a run to the run with elements and steps smaller by the factor COARSER.
-COST = estimate.COARSER**-3
-LONG = 60.0  # a run with a longer forecast [s] is reported as long
-FIRST = 2.0  # time [s] after the first report from which on the duration is forecast
-# A forecast is printed again once its lower bound exceeds the last upper bound by this factor.
-AGAIN = 1.5
-# 200 steps and 2000 unknowns of a usual run. The number that exceeds its usual value by the larger
-# factor makes a run long.
-USUAL = freefem.At(1.0, 0.0, 200, 2000)
 # Name of the scene.toml that Python writes before the run. When the run has finished, this file
 # replaces the scene.toml of the script.
 USED = "scene.used"
-# Ratio of the wave transit times of the slowest and the quickest body. A larger ratio costs more
-# time than mesh or accuracy.
-APART = 10.0
 
 
 class Solver(AbstractContextManager):
@@ -64,14 +38,13 @@ class Solver(AbstractContextManager):
         self,
         program: freefem.FreeFem,
         scene: Scene,
-        mesh_file: Path | None,
         foreign: bytes | None,
         stage: Path,
         lock: int,
         line: Line,
         pair: bool,
     ):
-        self.program, self.scene, self.mesh_file, self.foreign = program, scene, mesh_file, foreign
+        self.program, self.scene, self.foreign = program, scene, foreign
         self.scaled = partial(scaled, scene)
         self.stage, self.lock, self.line = stage, lock, line
         self.pair = (
@@ -100,7 +73,7 @@ class Solver(AbstractContextManager):
         display = Display(
             self.line,
             self.scene,
-            self.mesh_file,
+            self.foreign,
             "main run" if where == self.stage else f"{where.name} run",
             self.number,
         )
@@ -124,7 +97,7 @@ class Solver(AbstractContextManager):
         if (where / USED).exists() and (where / "scene.toml").exists():
             os.replace(where / USED, where / "scene.toml")
         evaluate(where)
-        _check(where, exit_code, message)
+        check(where, exit_code, message)
         display.at("ready", 1.0)
 
     def _started(
@@ -188,157 +161,3 @@ class Solver(AbstractContextManager):
             shutil.rmtree(folder)
         self.beside = {}
         return None
-
-
-def _check(stage: Path, exit_code: int, message: str) -> None:
-    """Raises Failure unless FreeFem++ ended with exit code 0 and left a finished summary and a
-    finite history. The exit code 0 alone does not prove success.
-
-    The failure has the exit code of the process. Its message is that of the failure.json that the
-    script wrote, or else `message`.
-    """
-    if exit_code == 0:
-        try:
-            read_summary(stage)
-            history = read_history(stage)
-        except Unreadable as error:
-            problem = str(error).replace(f"{stage}/", "")
-            raise Failure(f"FreeFem++ ended without a result: {problem}; {_tail(stage)}") from None
-        for name, column in history.items():
-            if not np.isfinite(column).all():
-                raise Failure(
-                    f"history.csv: {name} is not finite from row {1 + np.argmin(np.isfinite(column))} on"
-                )
-        return
-    log = (stage / "log.txt").read_text(errors="replace")
-    message = read_json(stage / "failure.json").get("message") or message
-    if exit_code in FAILURES and message:
-        raise of_code(exit_code, message)
-    if exit_code == -signal.SIGXFSZ:
-        raise Unreadable(
-            "out: a file of the run is larger than files may be here; raise ulimit -f, or ask for fewer fields or steps"
-        )
-    if "Load error" in log:
-        raise NotInstalled(f"FreeFem++ lacks a plugin: {_tail(stage)}; {freefem.HOW}")
-    how = (
-        f"was killed by {signal.Signals(-exit_code).name}"
-        if exit_code < 0
-        else f"stopped with exit code {exit_code}"
-    )
-    goes_on = (
-        "; the same command goes on from the last checkpoint"
-        if (stage / "checkpoint").exists()
-        else ""
-    )
-    raise Failure(f"FreeFem++ {how}; {_tail(stage)}{goes_on}")
-
-
-def _tail(stage: Path) -> str:
-    lines = [line.strip() for line in (stage / "log.txt").read_text(errors="replace").splitlines()]
-    ending = (
-        [line for line in lines if line and not line.startswith("progress ")]
-        or lines[-1:]
-        or ["nothing"]
-    )
-    return "end of its log: " + " | ".join(ending[-4:])
-
-
-# ---- progress of the runs
-
-
-def runs(pair: bool) -> dict[str, float]:
-    """Returns the runs that are expected with their costs."""
-    levels = {f"{name} run": COST**k for k, name in enumerate(estimate.LEVELS, 1)}
-    return {"main run": 1.0} | (levels if pair else {})
-
-
-class Display:
-    """Shows the progress of a run, the `number`th run of the progress line."""
-
-    def __init__(self, line: Line, scene: Scene, mesh_file: Path | None, kind: str, number: int):
-        self.line, self.scene, self.mesh_file, self.number = line, scene, mesh_file, number
-        self.words = f"{kind} {number} of {max(number, len(line.costs))}"
-        self.part = kind if kind in line.costs else self.words
-        self.seen: list[tuple[float, freefem.At]] = []
-        # The upper bound [s] of the last forecast for all runs.
-        self.foretold = math.inf if kind.startswith(estimate.LEVELS) else LONG
-
-    def at(self, what: str, share: float = 0.0) -> None:
-        """Shows the current work `what` and the completed fraction `share`, in [0, 1]."""
-        self.line.at(self.part, share, f"{self.words}, {what}", COST ** (3 - self.number))
-
-    def show(self, at: freefem.At) -> None:
-        """Shows the progress that FreeFem++ reports. Prints a forecast if the runs will take
-        long.
-        """
-        self.at(f"t = {at.t * 1e3:.3f} ms, {at.steps} steps", at.share)
-        # The first report comes with the first steps, after the set-up.
-        self.seen.append((time.monotonic(), at))
-        if self.seen[-1][0] - self.seen[0][0] < FIRST:
-            return
-        seconds, steps = forecast(self.seen)
-        low, high = (
-            bound * sum(self.line.costs.values()) / self.line.costs[self.part] for bound in seconds
-        )
-        if self.foretold < low < math.inf:
-            self.foretold = AGAIN * (high if high < math.inf else low)
-            self.line.say(
-                f"{self.scene.name}: {between(low / 60, high / 60)} min, for {between(*steps)} steps of {at.unknowns} unknowns: "
-                f"{entry(self.scene, at, self.mesh_file)}"
-            )
-
-
-def forecast(
-    seen: list[tuple[float, freefem.At]],
-) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Returns the duration [s] of a run from its first report on and its number of steps, each as
-    (lower bound, upper bound). `seen` has the reports with their times [s].
-
-    One forecast uses the pace since the first report, the other one the pace since half of the
-    elapsed time. They differ if the steps become shorter or if the impact lasts longer than it
-    seemed. If the completed fraction has not increased, a forecast is infinite.
-    """
-    (start, first), (now, at) = seen[0], seen[-1]
-    middle = seen[max(0, bisect.bisect(seen, (start + now) / 2, key=lambda state: state[0]) - 1)]
-    seconds, steps = [], []
-    for when, since in ((start, first), middle):
-        remaining = (
-            (1 - at.share) / (at.share - since.share) if at.share > since.share else math.inf
-        )
-        seconds.append(now - start + remaining * (now - when))
-        steps.append(at.steps + remaining * (at.steps - since.steps))
-    return (min(seconds), max(seconds)), (min(steps), max(steps))
-
-
-def between(low: float, high: float) -> str:
-    """Returns a range of numbers in words."""
-    if high == math.inf:
-        return f"at least {low:.0f}"
-    return (
-        f"about {high:.0f}"
-        if high < 1.2 * low or f"{low:.0f}" == f"{high:.0f}"
-        else f"{low:.0f} to {high:.0f}"
-    )
-
-
-def entry(scene: Scene, at: freefem.At, mesh_file: Path | None) -> str:
-    """Returns the entry of the scene that makes the run long."""
-    values = scene.values | scene.sizes
-    if at.apart > APART:
-        return f"a stiff body beside a soft one, whose waves take {at.apart:.0f} times as long as those that set the steps (young, density)"
-    if at.steps / at.share / USUAL.steps > at.unknowns / USUAL.unknowns:
-        names = (
-            "dt",
-            "end_time",
-            *(["integrator"] if values["integrator"] == "central-difference" else []),
-        )
-    elif mesh_file:
-        return f"the mesh {mesh_file}"
-    else:
-        names = ("contact_mesh_size", "mesh_size")
-    name = next((name for name in names if values.get(name)), "accuracy")
-    return (
-        f"{name} = {values[name]:g}"
-        if isinstance(values[name], float)
-        else f"{name} = {values[name]}"
-    )
