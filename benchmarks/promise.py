@@ -33,9 +33,6 @@ SCENES = {"round": (69, 240), "coarse": (73, 180), "flat": (79, 60), "held": (85
 # scenes, which would take hours, they are 2 times smaller than those of the answer, which finer
 # runs may have made.
 TWICE = ("ball", "box-wall", *draws.HELD_MIXTURE)
-# From this accuracy on, steps are 0.3 of the transit time of waves (sizes.idp). The reference
-# requests at most this accuracy so that its steps are finer.
-STEPS_GROW = 0.0576
 LIMIT = 1800.0  # longest time of a scene [s]
 # Required share of the scenes within the requested accuracy, and of the cases within the error
 # estimate.
@@ -183,7 +180,7 @@ def _compared(problem: scene.Scene, folder: Path) -> dict:
         seconds, answers = paid[0], read_answers(stage)
         twice = problem.name in TWICE
         used, factor = (answers.used, 1 / 2) if twice else (used, 1 / 3)
-        solve(scaled(problem, problem.values, used | {"accuracy": min(STEPS_GROW, used["accuracy"])}, factor), finer)
+        solve(scaled(problem, problem.values, used, factor), finer)
         best = read_answers(finer)
     # Sizes of the reference over those of the answer. The reference itself has this share of an
     # error of first order (bodies that strike flat), or its square of an error of second order.

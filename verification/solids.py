@@ -120,7 +120,7 @@ def data(scene: Scene) -> str:
     def numbers(*groups) -> str:
         return " ".join(repr(float(x)) for group in groups for x in group)
     lines = ["ffimpact-bodies-3d 1", f"copies {scene.copies}", "disc " + numbers((*scene.ball, 0.0, 0.0, 0.0, 0.0)), f"bodies {len(scene.bodies)}"]
-    lines += [f"body{b} {body.material[0]} " + numbers(body.material[1:], body.centre, body.shift, body.velocity, body.spin) for b, body in enumerate(scene.bodies)]
+    lines += [f"body{b} {body.material[0]} " + numbers(body.material[1:], body.centre, body.shift, body.velocity, body.spin, [1e30]) for b, body in enumerate(scene.bodies)]
     spheres = [f"{b} " + numbers(sphere) for b, body in enumerate(scene.bodies) for sphere in body.spheres]
     lines += [f"spheres {len(spheres)}", *spheres, "cylinders 0", "files 0", f"obstacles {len(scene.obstacles)}"]
     lines += [f"obstacle{k} {kind} {len(values)} " + numbers(values, velocity) for k, (kind, values, velocity) in enumerate(scene.obstacles, 1)]

@@ -97,7 +97,7 @@ def test_bodies_stand_apart_above_each_other():
     rows = [line.split() for line in built.data.splitlines()]
     assert rows[0] == ["ffimpact-bodies-3d", "1"] and rows[1] == ["copies", "4"]
     for row, body in zip(rows[4:6], scene.bodies):
-        assert len(row) == 17 and np.array(row[5:8], dtype=float) + np.array(row[8:11], dtype=float) == pytest.approx(body.position)
+        assert len(row) == 18 and np.array(row[5:8], dtype=float) + np.array(row[8:11], dtype=float) == pytest.approx(body.position)
     assert rows[6] == ["spheres", "1"]
 
 

@@ -722,6 +722,7 @@ def data_file(
             body.density,
             *centre,
             *start,
+            2 * float(body.outline.half_thickness),
         )
         for body, centre, start in zip(scene.bodies, centres, starts)
     ]
