@@ -25,9 +25,9 @@ from verification import commands
 
 from . import draws, page
 
-# Seeds and numbers of the scenes by option. The constants of the estimate, estimate.SAFETY and
-# estimate.HISTORY, are calibrated on the seeds 1001 and 1002 of round, flat and held scenes; those
-# of `others` set no constant. Mesh sizes are calibrated on the seeds 1, 2, 5, 40 and 7.
+# Seeds and numbers of the scenes by option. estimate.SAFETY is calibrated on the seeds 1001 and
+# 1002 of all kinds of scenes, and on 28 scenes of the seed 89 of `others`. Mesh sizes are calibrated
+# on the seeds 1, 2, 5, 40 and 7.
 SCENES = {"round": (69, 240), "coarse": (73, 180), "flat": (79, 60), "held": (85, 60), "others": (87, 30)}
 # Elements and steps of the reference are 3 times smaller than those of the first run. In these
 # scenes, which would take hours, they are 2 times smaller than those of the answer, which finer
@@ -49,7 +49,7 @@ ANSWERS = (*estimate.RESULTS, *estimate.HIGHEST, "support_peak_1", "support_peak
 # Columns of cover().
 COVER = {"answer": "", "cases": "", "within": ".1%", "times": ".1f", "needed": ".2f"}
 TITLES = {"coarse": "at coarse accuracies", "flat": "where faces strike flat", "held": "of what is held, loaded or rigid",
-          "others": "in scenes without calibration"}
+          "others": "in five other families of scenes"}
 Drawn = tuple[str, study.Point]  # a built-in scene and its overrides
 
 

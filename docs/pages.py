@@ -64,7 +64,7 @@ OF_ESTIMATES = "".join(
         (
             "estimated errors",
             "warning / note",
-            "a warning if the estimate of a requested number is above 1.5 times the accuracy; a "
+            "a warning if the estimate of a requested number is above twice the accuracy; a "
             "note if it is above the accuracy, or above twice the accuracy for contact_time and "
             "peak_force",
             "take a smaller accuracy, or the error bar as it is",

@@ -2,6 +2,7 @@
 until the estimate is small enough."""
 
 import json
+import math
 import re
 from pathlib import Path
 
@@ -77,11 +78,14 @@ def test_time_histories_are_compared_near_their_ends():
 
 
 def test_a_later_end_is_a_difference_of_times():
-    """In a run that is 2 % longer each share of the impulse is reached up to 2 % later."""
+    """In a run that is 2 % longer the half wave of the force falls below each share of its peak 2 %
+    later: at T (1 - asin(share)/pi), over the contact time T."""
     longer = run()
     longer = longer._replace(history=longer.history | {name: 1.02 * longer.history[name] for name in ("t", "dt")})
     for name in ("contact_time", "thresholded_contact_time"):
-        assert 0.01 < estimate.history_differences(run(), longer)[name] < 0.02
+        falls = (4e-3 * (1 - np.arcsin(estimate.DECLINE) / np.pi)) / ANSWERS["contact_time"]
+        expected = 0.02 * math.sqrt(np.mean(falls**2))
+        assert estimate.history_differences(run(), longer)[name] == pytest.approx(expected, rel=1e-2)
 
 
 # ---- estimates
@@ -181,11 +185,11 @@ def test_an_estimate_below_the_accuracy_takes_two_coarser_runs(tmp_path):
 
 
 def test_finer_runs_follow_until_it_is(tmp_path):
-    """1.2 % is halved twice. The finest run becomes the result; the former runs are its levels."""
-    disc = Disc(tmp_path, 0.012)
+    """3 % is halved twice. The finest run becomes the result; the former runs are its levels."""
+    disc = Disc(tmp_path, 0.03)
     summary = disc.settle()
     assert disc.factors() == pytest.approx([1, ROOT2, 2, 1 / ROOT2, 1 / 2])
-    assert summary["estimated_error"]["impulse"] == pytest.approx(FACTOR * 0.003, rel=0.02)
+    assert summary["estimated_error"]["impulse"] == pytest.approx(FACTOR * 0.0075, rel=0.02)
     assert summary["refinements"] == 2 and summary["warnings"] == []
     assert summary["estimate_cpu_seconds"] == 4
     assert {path.name for path in tmp_path.iterdir()} == {"result.json", "of 0.50", "checkpoint.json"}
@@ -196,7 +200,7 @@ def test_finer_runs_follow_until_it_is(tmp_path):
 def test_what_was_asked_for_is_asked_of_every_run_that_may_stay(tmp_path, name, expected):
     """A finer run replaces the first one and has all its requests. The coarser run writes no
     output."""
-    disc = Disc(tmp_path, 0.012)
+    disc = Disc(tmp_path, 0.03)
     disc.settle()
     assert [values[name] for values in disc.asked] == expected
 
@@ -206,8 +210,8 @@ def test_what_asks_for_output_is_off_by_default():
     assert {name: parameters.PARAMETERS[name].default for name in parameters.OUTPUT} == parameters.OUTPUT
 
 
-@pytest.mark.parametrize("offs, runs", [((0.009,), 3), ((0.0149,), 3), ((0.0151, 0.0151), 4), ((0.035, 0.021, 0.0126), 5), ((0.03, 0.025, 0.02), 4),
-                                        ((0.029, 0.0207, 0.014), 5), ((0.029, 0.0211, 0.014), 4)])
+@pytest.mark.parametrize("offs, runs", [((0.009,), 3), ((0.0199,), 3), ((0.0201, 0.0201), 4), ((0.035, 0.021, 0.0126), 5), ((0.03, 0.025, 0.02), 4),
+                                        ((0.029, 0.0240, 0.014), 5), ((0.029, 0.0242, 0.014), 4)])
 def test_scatter_is_a_reason_for_a_second_finer_run_only_where_it_brings_the_contact_time_there(tmp_path, monkeypatch, offs, runs):
     """The estimate of the contact time above 1 % of the peak is offs[k] after k finer runs, for an
     accuracy of 1 %. Up to WORTH times the accuracy no finer run follows. A second one follows if
@@ -257,9 +261,9 @@ def test_without_the_coarsest_run_a_single_pair_is_the_estimate(tmp_path):
 def test_a_finer_run_that_fails_leaves_the_run(tmp_path):
     """The existing result stays with its estimate. Sentences report that it exceeds the accuracy,
     and why the finer run failed."""
-    summary = Disc(tmp_path, 0.018, fails=[1 / 2]).settle()
-    assert summary["refinements"] == 1 and summary["estimated_error"]["impulse"] == pytest.approx(FACTOR * 0.009, rel=0.02)
-    assert len(summary["warnings"]) == 2 and "impulse 2.5 %" in summary["warnings"][0] and "no step at 0.50" in summary["warnings"][1]
+    summary = Disc(tmp_path, 0.03, fails=[1 / 2]).settle()
+    assert summary["refinements"] == 1 and summary["estimated_error"]["impulse"] == pytest.approx(FACTOR * 0.015, rel=0.03)
+    assert len(summary["warnings"]) == 2 and "impulse 3.3 %" in summary["warnings"][0] and "no step at 0.50" in summary["warnings"][1]
     assert {path.name for path in tmp_path.iterdir()} == {"result.json", "of 0.71", "checkpoint.json"}
 
 
@@ -290,10 +294,10 @@ def test_the_same_steps_are_no_estimate(tmp_path):
 
 
 @pytest.mark.parametrize("name, times, kind", [
-    ("rebound", 1.1, "notes"), ("rebound", 1.6, "warnings"), ("thresholded_contact_time", 1.6, "warnings"), ("contact_time", 1.9, None),
+    ("rebound", 1.9, "notes"), ("rebound", 2.1, "warnings"), ("thresholded_contact_time", 2.1, "warnings"), ("contact_time", 1.9, None),
     ("contact_time", 9.0, "notes"), ("peak_force", 9.0, "notes")])
 def test_a_promised_answer_far_above_the_accuracy_is_a_warning(tmp_path, monkeypatch, name, times, kind):
-    """An excess above 1.5 times the accuracy (1 %) is a warning. Below that, and for results that
+    """An excess above twice the accuracy (1 %) is a warning. Below that, and for results that
     are not promised above twice the accuracy, it is a note."""
     disc = Disc(tmp_path, 1e-9, mesh_size=0.016)  # prescribed sizes prevent finer runs
     monkeypatch.setattr(estimate, "error_estimates", lambda _: dict.fromkeys([*estimate.RESULTS, estimate.OF_ITSELF], 0.0) | {name: 0.01 * times})
