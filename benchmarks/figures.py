@@ -254,6 +254,56 @@ def viscoelastic(tables: Tables, path: Path) -> None:
     study.draw(tables[""], tables["disc"], path)
 
 
+def users(tables: Tables, path: Path) -> None:
+    """Draws the processor time of the users' scenes, and steps, time and error of a soft disc over
+    the stiffness of the block that it falls on. A dashed line is the disc on a rigid plane.
+    """
+    rows, ratios = tables.get("", pd.DataFrame()), tables.get("ratio", pd.DataFrame())
+    figure, panels = plt.subplot_mosaic(
+        [["scenes", "steps"], ["scenes", "seconds"], ["scenes", "error %"]],
+        figsize=(9, 5.6),
+        width_ratios=(1.1, 1),
+    )
+    scenes = panels.pop("scenes")
+    for setting, colour, mark in (("automatic", BLUE, "o"), ("by hand", ORANGE, "D")):
+        if len(rows):
+            own = rows[rows.setting == setting].set_index("scene").reindex(rows.scene.unique()[::-1])
+            scenes.semilogx(own.seconds, own.index, mark, color=colour, markersize=5, label=setting)
+        if len(ratios):
+            own = ratios[ratios.setting == setting]
+            block, rigid = own[np.isfinite(own.ratio)], own[np.isinf(own.ratio)]
+            for name, panel in panels.items():
+                panel.loglog(
+                    block.ratio,
+                    block[name].clip(SMALLEST),
+                    f"{mark}-",
+                    color=colour,
+                    markersize=3.5,
+                    label=setting,
+                )
+                for value in rigid[name].dropna():
+                    panel.axhline(
+                        max(value, SMALLEST), color=colour, linewidth=0.9, linestyle=DASHED
+                    )
+    scenes.set(xlabel="processor time of the run [s]")
+    scenes.grid(alpha=0.3)
+    if len(rows):
+        plain(scenes.xaxis, (1,))
+    else:
+        scenes.set_axis_off()
+    names = {"steps": "steps", "seconds": "time [s]", "error %": "error of the impulse [%]"}
+    for name, panel in panels.items():
+        panel.set(ylabel=names[name])
+        panel.grid(alpha=0.3)
+    panels["error %"].set_xlabel("Young's modulus of the block / of the disc")
+    figure.legend(
+        *(scenes if len(rows) else panels["steps"]).get_legend_handles_labels(),
+        loc="outside lower center",
+        ncols=2,
+    )
+    save(figure, path)
+
+
 # The drawing function by the name of the measurement.
 DRAWN: dict[str, Callable[[Tables, Path], None]] = {
     "promise": promise,
@@ -264,6 +314,7 @@ DRAWN: dict[str, Callable[[Tables, Path], None]] = {
     "rubber": rubber,
     "oblique-angles": oblique_angles,
     "viscoelastic": viscoelastic,
+    "users": users,
 }
 
 
