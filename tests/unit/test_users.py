@@ -13,7 +13,7 @@ def test_a_scene_of_users_says_what_its_user_wants(name):
     """A comment at the top of each file says what the scene is and what its user wants. The scene
     is accepted, also with the entries by hand, which include the step."""
     first = (draws.OWN / f"{name}.toml").read_text().partition("title")[0]
-    assert first.startswith("# ") and "ser wants" in " ".join(first.replace("#", " ").split())
+    assert first.startswith("# ") and "user wants" in " ".join(first.lower().replace("#", " ").split())
     case = users.USERS[name]
     by_hand = case.open().override(case.by_hand)
     assert by_hand.values["dt"] == case.by_hand["dt"] > 0 == case.open().values["dt"]
