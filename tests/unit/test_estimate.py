@@ -78,13 +78,13 @@ def test_time_histories_are_compared_near_their_ends():
 
 
 def test_a_later_end_is_a_difference_of_times():
-    """In a run that is 2 % longer the half wave of the force falls below each share of its peak 2 %
-    later: at T (1 - asin(share)/pi), over the contact time T."""
+    """In a run that is 2 % longer the half wave of the force reaches each share s of the impulse 2 %
+    later: at T acos(1 - 2 s)/pi, in units of the contact time."""
     longer = run()
     longer = longer._replace(history=longer.history | {name: 1.02 * longer.history[name] for name in ("t", "dt")})
     for name in ("contact_time", "thresholded_contact_time"):
-        falls = (4e-3 * (1 - np.arcsin(estimate.DECLINE) / np.pi)) / ANSWERS["contact_time"]
-        expected = 0.02 * math.sqrt(np.mean(falls**2))
+        reached = 4e-3 * np.arccos(1 - 2 * estimate.SHARES) / np.pi / ANSWERS["contact_time"]
+        expected = 0.02 * math.sqrt(np.mean(reached**2))
         assert estimate.history_differences(run(), longer)[name] == pytest.approx(expected, rel=1e-2)
 
 

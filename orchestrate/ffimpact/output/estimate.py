@@ -105,9 +105,9 @@ FILE_MESH = (
 OF_ITSELF = "friction_work of itself"
 HIGHEST = ("max_pressure", "max_penetration")  # largest values of columns of the history
 WORKS = ("support_work", "load_work")
-EARLY = 0.75  # share of a record from which on histories are compared
-# Shares of the peak force: the times are compared at which the force last exceeds them.
-DECLINE = np.geomspace(0.005, 0.5, 8)
+EARLY = 0.75  # share of a record, and of the impulse, from which on histories are compared
+# Shares of the impulse at which times are compared. They are dense at the end of contact.
+SHARES = 1 - np.geomspace(1 - EARLY, 1e-4, 16)
 
 Scaled = Callable[[Mapping, Mapping, float, bool], dict[str, Value]]
 # Runs the scene with these values in a folder, and raises Failure if the run fails.
@@ -371,7 +371,7 @@ def history_differences(fine: Answers, coarse: Answers) -> dict[str, float]:
 
     - impulse, velocities, spin, energy (elastic, with that of the contact), works: in the last
       quarter of the common record;
-    - times: of the times at which the force last exceeds the shares DECLINE of its peak;
+    - times: of the times at which the same share of the impulse is reached, in its last quarter;
     - largest values: while one of the runs is above half the value.
     """
     summary, energy = fine.summary, fine.summary["largest_energy"]
@@ -403,8 +403,8 @@ def history_differences(fine: Answers, coarse: Answers) -> dict[str, float]:
         for name in WORKS
         if name in fine.history
     }
-    declines = [_times_of_decline(run.history) for run in (fine, coarse)]
-    delay = math.sqrt(np.mean((declines[0] - declines[1]) ** 2)) / lasts if lasts else 0.0
+    reached = [_times_of_shares(run.history) for run in (fine, coarse)]
+    delay = math.sqrt(np.mean((reached[0] - reached[1]) ** 2)) / lasts if lasts else 0.0
     return over_time | dict.fromkeys(("thresholded_contact_time", "contact_time"), delay)
 
 
@@ -452,17 +452,12 @@ def _impulse(history: Mapping) -> np.ndarray:
     return np.cumsum(history["normal_force"] * history["dt"])
 
 
-def _times_of_decline(history: Mapping) -> np.ndarray:
-    """Returns the times [s], from the onset of contact, at which the normal force last exceeds the
-    shares DECLINE of its peak. The force is interpolated linearly in the step that follows.
-    """
-    t, force = history["t"], history["normal_force"]
-    onset = max(np.argmax(force > 0) - 1, 0)
-    least = DECLINE * force.max()
-    last = len(force) - 1 - np.argmax(force[::-1] >= least[:, None], axis=1)
-    after = np.minimum(last + 1, len(force) - 1)
-    drop = np.where(after > last, force[last] - force[after], 1)
-    return t[last] + (force[last] - least) / drop * (t[after] - t[last]) - t[onset]
+def _times_of_shares(history: Mapping) -> np.ndarray:
+    """Returns the times [s] at which the impulse reaches its SHARES, from the onset of contact."""
+    impulse = _impulse(history)
+    onset = max(np.argmax(history["normal_force"] > 0) - 1, 0)
+    reached, first = np.unique(np.maximum.accumulate(impulse), return_index=True)
+    return np.interp(SHARES * reached[-1], reached, history["t"][first]) - history["t"][onset]
 
 
 def _free(run: Answers) -> list[str]:
