@@ -344,8 +344,8 @@ def test_touching_is_no_overlap():
 
 
 def test_sizes_that_do_not_fit_a_body_are_named():
-    """A mesh size beyond half the thickness of a body is reported with the entry of the body."""
-    with pytest.raises(BadInput, match="^body.2.mesh_size: 3 is larger than the radius 1 .*'block'"):
+    """A mesh size beyond the thickness of a body is reported with the entry of the body."""
+    with pytest.raises(BadInput, match="^body.2.mesh_size: 3 does not fit the thickness of 'block' .accepted: 0, or from 5e-05 to 1.67"):
         assembly.assemble(read(changed(("body.2.mesh_size", 3))))
 
 

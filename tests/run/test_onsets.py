@@ -169,7 +169,8 @@ def test_elements_follow_the_radius_of_an_obstacle(dimension, kind):
 
 def contact_size(tables: Scene) -> float:
     """The element size of the first body of a scene near contact."""
-    return assembly.element_sizes(0, assembly.Asker(tables, approach.onsets_of(tables), lambda values: describe(values, tables.dimension.like))).contact
+    sizes = assembly.element_sizes(0, assembly.Asker(tables, approach.onsets_of(tables), lambda values: describe(values, tables.dimension.like)))
+    return sizes.contact * sizes.stretch
 
 
 @pytest.mark.parametrize("distance", ["sqrt(x^2+(y+0.0401)^2)-0.02", "x^2+(y+0.0401)^2-0.0004"])

@@ -313,6 +313,13 @@ class Outline(Shape):
         """
         return float(min(self.extent.min() / 2, 2 * self.area / self.length))
 
+    @property
+    def coarsest(self) -> float:
+        """The largest automatic element size [m]: two elements across a slender body or the wall of
+        a ring, four across a disc or a square.
+        """
+        return float(min(self.extent.min() / 2, self.area / self.length))
+
     def placed(self, centre: np.ndarray, angle: float) -> "Outline":
         outline = Outline(tuple(loop.placed(centre, angle) for loop in self.loops))
         outline.__dict__["reach"] = self.reach  # independent of the position: not computed again

@@ -377,6 +377,13 @@ class Solid(outlines.Shape):
         """
         return float(min(self.extent.min() / 2, 3 * self.volume / self.shape.area))
 
+    @property
+    def coarsest(self) -> float:
+        """The largest automatic element size [m]: two elements across a slender body or the wall of
+        a shell, four across a ball or a cube.
+        """
+        return float(min(self.extent.min() / 2, 1.5 * self.volume / self.shape.area))
+
     def placed(self, centre: np.ndarray, rotation: np.ndarray) -> "Solid":
         return replace(self, centre=self.centre + centre, rotation=rotation @ self.rotation)
 

@@ -164,17 +164,23 @@ def _rebound(scene: Scene, onset: Onset) -> Scene | None:
             continue
         body = scene.bodies[k]
         shape = onset.outlines[0 if k == onset.first else 1]
-        lever, mass = _lever(shape, point, n), body.density * shape.area
+        held = bool(body.supports)  # neither turns nor falls, as with infinite mass
+        lever, mass = _lever(shape, point, n), math.inf if held else body.density * shape.area
+        own_fall = np.zeros(len(n)) if held else fall
         yields += (1 + lever**2 / shape.gyration) / mass
-        closing -= sign * ((body.velocity + fall) @ n + body.spin * lever)
-        hit.append((sign, k, shape, lever, mass))
-    turning = max(abs(lever) / shape.reach for _, _, shape, lever, _ in hit)
+        closing -= sign * ((body.velocity + own_fall) @ n + body.spin * lever)
+        hit.append((sign, k, shape, lever, mass, own_fall))
+    turns = [abs(lever) / shape.reach for _, _, shape, lever, mass, _ in hit if mass < math.inf]
+    turning = max(turns, default=0.0)
     if closing <= 0 or turning < ECCENTRIC:
         return None
     soon, bodies = 4 * MET * onset.radius / (RESTITUTION * closing), list(scene.bodies)
-    for sign, k, shape, lever, mass in hit:
+    for sign, k, shape, lever, mass, own_fall in hit:
         body, push = bodies[k], sign * (1 + RESTITUTION) * closing / yields / mass
-        velocity, spin = body.velocity + fall + push * n, body.spin + push * lever / shape.gyration
+        velocity, spin = (
+            body.velocity + own_fall + push * n,
+            body.spin + push * lever / shape.gyration,
+        )
         bodies[k] = replace(
             body,
             position=shape.area_centre + (velocity - moves) * soon,

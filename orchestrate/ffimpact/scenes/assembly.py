@@ -60,6 +60,8 @@ NARROW = 0.6
 # Largest half-width of a contact over the radius of the obstacle; the same as over that of a disc
 # on a plane (sizes.idp).
 POINTED = 0.5
+UNLIMITED = 1e-3  # accuracy for which no element of the rule has a limited size
+RESOLVED = 0.5  # largest element in a contact over its half-width
 ASIDE = 0.02  # distance from a corner of an obstacle that counts as on it, over the pair's radius
 SMALLEST = 1e-3  # smallest element in a contact over the pair's radius
 BETWEEN = 0.2  # distance of bodies in the mesh over their largest extent
@@ -350,7 +352,7 @@ class Asker:
         along, across, pressing, pulling = self.largest
         along = max(along, self.pressed) if presses else along
         pressing = pressing if self.onsets else max(loaded_pull(body) for body in self.scene.bodies)
-        soft = min(bodies, key=lambda body: body.moduli[1] * (1 + body.nu))
+        soft = min(bodies, key=lambda body: body.stiffness)
         request = {
             name: self.scene.values[name]
             for name in ("accuracy", "accuracy_of", "end_time", "until")
@@ -510,15 +512,7 @@ def element_sizes(k: int, ask: Asker) -> Sizes:
     each contact pair.
     """
     body = ask.scene.bodies[k]
-    sizes = {
-        name: value
-        for name, value in (
-            ("mesh_size", body.mesh_size),
-            ("contact_mesh_size", body.contact_mesh_size),
-        )
-        if value
-    }
-    bulk = float(_of_body(k, ask, **sizes)["mesh_size"])
+    bulk = body.mesh_size or _bulk(k, ask)
     hits = [_hit(body, k, onset, ask) for onset in ask.onsets if k in (onset.first, onset.second)]
     mine = [front for front in ask.fronts.values() if k in front.sizes]
     if body.rigid and not body.mesh_size:
@@ -533,6 +527,37 @@ def element_sizes(k: int, ask: Asker) -> Sizes:
     near = np.vstack([np.empty((0, ask.scene.dimension.axes)), *(points for _, points, _ in hits)])
     slack = max([0.0, *(slack for *_, slack in hits)])
     return Sizes(bulk, min(bulk, contact), near, slack, along, stretch)
+
+
+def _bulk(k: int, ask: Asker) -> float:
+    """Returns the element size [m] in the bulk of body k that the accuracy requires. Errors are
+    quadratic in it. The rule is asked at an accuracy where it does not limit the size.
+    """
+    body = ask.scene.bodies[k]
+    looser = ask.scene.values["accuracy"] / UNLIMITED / _share(k, ask)
+    required = float(_of_body(k, ask, accuracy=UNLIMITED)["mesh_size"]) * math.sqrt(looser)
+    return max(min(required, body.outline.coarsest), body.contact_mesh_size)
+
+
+def _share(k: int, ask: Asker) -> float:
+    """Returns the error by the elements in the bulk of body k, over that of the softest body it may
+    come into contact with, 1 at most.
+
+    A stiffer body deforms less by the ratio of the moduli, but by the cube of its slenderness more
+    where it bends. Loads deform a body by themselves.
+    """
+    body = ask.scene.bodies[k]
+    if body.rigid or body.loads:
+        return 1.0
+    softer = [_softer(k, o, ask) for o in ask.onsets if k in (o.first, o.second) and not o.never]
+    slender = float(body.outline.extent.max()) / (2 * body.outline.half_thickness)
+    return min(1.0, max(softer, default=1.0) * max(1.0, slender) ** 3)
+
+
+def _softer(k: int, onset: Onset, ask: Asker) -> float:
+    """Returns the stiffness of the softest body in a contact pair over that of its body k."""
+    bodies = [ask.scene.bodies[j] for j in (onset.first, onset.second) if j >= 0]
+    return min(body.stiffness for body in bodies) / ask.scene.bodies[k].stiffness
 
 
 def _first_normal(k: int, ask: Asker) -> np.ndarray:
@@ -565,6 +590,10 @@ def _hit(body: Body, k: int, onset: Onset, ask: Asker) -> tuple[float, np.ndarra
     bodies = [ask.scene.bodies[j] for j in (onset.first, onset.second) if j >= 0]
     straight = ask.answer(bodies, onset.radius)
     arc, size = straight["touch_arc"], float(straight["used"]["contact_mesh_size"])
+    # The indentation of a stiffer body is smaller by the ratio of the moduli, and so is its error,
+    # which is quadratic in the size. Its points still resolve the pressure.
+    resolved = RESOLVED * 2 / math.pi * arc * onset.radius
+    size = max(size, min(size / math.sqrt(_softer(k, onset, ask)), resolved))
     depth, small = (
         onset.radius * (1 - math.cos(min(arc, math.pi / 2))),
         ask.small(onset.first, onset.second),

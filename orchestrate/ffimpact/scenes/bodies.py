@@ -39,6 +39,7 @@ STIFF = 1e5
 # Largest nu in the speed of waves. The stiffness by a larger nu acts on the volume of elements
 # (docs/explanation/materials.md).
 STIFFEST = 0.45
+FINEST = 1 / 20000  # smallest element size over the half thickness of a body
 OPTIONAL = ("law_parameters", *DAMPING, "loss")
 SIZES = ("mesh_size", "contact_mesh_size")
 
@@ -99,6 +100,11 @@ class Body:
         branch = self.relaxation_modulus * turn / (1 / (self.relaxation_time or 1) + turn)
         shear = abs(mu + turn * self.viscosity + branch)
         return abs(wave - 2 * mu + turn * self.bulk_viscosity) + 2 * shear, shear
+
+    @property
+    def stiffness(self) -> float:
+        """Young's modulus [Pa] in an impact, over two, with the stiffening by damping."""
+        return self.moduli[1] * (1 + self.nu)
 
     @property
     def wave_speed(self) -> float:
@@ -174,6 +180,8 @@ def _body(table: models.Body, top: models.Top, folder: Path, dimension: Dimensio
             f"{table.entry}: is {2 * outline.half_thickness:.3g} m thick (accepted: from {2 * SHORTEST:g} m)"
         )
     bulk, contact = _sizes(table, None if body_mesh else top)
+    for key, size in zip(SIZES, (bulk, contact)):
+        _refuse_size(table.at(key), size, outline, table.name or table.entry)
     if body_mesh and (sizes := [key for key in (*SIZES, "mesh_stretch") if getattr(table, key)]):
         raise BadInput(
             f"{table.at(sizes[0])}: '{table.value_text(sizes[0])}' for a mesh from a file, "
@@ -327,6 +335,16 @@ def _material(table: models.Body, top: models.Top) -> dict[str, Value]:
             f"{values['relaxation_modulus']:g} Pa (accepted: both above 0, or none)"
         )
     return values
+
+
+def _refuse_size(path: str, size: float, outline: Outline | Solid, name: str) -> None:
+    """Raises BadInput if an element size [m] does not fit a body; 0 is automatic."""
+    low, high = outline.half_thickness * FINEST, 2 * outline.coarsest
+    if size and not low <= size <= high * (1 + 1e-9):
+        raise BadInput(
+            f"{path}: {size:g} does not fit the thickness of '{name}' (accepted: 0, or from "
+            f"{low:.3g} to {high:.3g})"
+        )
 
 
 def _sizes(table: models.Body, top: models.Top | None) -> tuple[float, float]:

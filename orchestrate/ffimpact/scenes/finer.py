@@ -33,7 +33,7 @@ def scaled(
     strikes = fronts(finer, onsets_of(scene)) if stretched else []
     for k, (body, table) in enumerate(zip(scene.bodies, used["body"])):
         if not body.mesh:
-            bulk = min(factor * table["mesh_size"], body.outline.half_thickness)
+            bulk = min(factor * table["mesh_size"], 2 * body.outline.coarsest)
             before = table.get("mesh_stretch", 1.0)
             stretch = before if body.mesh_stretch else stretch_of(k, strikes, bulk)
             contact = min(bulk, factor * table["contact_mesh_size"] * before / stretch)

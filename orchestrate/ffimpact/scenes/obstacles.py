@@ -22,9 +22,21 @@ from ..input.rules import placeholder
 from ..mesh import solids, surface_file
 from ..mesh.revolution import mirrored
 
-__all__ = ["Bowl", "Circle", "Drive", "Implicit", "KINDS", "Obstacle", "Plane", "Polyline", "Surface", "read", "settled"]
+__all__ = [
+    "Bowl",
+    "Circle",
+    "Drive",
+    "Implicit",
+    "KINDS",
+    "Obstacle",
+    "Plane",
+    "Polyline",
+    "Surface",
+    "read",
+    "settled",
+]
 
-DRIVE = ("motion", "rotation", "pivot", "axis")      # entries of an obstacle with a prescribed motion
+DRIVE = ("motion", "rotation", "pivot", "axis")  # entries of an obstacle with a prescribed motion
 
 
 @dataclass(frozen=True)
@@ -38,8 +50,8 @@ class Obstacle:
     velocity: np.ndarray
     drive: "Drive | None" = None
 
-    kind: ClassVar[str]                                  # in the scripts
-    is_exact: ClassVar[bool] = True                      # whether gap() is the distance at any distance
+    kind: ClassVar[str]  # in the scripts
+    is_exact: ClassVar[bool] = True  # whether gap() is the distance at any distance
 
     @classmethod
     def numbers_of(cls, table: Any, dimension: Dimension, folder: Path) -> tuple[float, ...]:
@@ -109,8 +121,7 @@ class Obstacle:
         return replace(self, velocity=translation / when if when > 0 else 0 * self.velocity)
 
     def gap_for_sizes(self, points: np.ndarray) -> np.ndarray:
-        """Returns gaps for element sizes: like gap(), but to first order far from an implicit obstacle.
-        """
+        """Returns gaps for element sizes: like gap(), but to first order far from an implicit obstacle."""
         return self.gap(points)
 
     def gap_from(self, shape) -> float:
@@ -133,16 +144,22 @@ class Plane(Obstacle):
         return {"point": [0.0] * dimension.axes, "normal": [0.0, 1.0, 0.0][: dimension.axes]}
 
     @classmethod
-    def numbers_of(cls, table: models.Plane, dimension: Dimension, folder: Path) -> tuple[float, ...]:
+    def numbers_of(
+        cls, table: models.Plane, dimension: Dimension, folder: Path
+    ) -> tuple[float, ...]:
         used = cls.defaults(dimension) | table.table()
         point, normal = np.array(used["point"]), np.array(used["normal"])
         if not normal.any():
-            raise BadInput(f"{table.at('normal')}: '{table.value_text('normal')}' has no direction "
-                           f"(accepted: {placeholder(dimension.axes)} other than 0)")
+            raise BadInput(
+                f"{table.at('normal')}: '{table.value_text('normal')}' has no direction "
+                f"(accepted: {placeholder(dimension.axes)} other than 0)"
+            )
         if dimension is AXISYMMETRIC and normal[0] != 0:
-            raise BadInput(f"{table.at('normal')}: '{table.value_text('normal')}' is not along the axis of revolution "
-                           f"(accepted: [0, 1] or [0, -1])")
-        normal = normal / abs(normal).max()              # its squares do not underflow
+            raise BadInput(
+                f"{table.at('normal')}: '{table.value_text('normal')}' is not along the axis of revolution "
+                f"(accepted: [0, 1] or [0, -1])"
+            )
+        normal = normal / abs(normal).max()  # its squares do not underflow
         return *map(float, point), *map(float, normal / np.linalg.norm(normal))
 
     def gap(self, points: np.ndarray) -> np.ndarray:
@@ -203,13 +220,17 @@ class Polyline(Obstacle):
     kind = "polyline"
 
     @classmethod
-    def numbers_of(cls, table: models.Polyline, dimension: Dimension, folder: Path) -> tuple[float, ...]:
+    def numbers_of(
+        cls, table: models.Polyline, dimension: Dimension, folder: Path
+    ) -> tuple[float, ...]:
         closed, vertices = bool(table.closed), np.array(table.vertices)
         if dimension is AXISYMMETRIC:
             vertices, closed = mirrored(table.at("vertices"), vertices)
         polyline.check(table.entry, vertices, closed)
         if table.rounding and table.fillet:
-            raise BadInput(f"{table.at('rounding')}: {table.rounding:g} m beside fillet (accepted: one of them)")
+            raise BadInput(
+                f"{table.at('rounding')}: {table.rounding:g} m beside fillet (accepted: one of them)"
+            )
         if table.fillet:
             vertices = polyline.inset(table.at("fillet"), vertices, closed, table.fillet)
         return polyline.numbers(vertices, closed, table.rounding or table.fillet or 0.0)
@@ -225,9 +246,12 @@ class Polyline(Obstacle):
         for point, along, low, high in zip(sides.start, sides.along, sides.low, sides.high):
             r = seen_from(point)
             above, at = r @ np.array([-along[1], along[0]]), r @ along
-            yield [above - near, -above - near,
-                   *([low - near - at] if np.isfinite(low) else []),
-                   *([at - high - near] if np.isfinite(high) else [])]
+            yield [
+                above - near,
+                -above - near,
+                *([low - near - at] if np.isfinite(low) else []),
+                *([at - high - near] if np.isfinite(high) else []),
+            ]
 
 
 class Implicit(Obstacle):
@@ -239,11 +263,15 @@ class Implicit(Obstacle):
     is_exact = False
 
     @classmethod
-    def numbers_of(cls, table: models.Implicit, dimension: Dimension, folder: Path) -> tuple[float, ...]:
-        code = implicit.program(table.at("distance"), table.distance, "xyz"[:dimension.axes])
+    def numbers_of(
+        cls, table: models.Implicit, dimension: Dimension, folder: Path
+    ) -> tuple[float, ...]:
+        code = implicit.program(table.at("distance"), table.distance, "xyz"[: dimension.axes])
         if dimension is AXISYMMETRIC and not implicit.is_mirrored(code, 0, 2):
-            raise BadInput(f"{table.at('distance')}: '{table.value_text('distance')}' is not the same for x and -x, "
-                           f"as of revolution (accepted: with x^2 or abs(x))")
+            raise BadInput(
+                f"{table.at('distance')}: '{table.value_text('distance')}' is not the same for x and -x, "
+                f"as of revolution (accepted: with x^2 or abs(x))"
+            )
         return 1.0, *code
 
     def gap(self, points: np.ndarray) -> np.ndarray:
@@ -279,22 +307,34 @@ class Surface(Obstacle):
     kind = "surface"
 
     @classmethod
-    def numbers_of(cls, table: models.Surface, dimension: Dimension, folder: Path) -> tuple[float, ...]:
+    def numbers_of(
+        cls, table: models.Surface, dimension: Dimension, folder: Path
+    ) -> tuple[float, ...]:
         """The surface of a file, rotated about the origin of the file and then moved."""
         try:
             points, triangles = surface_file.read(folder / table.file)
         except BadInput as error:
             raise BadInput(f"{table.at('file')}: {error}") from None
         turn = np.radians(table.turn or [0.0, 0.0, 0.0])
-        points = (table.scale or 1.0) * points @ tumbling.rotation(turn).T + np.array(table.position or [0.0, 0.0, 0.0])
-        return (table.rounding or 0.0, float(len(points)), float(len(triangles)), *points.ravel().tolist(),
-                *map(float, triangles.ravel()))
+        points = (table.scale or 1.0) * points @ tumbling.rotation(turn).T + np.array(
+            table.position or [0.0, 0.0, 0.0]
+        )
+        return (
+            table.rounding or 0.0,
+            float(len(points)),
+            float(len(triangles)),
+            *points.ravel().tolist(),
+            *map(float, triangles.ravel()),
+        )
 
     @cached_property
     def _surface(self) -> solids.Shape:
         count, faces = int(self.numbers[1]), int(self.numbers[2])
         data = np.array(self.numbers[3:])
-        points, triangles = data[:3 * count].reshape(-1, 3), data[3 * count:].astype(int).reshape(faces, 3)
+        points, triangles = (
+            data[: 3 * count].reshape(-1, 3),
+            data[3 * count :].astype(int).reshape(faces, 3),
+        )
         return solids.surface(points[triangles])
 
     def gap(self, points: np.ndarray) -> np.ndarray:
@@ -305,7 +345,9 @@ class Surface(Obstacle):
 
 
 KINDS: dict[str, type[Obstacle]] = {
-    "sphere": Circle, **{kind.kind: kind for kind in (Plane, Circle, Bowl, Polyline, Implicit, Surface)}}
+    "sphere": Circle,
+    **{kind.kind: kind for kind in (Plane, Circle, Bowl, Polyline, Implicit, Surface)},
+}
 
 
 @dataclass(frozen=True)
@@ -346,7 +388,9 @@ class Drive:
         return tumbling.rotation(self.axis * float(self.turn(t)))
 
 
-def read(tables: list[models.Obstacle], dimension: Dimension, end_time: float, folder: Path) -> list[Obstacle]:
+def read(
+    tables: list[models.Obstacle], dimension: Dimension, end_time: float, folder: Path
+) -> list[Obstacle]:
     """Returns the obstacles of [[obstacle]] tables. Functions of time are used up to `end_time` [s];
     files are relative to `folder`.
     """
@@ -357,20 +401,33 @@ def settled(obstacles: list[Obstacle], centre: np.ndarray, half: float) -> list[
     """Returns the obstacles with the largest gradient and curvature of implicit ones in a box about
     `centre` of half size `half` [m], in which the bodies lie.
     """
+
     def numbers(k: int, code: tuple[float, ...]) -> tuple[float, ...]:
         return implicit.settled(f"obstacle.{k}", code, centre, half)
 
-    return [replace(obstacle, numbers=numbers(k, obstacle.numbers[1:]))
-            if isinstance(obstacle, Implicit) else obstacle for k, obstacle in enumerate(obstacles, 1)]
+    return [
+        replace(obstacle, numbers=numbers(k, obstacle.numbers[1:]))
+        if isinstance(obstacle, Implicit)
+        else obstacle
+        for k, obstacle in enumerate(obstacles, 1)
+    ]
 
 
-def _obstacle(table: models.Obstacle, dimension: Dimension, end_time: float, folder: Path) -> Obstacle:
+def _obstacle(
+    table: models.Obstacle, dimension: Dimension, end_time: float, folder: Path
+) -> Obstacle:
     kind = KINDS[table.kind]
-    return kind(table.name or table.entry.replace(".", ""), kind.numbers_of(table, dimension, folder),
-                np.array(table.velocity or [0.0] * dimension.axes), _drive(table, dimension, end_time, folder))
+    return kind(
+        table.name or table.entry.replace(".", ""),
+        kind.numbers_of(table, dimension, folder),
+        np.array(table.velocity or [0.0] * dimension.axes),
+        _drive(table, dimension, end_time, folder),
+    )
 
 
-def _drive(table: models.Obstacle, dimension: Dimension, end_time: float, folder: Path) -> Drive | None:
+def _drive(
+    table: models.Obstacle, dimension: Dimension, end_time: float, folder: Path
+) -> Drive | None:
     """Returns the motion of the entries motion, rotation, pivot and axis, or None without them."""
     if not any(key in table for key in DRIVE):
         return None
@@ -378,22 +435,39 @@ def _drive(table: models.Obstacle, dimension: Dimension, end_time: float, folder
         if key in table and needs not in table:
             raise BadInput(f"{table.at(key)}: stands without {needs} (accepted: with it)")
     if "velocity" in table:
-        raise BadInput(f"{table.at('velocity')}: stands beside motion or rotation (accepted: one of them)")
+        raise BadInput(
+            f"{table.at('velocity')}: stands beside motion or rotation (accepted: one of them)"
+        )
     if dimension is AXISYMMETRIC and "rotation" in table:
-        raise BadInput(f"{table.at('rotation')}: nothing turns in a scene of revolution (accepted: motion)")
+        raise BadInput(
+            f"{table.at('rotation')}: nothing turns in a scene of revolution (accepted: motion)"
+        )
     if "axis" in table and dimension is not SOLID:
-        raise BadInput(f"{table.at('axis')}: is of three dimensions (accepted: without it, about z)")
+        raise BadInput(
+            f"{table.at('axis')}: is of three dimensions (accepted: without it, about z)"
+        )
     none = time_functions.constant(0.0)
-    translation = ((none,) * dimension.axes if table.motion is None
-                   else displacements(table.at("motion"), table.motion, "xyz"[:dimension.axes], end_time, folder))
+    translation = (
+        (none,) * dimension.axes
+        if table.motion is None
+        else displacements(
+            table.at("motion"), table.motion, "xyz"[: dimension.axes], end_time, folder
+        )
+    )
     if dimension is AXISYMMETRIC and not translation[0].is_zero:
         raise BadInput(f"{table.at('motion')}.1: leaves the axis of revolution (accepted: 0)")
-    degrees = (none if table.rotation is None
-               else displacements(table.at("rotation"), table.rotation, "r", end_time, folder)[0])
+    degrees = (
+        none
+        if table.rotation is None
+        else displacements(table.at("rotation"), table.rotation, "r", end_time, folder)[0]
+    )
     turn = degrees.scaled(np.pi / 180)
     axis = np.array(table.axis or [0.0, 0.0, 1.0])
     if not axis.any():
-        raise BadInput(f"{table.at('axis')}: '{table.value_text('axis')}' has no direction (accepted: other than 0)")
-    centre = (getattr(table, "centre", None) or getattr(table, "point", None)
-              or [0.0] * dimension.axes)
+        raise BadInput(
+            f"{table.at('axis')}: '{table.value_text('axis')}' has no direction (accepted: other than 0)"
+        )
+    centre = (
+        getattr(table, "centre", None) or getattr(table, "point", None) or [0.0] * dimension.axes
+    )
     return Drive(translation, turn, np.array(table.pivot or centre), axis / np.linalg.norm(axis))
