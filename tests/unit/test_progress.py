@@ -78,7 +78,7 @@ def test_no_entry_makes_it_short(monkeypatch):
     monkeypatch.setattr(forecast, "measure", lambda *_: planned(600.0))
     coarse = scene.load("disc-oblique")
     assert forecast.cure(coarse, None, 600.0, False) == "no entry makes it short"
-    assert forecast.cure(coarse, None, 600.0, True) == "no entry makes it short: --no-estimate takes about 7 min, without error estimates"
+    assert forecast.cure(coarse, None, 600.0, True) == "no entry makes it short: --no-estimate takes about 6.8 min, without error estimates"
 
 
 def reports(shares: list[float], steps: list[int]) -> list[tuple[float, freefem.At]]:

@@ -138,11 +138,11 @@ def _listed(title: str, lines: list[str]) -> list[str]:
 
 def duration(seconds: float) -> str:
     """Returns a duration in words."""
-    if seconds < 10:
-        return f"{seconds:.1f} s"
-    if seconds < 100:
-        return f"{seconds:.0f} s"
-    return f"{seconds / 60:.0f} min" if seconds < 6000 else f"{seconds / 3600:.1f} h"
+    for size, unit in ((1.0, "s"), (60.0, "min"), (3600.0, "h")):
+        number = seconds / size
+        if number < 100 or unit == "h":
+            break
+    return f"{number:.1f} {unit}" if number < 10 else f"{number:.0f} {unit}"
 
 
 def levels(estimate: bool) -> dict[str, float]:
