@@ -33,7 +33,7 @@ SCENES = {"round": (69, 240), "coarse": (73, 180), "flat": (79, 60), "held": (85
 # scenes, which would take hours, they are 2 times smaller than those of the answer, which finer
 # runs may have made.
 TWICE = ("ball", "box-wall", *draws.HELD_MIXTURE)
-LIMIT = 1800.0  # longest time of a scene [s]
+LIMIT = 1800.0  # default of the longest time of a scene [s]
 # Required share of the scenes within the requested accuracy, and of the cases within the error
 # estimate.
 KEPT = 0.95
@@ -69,11 +69,13 @@ def main(argv: list[str]) -> int:
                         help="supports, loads, rigid bodies, obstacles that move: stated errors hold there too")
     parser.add_argument("--others", action="store_true",
                         help="curved, hollow, nearly incompressible, unlike, and strips: stated errors hold there too")
+    parser.add_argument("--limit", metavar="S", type=float, default=LIMIT, help=f"longest time of a scene (default: {LIMIT:g} s); "
+                        "scenes that take longer are left out")
     parser.add_argument("--of", metavar="SCENE", choices=draws.SCENES, help=f"of one kind only: {', '.join(draws.SCENES)}")
     options = parser.parse_args(argv)
     kind = next((kind for kind in SCENES if getattr(options, kind, False)), "round")
     seed, count = (default if value is None else value for default, value in zip(SCENES[kind], (options.seed, options.scenes)))
-    table = compare(_drawn(options, kind, seed, max(1, count)), options.out)
+    table = compare(_drawn(options, kind, seed, max(1, count)), options.out, options.limit)
     if kind != "round":
         name = table.scene.str.partition(":")[0]
         part = table.accuracy.map("accuracy {:g}".format) if kind == "coarse" else name.map(draws.family) if kind == "others" else name
@@ -127,14 +129,14 @@ def held(row) -> bool:
     return row.within >= KEPT - 1.96 * (KEPT * (1 - KEPT) / row.cases) ** 0.5
 
 
-def compare(drawn: list[Drawn], out: Path) -> pd.DataFrame:
+def compare(drawn: list[Drawn], out: Path, limit: float = LIMIT) -> pd.DataFrame:
     """A row for each scene.
 
     The columns are the error and the error estimate of each result, and the largest of each over
     the promised results, all over the requested accuracy; the warnings; and processor seconds of
     the run with its estimate and of the reference. Values of a failed run are nan.
     """
-    acts = {k: partial(_row, out, *entry) for k, entry in enumerate(drawn)}
+    acts = {k: partial(_row, out, *entry, limit) for k, entry in enumerate(drawn)}
     rows = {k: {"message": str(outcome)} if isinstance(outcome, Failure) else outcome
             for k, outcome in study.side_by_side(acts, study.CORES, out.name)}
     rows = [{"scene": f"{name}: {draws.words(point)}", "accuracy": point.get("accuracy"), "warnings": ""} | rows[k]
@@ -144,11 +146,11 @@ def compare(drawn: list[Drawn], out: Path) -> pd.DataFrame:
                                                "message"])
 
 
-def _row(out: Path, name: str, point: study.Point) -> dict:
-    """The row of one scene. Its runs are kept, each without an estimate, so that other estimates
-    need no new runs."""
+def _row(out: Path, name: str, point: study.Point, limit: float) -> dict:
+    """The row of one scene, unless it takes longer than `limit` [s]. Its runs are kept, each without
+    an estimate, so that other estimates need no new runs."""
     try:
-        with freefem.limited(LIMIT):
+        with freefem.limited(limit):
             return _compared(open_scene(name, point), study.place(out / name, point))
     except (Failure, TooLong) as failure:
         return {"message": str(failure)}
