@@ -13,14 +13,13 @@ from ffimpact.running import forecast
 
 def told_of(name: str, monkeypatch, seen: list[tuple[float, freefem.At]]) -> list[str]:
     """The sentences about a run with these reports (seconds since its start, state)."""
-    sentences, clock = [], iter(seconds for seconds, _ in seen)
-    monkeypatch.setattr(forecast.time, "monotonic", lambda: next(clock))
+    sentences = []
     monkeypatch.setattr(forecast, "cure", lambda scene, foreign, seconds, estimate: f"cure of {seconds:.0f} s")
     line = progress.Line(name, {"main run": 1.0}, watched=False)
     line.quiet, line.say = False, sentences.append
     run = forecast.Display(line, scene.load(name), None, "main run", 1)
-    for _, at in seen:
-        run.show(at)
+    for seconds, at in seen:
+        run.show(at._replace(wall=seconds))
     return sentences
 
 
@@ -42,6 +41,21 @@ def test_a_long_run_says_so_and_how_it_becomes_short(monkeypatch):
 def planned(seconds: float) -> types.SimpleNamespace:
     """A plan of so much processor time."""
     return types.SimpleNamespace(total_seconds=seconds, finer_seconds=0.0, is_long=seconds > 120)
+
+
+def test_reports_of_the_time_of_the_search_are_out_of_date(monkeypatch):
+    """While the entry is sought, for 15 s, reports of the solver wait. They are then left out, so that elapsed and
+    remaining time belong to the present state."""
+    clock = iter([100.0, 115.0])
+    monkeypatch.setattr(forecast.time, "monotonic", lambda: next(clock))
+    monkeypatch.setattr(forecast, "cure", lambda *_: "cure")
+    line, shown = progress.Line("run", {"main run": 1.0}, watched=False), []
+    line.quiet, line.say = False, lambda sentence: None
+    line.at = lambda part, share, words, cost: shown.append(words)
+    run = forecast.Display(line, scene.load("disc-normal"), None, "main run", 1)
+    for wall in (0, 5, 6, 19, 21):
+        run.show(freefem.At(0.001 * (wall + 1), 1e-3 * wall, wall, 400, wall=float(wall)))
+    assert [int(words.split()[-2]) for words in shown] == [0, 5, 21]
 
 
 # The time [s] of disc-oblique by its entries: of the sizes, of the accuracy and of the end.

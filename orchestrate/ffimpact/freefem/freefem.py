@@ -77,6 +77,7 @@ class At(NamedTuple):
     longer: float = 1.0  # factor by which later contacts may make an impact longer
     step: float = 0.0  # largest step [s]
     seconds: float = 0.0  # processor time of the process [s]
+    wall: float = 0.0  # wall time of the run [s]
     memory: float = 0.0  # largest memory of the process [bytes]
 
     @classmethod

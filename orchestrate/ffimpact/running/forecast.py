@@ -51,10 +51,12 @@ class Display:
         self.line, self.scene, self.foreign, self.number = line, scene, foreign, number
         self.words = f"{kind} {number} of {max(number, len(line.costs))}"
         self.part = kind if kind in line.costs else self.words
-        self.seen: list[tuple[float, freefem.At]] = []
+        self.seen: list[freefem.At] = []
         # The upper bound [s] of the last forecast for all runs.
         self.foretold = math.inf if kind.startswith(estimates.LEVELS) else LONG
         self.cure: str | None = None
+        # Wall time of the run [s] until which its reports are out of date.
+        self.sought_until = 0.0
 
     def at(self, what: str, share: float = 0.0) -> None:
         """Shows the current work `what` and the completed fraction `share`, in [0, 1]."""
@@ -64,10 +66,12 @@ class Display:
         """Shows the progress that FreeFem++ reports. Prints a forecast if the runs will take
         long.
         """
+        if at.wall < self.sought_until:
+            return
         self.at(f"t = {at.t * 1e3:.3f} ms, {at.steps} steps", at.share)
         # The first report comes after the set-up.
-        self.seen.append((time.monotonic(), at))
-        if self.line.quiet or self.seen[-1][0] - self.seen[0][0] < FIRST:
+        self.seen.append(at)
+        if self.line.quiet or at.wall - self.seen[0].wall < FIRST:
             return
         seconds, steps = forecast(self.seen)
         low, high = (
@@ -76,7 +80,9 @@ class Display:
         if self.foretold < low < math.inf:
             self.foretold = AGAIN * (high if high < math.inf else low)
             if self.cure is None:
+                began = time.monotonic()
                 self.cure = cure(self.scene, self.foreign, low, len(self.line.costs) > 1)
+                self.sought_until = at.wall + time.monotonic() - began
             self.line.say(
                 f"{self.scene.name}: {between(low / 60, high / 60)} min, for {between(*steps)} steps of {at.unknowns} unknowns: "
                 f"{self.cure}"
@@ -84,23 +90,23 @@ class Display:
 
 
 def forecast(
-    seen: list[tuple[float, freefem.At]],
+    seen: list[freefem.At],
 ) -> tuple[tuple[float, float], tuple[float, float]]:
     """Returns the duration [s] of a run from its first report on and its number of steps, each as
-    (lower bound, upper bound). `seen` has the reports with their times [s].
+    (lower bound, upper bound). `seen` has the reports.
 
     One forecast uses the pace since the first report, the other one the pace since half of the
     elapsed time. They differ if the steps become shorter or if the impact lasts longer than it
     seemed. If the completed fraction has not increased, a forecast is infinite.
     """
-    (start, first), (now, at) = seen[0], seen[-1]
-    middle = seen[max(0, bisect.bisect(seen, (start + now) / 2, key=lambda state: state[0]) - 1)]
+    first, at = seen[0], seen[-1]
+    half = bisect.bisect(seen, (first.wall + at.wall) / 2, key=lambda state: state.wall)
     seconds, steps = [], []
-    for when, since in ((start, first), middle):
+    for since in (first, seen[max(0, half - 1)]):
         remaining = (
             (1 - at.share) / (at.share - since.share) if at.share > since.share else math.inf
         )
-        seconds.append(now - start + remaining * (now - when))
+        seconds.append(at.wall - first.wall + remaining * (at.wall - since.wall))
         steps.append(at.steps + remaining * (at.steps - since.steps))
     return (min(seconds), max(seconds)), (min(steps), max(steps))
 
