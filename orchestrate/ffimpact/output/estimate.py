@@ -325,8 +325,9 @@ def differences(fine: Answers, coarse: Answers) -> dict[str, float]:
       the one with the largest difference counts;
     - energies and works: the largest energy. Friction work is also compared to itself.
 
-    A held body vibrates on its support: its velocities at the end are of one instant and are left
-    out.
+    Gases and supports exchange energy with their bodies after contact, too. So works, and energies
+    without the work that follows, are compared at the end of the shorter run. A held body vibrates
+    on its support: its velocities at the end are of one instant and are left out.
     """
     first, second = fine.summary, coarse.summary
     energy = first["largest_energy"]
@@ -337,6 +338,19 @@ def differences(fine: Answers, coarse: Answers) -> dict[str, float]:
 
     def apart(name: str, scale: float) -> float:
         return abs(value(first, name) - value(second, name)) / abs(scale) if scale else 0.0
+
+    together = min(run.history["t"][-1] for run in (fine, coarse))
+    works = [name for name in WORKS if name in fine.history]
+
+    def until(run: Answers, name: str) -> float:
+        return float(np.interp(together, run.history["t"], run.history[name]))
+
+    def later(run: Answers) -> float:
+        """The work [J/m] after the end of the shorter run."""
+        return sum(run.history[name][-1] - until(run, name) for name in works)
+
+    def energy_apart(name: str) -> float:
+        return abs(value(first, name) - later(fine) - value(second, name) + later(coarse))
 
     def velocity(names: Sequence[str], scales: Mapping[str, float]) -> float:
         vectors = (
@@ -350,7 +364,8 @@ def differences(fine: Answers, coarse: Answers) -> dict[str, float]:
         "impulse": apart("impulse", value(first, "impulse")),
         "rebound": velocity(("vx", "vy", "vz"), dict.fromkeys(_free(fine), fine.speed)),
         "rebound_spin": velocity(("spin", "spin_x", "spin_y"), _rim_speeds(fine)),
-        "energy": max(apart(name, energy) for name in ("energy_final", "vibration_energy")),
+        "energy": max(map(energy_apart, ("energy_final", "vibration_energy")))
+        / (energy or math.inf),
         "friction_work": apart("friction_work", energy),
     }
     for name in ("thresholded_contact_time", "contact_time", "peak_force"):
@@ -359,9 +374,8 @@ def differences(fine: Answers, coarse: Answers) -> dict[str, float]:
     for name in _highest(fine):
         largest, other = (_column(run, name).max() for run in (fine, coarse))
         apart_by_name[name] = abs(largest - other) / largest if largest else 0.0
-    for name in set(WORKS) & set(fine.history):
-        ends = (run.history[name][-1] for run in (fine, coarse))
-        apart_by_name[name] = abs(next(ends) - next(ends)) / energy if energy else 0.0
+    for name in works:
+        apart_by_name[name] = abs(until(fine, name) - until(coarse, name)) / (energy or math.inf)
     return {name: float(number) for name, number in apart_by_name.items()}
 
 
