@@ -519,7 +519,10 @@ def element_sizes(k: int, ask: Asker) -> Sizes:
         bulk = _bulk_of_rigid(body, min((size for size, *_ in hits), default=math.inf))
     if not body.mesh_size:
         bulk = min((front.sizes[k] for front in mine if k in front.crossed), default=bulk)
-    stretch = body.mesh_stretch or stretch_of(k, mine, bulk)
+    plane = stretch_of(k, mine, bulk)
+    if plane > 1:  # a plane front presses evenly: the bulk resolves its pressure
+        hits = []
+    stretch = body.mesh_stretch or plane
     along = _first_normal(k, ask) if stretch > 1 else None
     contact = body.contact_mesh_size or min(
         [bulk, *(size / stretch for size, *_ in hits), *(front.sizes[k] for front in mine)]

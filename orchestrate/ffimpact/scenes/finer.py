@@ -1,5 +1,6 @@
 """Changes the sizes of elements and steps of a scene, for the runs that estimate an error."""
 
+import math
 from collections.abc import Mapping
 
 from ..input.parameters import Value
@@ -29,7 +30,9 @@ def scaled(
         entries["contact.pair"] = _pairs(scene, used["contact"]["pair"], factor)
     entries["accuracy"] = estimate.loosened(used["accuracy"], factor)
     stretched = any("mesh_stretch" in table for table in used["body"])
-    finer = scene.override({"accuracy": entries["accuracy"]})
+    # errors of fronts are of first order in the elements
+    first_order = math.sqrt(scene.values["accuracy"] * entries["accuracy"])
+    finer = scene.override({"accuracy": first_order})
     strikes = fronts(finer, onsets_of(scene)) if stretched else []
     for k, (body, table) in enumerate(zip(scene.bodies, used["body"])):
         if not body.mesh:

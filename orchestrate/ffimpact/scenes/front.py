@@ -29,10 +29,11 @@ PER_ACCURACY = 5.0  # element size / (length along the normal * accuracy)
 # the least share of the width, and of the box around the body that the body fills; 1 - |cosine of
 # the angle| of two normals that count as one.
 WHOLE, FILLED, ALIKE = 0.9, 0.98, 1e-6
-# Waves from free sides change a plane front by the ratio of its stresses across and along the
-# normal, lambda/(lambda + 2 mu). Length of elements across the normal over (half thickness *
-# sqrt(accuracy) / this ratio); it is at most the half thickness.
-ACROSS = 3.0
+# Waves from free sides change a plane front by the square of the ratio s of its stresses across and
+# along the normal, s = lambda/(lambda + 2 mu). Elements of the length w across the normal then make
+# the error 0.023 s^2 (w/R)^3 of the rebound velocity, R the half thickness (measured). It is a
+# quarter of the accuracy for w/R = ACROSS (accuracy/s^2)^(1/3); w is R at most.
+ACROSS = 2.2
 LONGER = 10.0  # largest ratio of the lengths of an element across and along the normal
 STEEPNESS = 1.5  # transit of the front through an element over its rise time
 LONGEST = 0.02  # largest rise time of the front over its transit across the body
@@ -135,7 +136,8 @@ def _across(scene: Scene, body: Body) -> float:
     """Returns the length [m] that elements of a body may have across a plane front."""
     wave, shear = body.moduli
     lateral = max(1 - 2 * shear / wave, 1e-9)
-    return body.outline.half_thickness * min(1.0, ACROSS * math.sqrt(_accuracy(scene)) / lateral)
+    share = ACROSS * (_accuracy(scene) / lateral**2) ** (1 / 3)
+    return body.outline.half_thickness * min(1.0, share)
 
 
 def _stays_plane(scene: Scene, k: int, onsets: list[Onset], landings: list[Front]) -> bool:
@@ -144,7 +146,8 @@ def _stays_plane(scene: Scene, k: int, onsets: list[Onset], landings: list[Front
     may come into contact with its whole width lands, and that of the other body.
     """
     body = scene.bodies[k]
-    if scene.dimension is SOLID or body.mesh or body.mesh_size or body.supports or body.loads:
+    is_set = body.mesh or body.mesh_size or body.mesh_stretch
+    if scene.dimension is SOLID or is_set or body.supports or body.loads:
         return False
     possible = [onset for onset in onsets if k in (onset.first, onset.second) and not onset.never]
     mine = [
