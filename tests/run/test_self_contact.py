@@ -48,7 +48,7 @@ def test_a_hairpin_closes_and_opens_again(tmp_path, friction):
 
 def test_a_ring_hits_a_plane_so_hard_that_it_closes(tmp_path):
     """Its inner sides come into contact and separate before it leaves the plane."""
-    result = ran(tmp_path, SCENE | {"body": [RING], "end_time": 14e-3, "fields": 30})
+    result = ran(tmp_path, SCENE | {"body": [RING], "end_time": 16e-3, "fields": 30})
     balanced(result)
     hole = distances(result, lambda x, y: (abs(np.hypot(x, y) - 0.044) < 1e-9) & (y > 0.02), lambda x, y: (abs(np.hypot(x, y) - 0.044) < 1e-9) & (y < -0.02))
     assert abs(hole.min()) < 1e-3 and hole[hole.argmin():].max() > 0.003
