@@ -1,0 +1,86 @@
+"""Steps of slow loads and supports, and of stiff bodies beside soft ones, follow the motion."""
+
+import math
+
+import numpy as np
+import pytest
+
+from verification.measure import bodies
+
+# A clamped strip of length L and height H under a step of gravity g.
+LENGTH, HEIGHT, YOUNG, DENSITY, GRAVITY = 0.2, 0.01, 1e6, 1000, 1e-3
+STRIP = {"shape": "rectangle", "width": LENGTH, "height": HEIGHT, "position": [LENGTH / 2, 0],
+         "support": [{"where": "left", "fix": "all"}]}
+LAW = {"law": "neohookean", "gravity": 0.0}
+# beta_n L of a clamped beam: cos x cosh x = -1
+ROOTS = (1.875104069, 4.694091133, 7.854757438, 10.99554073)
+
+
+def centre_of_strip(t: np.ndarray) -> np.ndarray:
+    """Displacement [m] of the centre of mass of the clamped strip under a step of gravity: the sum
+    over the modes of an Euler-Bernoulli beam. Of a mode phi with the largest value 2 at the tip and
+    the norm integral phi^2 = L, the mean is 2 s/(beta L), s = (sinh - sin)/(cosh + cos)."""
+    y = np.zeros_like(t)
+    for x in ROOTS:
+        mean = 2 * (math.sinh(x) - math.sin(x)) / (math.cosh(x) + math.cos(x)) / x
+        omega = x**2 / LENGTH**2 * math.sqrt(YOUNG * HEIGHT**2 / (12 * DENSITY))
+        y -= GRAVITY * mean**2 / omega**2 * (1 - np.cos(omega * t))
+    return y
+
+
+@pytest.mark.parametrize(("accuracy", "most_steps"), [(0.02, 160), (0.005, 260)])
+def test_a_slow_motion_takes_some_tens_of_steps_a_period(tmp_path, accuracy, most_steps):
+    """Waves cross the strip in 6 ms, its period is 0.78 s: their steps would be thousands. Euler's
+    beam has neither shear nor rotary inertia: the period differs by 0.3 %, (h/L)^2 times about 1."""
+    run = bodies(tmp_path, {**LAW, "young": YOUNG, "nu": 0.0, "density": DENSITY, "accuracy": accuracy,
+                            "gravity": GRAVITY, "end_time": 0.4, "body": [STRIP]})
+    t, y = run.history["t"], run.history["y"]
+    exact = centre_of_strip(t)
+    assert np.abs(y - y[0] - exact).max() <= (accuracy + 0.003) * np.abs(exact).max()
+    assert 30 < run.summary["steps"] <= most_steps
+    assert run.summary["energy_drift"] < 1e-6
+
+
+def strike(tmp_path, ratio: float | None, supports=(), **entries):
+    """A rubber disc strikes a free block that is `ratio` times as stiff, or a rigid plane."""
+    disc = {"name": "disc", "shape": "disc", "radius": 0.02, "young": 5e6, "nu": 0.45, "density": 1100,
+            "position": [0, 0.0201], "velocity": [0, -3]}
+    scene = {**LAW, "accuracy": 0.05, "end_time": 4e-3, "body": [disc], **entries}
+    if ratio is None:
+        scene["obstacle"] = [{"kind": "plane", "point": [0, 0], "normal": [0, 1]}]
+    else:
+        scene["body"].append({"name": "block", "shape": "rectangle", "width": 0.12, "height": 0.03, "young": 5e6 * ratio,
+                              "nu": 0.3, "density": 1100, "position": [0, -0.015], "support": list(supports)})
+    return bodies(tmp_path / f"{ratio}", scene)
+
+
+@pytest.mark.parametrize("held", [False, True])
+def test_a_stiff_body_takes_no_more_steps_than_a_rigid_obstacle(tmp_path, held):
+    """At most 1.3 times as many, for moduli 100 to 1e5 times as large; and a held block that is
+    much stiffer acts like the rigid plane."""
+    supports = [{"where": "bottom", "fix": "all"}] if held else []
+    rigid = strike(tmp_path, None)
+    for ratio in (1e2, 1e5):
+        run = strike(tmp_path, ratio, supports)
+        assert run.summary["steps"] <= 1.3 * rigid.summary["steps"]
+        assert run.summary["energy_drift"] < 1e-6
+        if held and ratio > 1e4:
+            assert run.summary["impulse"] == pytest.approx(rigid.summary["impulse"], rel=5e-3)
+
+
+def test_a_strike_after_a_long_rest_is_resolved(tmp_path):
+    """A held pad rests under its gravity until a disc falls on it: steps that have grown return to
+    those of the impact before the first force, which is the same as without the rest."""
+    pad = {"name": "pad", "shape": "rectangle", "width": 0.1, "height": 0.02, "position": [0, -0.01], "young": 2e6, "nu": 0.3,
+           "density": 1000, "support": [{"where": "bottom", "fix": "all"}]}
+    runs = []
+    for wait in (0.002, 0.2):
+        disc = {"name": "disc", "shape": "disc", "radius": 0.02, "young": 5e6, "nu": 0.3, "density": 1100,
+                "position": [0, 0.02 + 2 * wait], "velocity": [0, -2]}
+        shake = {"where": "right", "traction": [{"t": [0, wait / 2, wait], "x": [0, 10, 0]}, 0]}
+        runs.append(bodies(tmp_path / f"{wait}", {**LAW, "accuracy": 0.02, "end_time": wait + 8e-3,
+                                                  "body": [disc, {**pad, "load": [shake]}]}))
+    soon, late = (run.summary for run in runs)
+    assert late["steps"] < 1.5 * soon["steps"]
+    for answer in ("impulse", "rebound_vy_1", "peak_force"):
+        assert late[answer] == pytest.approx(soon[answer], rel=0.01)
