@@ -114,7 +114,7 @@ def fork(folder, vertices: list, sides: list, extra: dict):
     holds = [{"where": "left"}] + ([{"where": {"kind": "box", "low": [-0.011, -1e-4], "high": [1e-4, 1e-4]}, "fix": "y"}] if len(sides) == 1 else [])
     body = {"shape": "polygon", "vertices": vertices, "position": [x, y], "mesh_size": 0.003, "contact_mesh_size": 0.003, "support": holds,
             "load": [{"where": side, "pressure": PUSH} for side in sides]}
-    return bodies(folder, SOFT | {"young": 1e6, "accuracy": 0.02, "end_time": 5e-3, "body": [body]} | extra)
+    return bodies(folder, SOFT | {"young": 1e6, "accuracy": 0.05, "dt": 2e-5, "end_time": 5e-3, "body": [body]} | extra)
 
 
 def centroid(vertices: list) -> tuple[float, float]:
