@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from ffimpact import scene
+from ffimpact.failure import BadInput
 from ffimpact.scenes import front
 from ffimpact.scenes.approach import onsets_of
 from tests.support.front import BLOCK, scene_of
@@ -141,3 +142,13 @@ def test_the_normal_turns_with_the_body(tmp_path):
                       obstacle__1__normal=[-s, c])
     strike, = fronts(turned)
     assert strike.onset.own_normal(0, turned.bodies[0]) == pytest.approx([0, 1]) and stretch(turned) == pytest.approx(stretch(scene_of(BLOCK, tmp_path)))
+
+
+@pytest.mark.parametrize("value, words", [
+    (0.5, "body.1.mesh_stretch: 0.5 is below 1 (accepted: 0, or from 1 to 20)"),
+    (21, "body.1.mesh_stretch: 21 is out of range"), ("long", "body.1.mesh_stretch: 'long'")])
+def test_other_ratios_are_refused(value, words, tmp_path):
+    """The message has the entry, the value and what is accepted."""
+    with pytest.raises(BadInput) as error:
+        scene_of(BLOCK, tmp_path, body__1__mesh_stretch=value)
+    assert str(error.value).startswith(words) and "accepted" in str(error.value)
