@@ -154,7 +154,7 @@ def test_fields_show_where_a_rigid_body_is(tmp_path):
     disc = np.linalg.norm(snapshot.points, axis=1) < 0.05 + 1e-6  # in the mesh it is about the origin
     moved = snapshot.fields["displacement"][disc]
     assert disc.sum() > 20 and all(np.isfinite(field).all() for field in snapshot.fields.values())
-    assert np.ptp(moved[:, 1]) < 1e-6 and snapshot.fields["von_mises"][disc].max() == 0 < snapshot.fields["von_mises"].max()
+    assert np.ptp(moved[:, 1]) < 1e-4 * abs(moved[:, 1]).max() and snapshot.fields["von_mises"][disc].max() == 0 < snapshot.fields["von_mises"].max()
     assert snapshot.fields["jacobian"][disc] == pytest.approx(1, abs=1e-4)
 
 

@@ -594,9 +594,11 @@ def _hit(body: Body, k: int, onset: Onset, ask: Asker) -> tuple[float, np.ndarra
     straight = ask.answer(bodies, onset.radius)
     arc, size = straight["touch_arc"], float(straight["used"]["contact_mesh_size"])
     # The indentation of a stiffer body is smaller by the ratio of the moduli, and so is its error,
-    # which is quadratic in the size. Its points still resolve the pressure.
-    resolved = RESOLVED * 2 / math.pi * arc * onset.radius
-    size = max(size, min(size / math.sqrt(_softer(k, onset, ask)), resolved))
+    # which is quadratic in the size. Its points still resolve the pressure. Rigid bodies have no
+    # unknowns to save.
+    if not body.rigid:
+        resolved = RESOLVED * 2 / math.pi * arc * onset.radius
+        size = max(size, min(size / math.sqrt(_softer(k, onset, ask)), resolved))
     depth, small = (
         onset.radius * (1 - math.cos(min(arc, math.pi / 2))),
         ask.small(onset.first, onset.second),
