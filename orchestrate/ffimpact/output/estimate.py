@@ -159,7 +159,8 @@ def settle(
         # Whether only scatter is left, which finer runs reduce too little.
         scatter = above == [SCATTERS] and estimated[SCATTERS] ** 2 / before > WORTH * accuracy
         before = estimated[SCATTERS]
-        exceeding = excess(estimated, accuracy, values["accuracy_of"])
+        made = 0.0 if fixed else accuracy / 2**refinements
+        exceeding = excess(estimated, accuracy, values["accuracy_of"], made)
         sentences, notes = ([], exceeding) if scatter or not above else (exceeding, [])
         lost = runs[0].summary.get("ellipticity_lost_time") is not None
         if not above or scatter or fixed or lost or refinements == MOST:
@@ -533,9 +534,10 @@ def touches(runs: Sequence[Answers]) -> list[str]:
     )
 
 
-def excess(estimated: Mapping[str, float], accuracy: float, also: str) -> list[str]:
+def excess(estimated: Mapping[str, float], accuracy: float, also: str, made: float) -> list[str]:
     """Returns a message about the results whose error estimate is above the accuracy, or above
-    LOOSER times the accuracy if they are not promised.
+    LOOSER times the accuracy if they are not promised. It names the accuracy that would do, as errors
+    are about proportional to the one that elements and steps were `made` for (0: they are given).
     """
     limits = {name: accuracy for name in wanted(also)} | {
         name: LOOSER * accuracy for name in ("contact_time", "peak_force") if name != also
@@ -548,10 +550,12 @@ def excess(estimated: Mapping[str, float], accuracy: float, also: str) -> list[s
     worst = max(
         [name for name in wanted(also) if name in above] or above, key=estimated.get, default=None
     )
+    needed = made / max([estimated[name] / limits[name] for name in above], default=1)
+    advice = f"ask for accuracy = {needed:.1g}" if made else "take smaller elements and steps"
     return (
         [
             f"estimated errors: {above[worst]}, requested {100 * accuracy:g} %: "
-            f"all above it: {', '.join(above.values())}: ask for a smaller accuracy if you need these numbers"
+            f"all above it: {', '.join(above.values())}: if you need these numbers, {advice}"
         ]
         if above
         else []
