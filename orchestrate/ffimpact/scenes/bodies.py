@@ -103,8 +103,10 @@ class Body:
 
     @property
     def stiffness(self) -> float:
-        """Young's modulus [Pa] in an impact, over two, with the stiffening by damping."""
-        return self.moduli[1] * (1 + self.nu)
+        """Young's modulus [Pa] in an impact, over two, with the stiffening by damping; infinite for a
+        rigid body.
+        """
+        return math.inf if self.rigid else self.moduli[1] * (1 + self.nu)
 
     @property
     def wave_speed(self) -> float:

@@ -85,11 +85,22 @@ class Front:
 
 def fronts(scene: Scene, onsets: list[Onset]) -> list[Front]:
     """Returns the flat strikes among the onsets of contact `onsets`. A strike is left out if the run
-    continues for more than BRIEF transits after it.
+    continues for more than BRIEF transits after it, or if it is the first contact of neither body:
+    the one before changes whether and how they meet.
     """
     if scene.values["until"] == "rest":
         return []
-    strikes = [onset for onset in onsets if math.isfinite(onset.time) and onset.closing > 0]
+    first = [
+        min((o.time for o in onsets if k in (o.first, o.second)), default=math.inf)
+        for k in range(len(scene.bodies))
+    ]
+    strikes = [
+        onset
+        for onset in onsets
+        if math.isfinite(onset.time)
+        and onset.closing > 0
+        and any(onset.time <= first[k] for k in (onset.first, onset.second) if k >= 0)
+    ]
     landings = [front for onset in strikes if (front := _front(scene, onset, []))]
     plane = [k for k in range(len(scene.bodies)) if _stays_plane(scene, k, onsets, landings)]
     if plane:
