@@ -16,11 +16,12 @@ from numpy.polynomial import Polynomial
 from .. import progress
 from ..failure import BadInput
 from ..geometry.outlines import Outline, Shape
+from ..geometry.time_functions import farthest
 from ..input.dimension import PLANE_STRAIN
 from ..mesh import mesh
 from .bodies import Body
 from .conditions import WHOLE
-from .obstacles import Obstacle
+from .obstacles import Drive, Obstacle
 from .scene import Scene, gap_between
 
 __all__ = ["Onset", "loaded_pull", "onsets_of", "refuse_nothing", "refuse_sinking", "turned"]
@@ -229,7 +230,7 @@ def _onset(scene: Scene, first: int, second: int) -> Onset:
     normal = outlines[0].normal_from(outlines[1])
     if not met:  # a later contact may have any normal: all of the velocity counts as closing
         driven = body.driven or other.driven
-        return Onset(
+        never_met = Onset(
             first,
             second,
             outlines,
@@ -242,6 +243,7 @@ def _onset(scene: Scene, first: int, second: int) -> Onset:
             normal,
             never and not driven,
         )
+        return replace(never_met, pressed=_pressed(scene, never_met))
     along, across = _parts(pull, normal)
     onset = Onset(
         first,
@@ -297,16 +299,27 @@ def loaded_pull(body: Body) -> float:
 
 def _pressed(scene: Scene, onset: Onset) -> float:
     """Returns the closing speed [m/s] of an impact with as wide a contact as the motion of a
-    support makes. The support moves on by a depth [m] after the onset of contact.
+    support or of an obstacle makes, which moves on by a depth [m] after the onset of contact.
 
     Half-widths b of discs: b^2 = 0.8 R depth under a support (R/10 deep), b^2 = 2 R^2 v/c in an
     impact (edp/core/input/sizes.idp). Of balls: b^2 = R depth and b = 1.31 R (v/c)^0.4.
     """
     bodies = [scene.bodies[k] for k in (onset.first, onset.second) if k >= 0]
+    met = math.isfinite(onset.time)
     ends = [support.path()[1] for body in bodies for support in body.supports if support.moves]
-    share = min(0.5, onset.closing * max([0.0, *(end - onset.time for end in ends)]) / onset.radius)
+    depths = [onset.closing * (end - onset.time) for end in ends if met]
+    drive = scene.obstacles[-1 - onset.second].drive if onset.second < 0 else None
+    if drive and (bodies[0].supports or _between(scene, drive)):
+        moved = farthest(drive.translation)[0] - drive.shift(onset.time if met else 0.0)
+        depths.append(abs(float(moved @ onset.normal)))
+    share = min(0.5, max([0.0, *depths]) / onset.radius)
     bar_speed = min(math.sqrt(body.young / body.density) for body in bodies)
     return bar_speed * (0.4 * share if scene.dimension is PLANE_STRAIN else 0.5 * share**1.25)
+
+
+def _between(scene: Scene, drive: Drive) -> bool:
+    """Whether a free body cannot give way to the obstacle with this drive, as there are others."""
+    return any(obstacle.drive is not drive for obstacle in scene.obstacles)
 
 
 def _lever(shape: Shape, point: np.ndarray, n: np.ndarray) -> float:
