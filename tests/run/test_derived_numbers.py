@@ -163,7 +163,7 @@ def test_velocities_at_the_end_of_contact_and_of_the_run(tmp_path):
     """A disc that spins falls on a rough floor and flies on until end_time: at the end of contact it
     has the rebound, at the end of the run g t less, and the same spin and velocity along the
     floor but for the vibration. Without end_time the run does not go on."""
-    tables = {"law": "neohookean", "young": 7e6, "nu": 0.45, "density": 1722, "gravity": 9.81, "accuracy": 0.1,
+    tables = {"law": "neohookean", "young": 7e6, "nu": 0.45, "density": 1722, "gravity": 9.81, "accuracy": 0.05,
               "body": [{"name": "disc", "shape": "disc", "radius": 0.05, "position": [0, 0.06], "velocity": [1, -3], "spin": 50}],
               "obstacle": [{"name": "floor", "kind": "plane", "point": [0, 0], "normal": [0, 1]}], "contact": {"friction_static": 0.3}}
     result = run.run(read_scene(tables | {"end_time": 0.03}, ROOT, "on"), {"fields": 0}, tmp_path / "on", estimate=False)

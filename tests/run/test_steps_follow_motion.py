@@ -84,3 +84,24 @@ def test_a_strike_after_a_long_rest_is_resolved(tmp_path):
     assert late["steps"] < 1.5 * soon["steps"]
     for answer in ("impulse", "rebound_vy_1", "peak_force"):
         assert late[answer] == pytest.approx(soon[answer], rel=0.01)
+
+
+def test_pressing_takes_few_steps(tmp_path):
+    """A disc between two plates, of which one moves on by a tenth of the radius in a third of a
+    second, 3000 transits: contact, sizes and penalty are those of the depth that the plate reaches.
+    The force F of either plate follows from delta = F/(pi E*) (2 ln(4 R/b) - 1),
+    b^2 = 4 F R/(pi E*), for a disc that is pressed by delta on either side (Johnson 1985, 5.57)."""
+    radius, young, nu, depth = 0.02, 4e6, 0.3, 2.5e-4
+    run = bodies(tmp_path, {**LAW, "young": young, "nu": nu, "density": 1150, "accuracy": 0.02, "end_time": 0.3,
+                            "body": [{"shape": "disc", "radius": radius, "position": [0, radius]}],
+                            "obstacle": [{"kind": "plane", "point": [0, 0], "normal": [0, 1]},
+                                         {"kind": "plane", "point": [0, 2 * radius], "normal": [0, -1],
+                                          "motion": [0, f"-{2 * depth}*(1-cos(pi*t/0.3))/2"]}]})
+    stiffness = young / (1 - nu**2)
+    force = 1.0
+    for _ in range(60):
+        force = depth * math.pi * stiffness / (2 * math.log(4 * radius / math.sqrt(4 * force * radius / (math.pi * stiffness))) - 1)
+    last = run.history["t"] > 0.29
+    plates = run.history["normal_force"][last]   # both
+    assert plates.mean() / 2 == pytest.approx(force, rel=0.04)
+    assert run.summary["steps"] < 800 and run.summary["energy_drift"] < 1e-6

@@ -54,6 +54,46 @@ def test_what_is_no_flat_strike(entries, tmp_path):
     assert fronts(scene_of(BLOCK, tmp_path, **entries)) == []
 
 
+PAD = """
+accuracy = 0.02
+law = "neohookean"
+young = 5e6
+nu = 0.3
+density = 1e3
+end_time = 0.02
+[[body]]
+name = "pad"
+shape = "rectangle"
+width = 0.1
+height = 0.1
+position = [0, 0.06]
+[[body]]
+name = "weight"
+shape = "rectangle"
+width = 0.4
+height = 0.1
+rigid = true
+mass = 500
+position = [0, 0.161]
+velocity = [0, -0.6]
+[[body]]
+name = "plate"
+shape = "rectangle"
+width = 0.6
+height = 0.02
+young = 2e11
+position = [0, 0]
+support = [{where = "left"}, {where = "right"}]
+"""
+
+
+def test_a_body_that_another_one_shields_is_not_struck(tmp_path):
+    """A weight falls flat on a pad that lies on a steel plate. As rigid bodies weight and plate would
+    meet later; the pad is in between, so its front alone is resolved."""
+    strike, = fronts(scene_of(PAD, tmp_path))
+    assert strike.crossed == (0,)
+
+
 def test_a_tilt_that_closes_before_the_front_has_passed_an_element_is_flat(tmp_path):
     """At a hundred times the speed the late corner lands while the front is in the first element.
     """
