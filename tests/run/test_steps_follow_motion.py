@@ -105,3 +105,4 @@ def test_pressing_takes_few_steps(tmp_path):
     plates = run.history["normal_force"][last]   # both
     assert plates.mean() / 2 == pytest.approx(force, rel=0.04)
     assert run.summary["steps"] < 800 and run.summary["energy_drift"] < 1e-6
+    assert not [words for words in run.summary["warnings"] if words.startswith(("not over", "chatter"))]

@@ -735,9 +735,8 @@ def _ending(e: Evidence) -> Iterator[Sentence]:
     strikes = record["impulse"] > 2 * mass * facts["body_acceleration"] * (
         record["contact_time"] or 0
     )  # more than twice the impulse of the weight: an impact, not a body at rest
-    pushed = (
-        facts["supports_move"] or facts["pushing_loads"] > 0
-    )  # held or loaded until the end, so no end of contact is expected
+    # Held, loaded or pressed until the end: no end of contact is expected.
+    pushed = facts["supports_move"] or facts["pushing_loads"] > 0 or facts["pressed"]
     several = len(e.bodies) > 1
     in_contact = facts["in_contact"] and not pushed and (several or strikes)
     if record["ended"] != "rest" and facts["rolling"] == 0 and (facts["until_rest"] or in_contact):
