@@ -142,7 +142,7 @@ def killed(tmp_path_factory) -> Path:
     """out.part of a run whose Python process was killed."""
     out = tmp_path_factory.mktemp("killed") / "out"
     process = start(*COMMAND, str(out))
-    wait_for(lambda: rows_known(out.with_name("out.part") / "checkpoint") > 100)
+    wait_for(lambda: rows_known(out.with_name("out.part") / "checkpoint") > 75)
     freefems = children(process)
     process.kill()
     process.communicate()
