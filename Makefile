@@ -1,4 +1,4 @@
-# The front door. Parameters live in edp/core/input/parameters.idp, scenes in orchestrate/ffimpact/scenes/*.toml.
+# The front door. Parameters live in edp/program/input/parameters.idp, scenes in orchestrate/ffimpact/scenes/*.toml.
 # ARGS is handed on:  make disc-normal ARGS="--set speed=4 --out results/slow"
 PYTHON := .venv/bin/python
 READY := .venv/.ready
@@ -12,7 +12,7 @@ help: ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
 
 setup: $(READY) ## install what is missing: FreeFem++, system libraries, .venv with the packages of requirements.lock
-$(READY): requirements.lock orchestrate/setup.sh edp/describe.edp
+$(READY): requirements.lock orchestrate/setup.sh edp/program/describe.edp
 	@orchestrate/setup.sh
 	@touch $@
 

@@ -22,7 +22,7 @@ NUS = (0.3, 0.4, 0.45, 0.47, 0.49, 0.499, 0.4999, 0.5)  # 0.5: law = incompressi
 BASE = {"law": "neohookean", "speed": 4.0, "accuracy": 2e-3, "fields": 0}
 BODIES = {"disc": "disc-normal", "ball": "ball-axisymmetric"}
 LIMIT = 120.0  # longest time of a run [s]
-# Up to this nu both treatments of the volume are the same (edp/core/law/material.idp).
+# Up to this nu both treatments of the volume are the same (edp/program/law/material.idp).
 PLAIN = 0.45
 # Largest ratio of the processor time at the largest nu to that at PLAIN.
 DEAREST = 1.5

@@ -280,7 +280,7 @@ def equations(prefix: str = "") -> str:
     """A table of the equations of the paper: for each the lines of scripts and of kernels that have
     it, and what these say of it."""
     definitions: dict[int, dict[str, list[tuple[Path, int, str]]]] = {k: {"idp": [], "hpp": []} for k in range(1, 16)}
-    for path in sorted([*(ROOT / "edp/core").rglob("*.idp"), *(ROOT / "edp/kernels").glob("*.hpp")]):
+    for path in sorted([*(ROOT / "edp/program").rglob("*.idp"), *(ROOT / "edp/kernels").glob("*.hpp")]):
         for number, line in enumerate(path.read_text().splitlines(), 1):
             match = EQUATION.search(line)
             if match and line[: match.start()].strip():  # a line of code, not a comment

@@ -17,7 +17,7 @@ def measure():
 
 @pytest.fixture(scope="session")
 def disc(tmp_path_factory):
-    """disc(name=value, ...): a run of edp/disc-plane.edp with these flags, without Python;
+    """disc(name=value, ...): a run of edp/program/disc-plane.edp with these flags, without Python;
     disc(script="disc-block", ...) runs another script."""
     @cache
     def go(**flags) -> runs.Outcome:
@@ -27,7 +27,7 @@ def disc(tmp_path_factory):
 
 @pytest.fixture
 def march(tmp_path):
-    """march(tables, name=value, ...): a run of edp/bodies.edp for the scene in these tables."""
+    """march(tables, name=value, ...): a run of edp/program/bodies.edp for the scene in these tables."""
     numbers = count()
     return lambda tables, **flags: runs.bodies(tmp_path / str(next(numbers)), tables, **flags)
 

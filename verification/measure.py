@@ -53,10 +53,10 @@ def measure(script: str, **flags: Value | Path) -> dict[str, float]:
 
 
 def disc(folder: Path, script: str = "disc-plane", **flags: Value | Path) -> Outcome:
-    """A run of edp/<script>.edp with these flags in `folder`."""
+    """A run of edp/program/<script>.edp with these flags in `folder`."""
     for name in ("summary.json", "record.json"):  # of an earlier run in the folder
         (folder / name).unlink(missing_ok=True)
-    _start(f"edp/{script}.edp", flags | {"out": folder})
+    _start(f"edp/program/{script}.edp", flags | {"out": folder})
     return outcome(folder)
 
 
@@ -71,16 +71,16 @@ def bodies(folder: Path, tables: dict, **flags: Value | Path) -> Outcome:
     flags, in `folder`/run."""
     out = folder / "run"
     shutil.rmtree(out, ignore_errors=True)
-    _start(f"edp/{dimension.of_scene(tables).script}.edp", prepared(folder, tables) | flags | {"out": out})
+    _start(f"edp/program/{dimension.of_scene(tables).script}.edp", prepared(folder, tables) | flags | {"out": out})
     return outcome(out)
 
 
 def solid_bodies(folder: Path, scene: solids.Scene, **flags: Value | Path) -> Outcome:
-    """A run of edp/bodies-3d.edp for a scene in three dimensions (solids.py), with further flags,
+    """A run of edp/program/bodies-3d.edp for a scene in three dimensions (solids.py), with further flags,
     in `folder`/run."""
     out = folder / "run"
     shutil.rmtree(out, ignore_errors=True)
-    _start("edp/bodies-3d.edp", solids.write(scene, folder) | flags | {"out": out})
+    _start("edp/program/bodies-3d.edp", solids.write(scene, folder) | flags | {"out": out})
     return outcome(out)
 
 

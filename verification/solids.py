@@ -1,4 +1,4 @@
-"""Meshes and scene files of bodies in three dimensions for edp/bodies-3d.edp.
+"""Meshes and scene files of bodies in three dimensions for edp/program/bodies-3d.edp.
 
 The bodies are bricks and balls of tetrahedra, with one region for each body.
 """
@@ -116,7 +116,7 @@ def _mesh(body: Body, copies: int) -> solid_mesh.SolidMesh:
 
 
 def data(scene: Scene) -> str:
-    """The text of scene.dat (edp/core/input/scene-file.idp)."""
+    """The text of scene.dat (edp/program/input/scene-file.idp)."""
     def numbers(*groups) -> str:
         return " ".join(repr(float(x)) for group in groups for x in group)
     lines = ["ffimpact-bodies-3d 1", f"copies {scene.copies}", "disc " + numbers((*scene.ball, 0.0, 0.0, 0.0, 0.0)), f"bodies {len(scene.bodies)}"]

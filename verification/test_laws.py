@@ -1,4 +1,4 @@
-"""Mooney-Rivlin and Ogden laws (edp/core/law) in every dimension, as examples of laws with
+"""Mooney-Rivlin and Ogden laws (edp/program/law) in every dimension, as examples of laws with
 parameters of their own."""
 
 import re

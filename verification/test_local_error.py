@@ -1,4 +1,4 @@
-"""The local error of a step (edp/core/run/control.idp) for a smooth force, against a fine
+"""The local error of a step (edp/program/run/control.idp) for a smooth force, against a fine
 reference."""
 
 import math

@@ -1,4 +1,4 @@
-"""The conserving gap between deformable bodies (edp/core/contact/pair.idp), paper (9), for a
+"""The conserving gap between deformable bodies (edp/program/contact/pair.idp), paper (9), for a
 randomly deformed disc and block."""
 
 from pathlib import Path

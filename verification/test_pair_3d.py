@@ -1,5 +1,5 @@
-"""Bodies in three dimensions: gap between bodies (edp/core/contact/pair.idp, paper (9)), rigid
-obstacles, and runs of edp/bodies-3d.edp."""
+"""Bodies in three dimensions: gap between bodies (edp/program/contact/pair.idp, paper (9)), rigid
+obstacles, and runs of edp/program/bodies-3d.edp."""
 
 import math
 from pathlib import Path
@@ -17,7 +17,7 @@ CASES = [{}, {"degree": 1, "tilt": 0.7}, {"tilt": 2.5, "depth": 0.1}, {"corner":
 
 @pytest.fixture
 def march(tmp_path):
-    """march(scene, name=value, ...): a run of edp/bodies-3d.edp for the scene."""
+    """march(scene, name=value, ...): a run of edp/program/bodies-3d.edp for the scene."""
     return lambda scene, name="run", **flags: runs.solid_bodies(tmp_path / name, scene, **{"accuracy": 0.1} | flags)
 
 

@@ -1,5 +1,5 @@
 """Pairwise contact (14), (15) in the time integration: a disc on a free block without friction
-(edp/disc-block.edp, paper, section 3.2)."""
+(edp/program/disc-block.edp, paper, section 3.2)."""
 
 import numpy as np
 import pytest

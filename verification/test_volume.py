@@ -1,4 +1,4 @@
-"""V1, V11: nu -> 0.5 against published and independent solutions (edp/core/law/volume.idp)."""
+"""V1, V11: nu -> 0.5 against published and independent solutions (edp/program/law/volume.idp)."""
 
 from math import log2
 

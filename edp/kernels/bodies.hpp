@@ -1,7 +1,7 @@
 // bodies.hpp: residual, tangent, energy and stresses of the bodies, from the sparse matrices of
-// edp/core/discrete, in any dimension D. Nodal arrays are (node, component). With the nodes a of an
-// element, F_iJ = delta_iJ + sum N_a,J u_ai. For bodies of revolution (H = 1) F_33 = 1 + u_r/r, and
-// N_a/r takes the place of a derivative. The quadrature points of an element are consecutive.
+// edp/program/discrete, in any dimension D. Nodal arrays are (node, component). With the nodes a of
+// an element, F_iJ = delta_iJ + sum N_a,J u_ai. For bodies of revolution (H = 1) F_33 = 1 + u_r/r,
+// and N_a/r takes the place of a derivative. The quadrature points of an element are consecutive.
 // Arrays over the nq points are stacked: component k of point q is at k nq + q.
 #pragma once
 #include <algorithm>

@@ -1,5 +1,5 @@
 // contact-law.hpp: forces on one contact point in a step and their derivatives: the normal force
-// (10) and, with friction, the tangential force (11)-(13). Scripted in core/contact/normal.idp,
+// (10) and, with friction, the tangential force (11)-(13). Scripted in program/contact/normal.idp,
 // friction.idp and candidate-forces.idp, which define the symbols. Exports Law, Candidate, Forces.
 #pragma once
 #include <algorithm>

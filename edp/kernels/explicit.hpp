@@ -1,6 +1,6 @@
 // explicit.hpp: contact in an explicit substep h by velocity Verlet, with the lumped mass M. It is
 // solved implicitly in the middle of a substep, so the stable h depends on neither the penalty nor
-// slip_velocity (core/step/explicit.idp has the equations of the bodies):
+// slip_velocity (program/step/explicit.idp has the equations of the bodies):
 //   d = h v- - (h^2/2) M^-1 B^T tau,   v+ = v- - h M^-1 B^T tau = 2 d/h - v-                    (a)
 // The forces tau follow (10)-(13) in conserving form: t_N = (Phi(q1) - Phi(q0))/(q1 - q0), and
 // friction at the mean velocity S d/h. With (a) this is the problem of contact-solve.hpp with the

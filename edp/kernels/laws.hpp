@@ -1,4 +1,4 @@
-// laws.hpp: the constitutive laws of edp/core/law at one quadrature point: energy, stress, moduli
+// laws.hpp: the laws of edp/program/law at one quadrature point: energy, stress, moduli
 // and ellipticity, with damping, relaxation and the volume term. All tensors have three dimensions;
 // in plane strain F_33 = C_33 = 1. Stresses and moduli in Pa. A new law is a struct derived from
 // Conserving and one line in find(); svk.idp and neohookean.idp define the symbols,

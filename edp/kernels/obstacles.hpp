@@ -17,7 +17,7 @@ typedef Eigen::Vector3d Point;             // z = 0 in the plane
 typedef Eigen::Matrix3d Rotation;
 
 // A function of time, of cubic Hermite polynomials between knots, linear before and after them
-// (functionAt() of core/input/conditions.idp).
+// (functionAt() of program/input/conditions.idp).
 struct TimeFunction {
   std::vector<double> time, value, slope;
 

@@ -1,5 +1,5 @@
 // pairs.hpp: the gap between deformable bodies (9) and its conserving gap Jacobian, as
-// core/contact/pair.idp, which derives the formulas: search for contact candidates, closest-point
+// program/contact/pair.idp, which derives the formulas: search for candidates, closest-point
 // projection onto the facets of the counter-body (edges in the plane, faces in space; A is the
 // dimension), rows of B and S, and the geometric contact stiffness at vertices. A candidate has the
 // number counterBody np + point. Exports Pairs.

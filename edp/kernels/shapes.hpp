@@ -1,5 +1,5 @@
 // shapes.hpp: rigid obstacles (7) in their own frame: signed gap, outward normal and piece of the
-// closest point. A Shape is made from the numbers that core/contact/shapes.idp describes; make()
+// closest point. A Shape is made from the numbers that program/contact/shapes.idp describes; make()
 // knows their kinds. The triangle mesh is in surface.hpp; obstacles.hpp moves the shapes.
 // Exports Shape, Nearest and make().
 #pragma once

@@ -13,8 +13,8 @@ SMOOTH = BALL | dict(friction_static=0.6, friction_dynamic=0.6)
 
 
 def history(folder, flags: dict) -> dict:
-    """The history of edp/ball-plane.edp."""
-    done = freefem.find().call("edp/ball-plane.edp", *freefem.words_of(flags | {"out": folder / "out"}), timeout=300)
+    """The history of edp/program/ball-plane.edp."""
+    done = freefem.find().call("edp/program/ball-plane.edp", *freefem.words_of(flags | {"out": folder / "out"}), timeout=300)
     assert done.returncode == 0, done.stderr
     return results.read_history(folder / "out")
 

@@ -1,5 +1,5 @@
 """`until = rest`: bodies bounce under gravity with decreasing height until all are at rest
-(edp/core/run/rest.idp)."""
+(edp/program/run/rest.idp)."""
 
 import math
 

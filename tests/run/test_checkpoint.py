@@ -20,7 +20,7 @@ from tests.support.cli import call, is_alive, start, wait_for
 from verification.measure import prepared
 
 COARSE = dict(law="neohookean", nu=0.4)
-# Flags of edp/disc-plane.edp, steps between checkpoints, and rows of the history that the last
+# Flags of edp/program/disc-plane.edp, steps between checkpoints, and rows of the history that the last
 # checkpoint must have.
 SCENES = {
     "energy-momentum": (COARSE | dict(accuracy=0.1, angle=60, friction_static=0.7, friction_dynamic=0.5, fields=5), 7, 20),

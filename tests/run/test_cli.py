@@ -64,7 +64,7 @@ def test_scripts_that_do_not_answer_are_one_line(monkeypatch, capsys):
     monkeypatch.setattr(describe, "LIMIT", 1e-3)
     assert main(["run", "disc-normal", "--set", "nu=0.43210987"]) == 13
     error = capsys.readouterr().err
-    assert re.match(r"ffimpact: \S+ does not finish edp/describe.edp in 0.001 s", error) and error.count("\n") == 1
+    assert re.match(r"ffimpact: \S+ does not finish edp/program/describe.edp in 0.001 s", error) and error.count("\n") == 1
 
 
 def test_quiet_leaves_warnings(fake, tmp_path, capsys, monkeypatch):

@@ -118,7 +118,7 @@ def test_full_disk_of_its_own(tmp_path, files):
     """
     program, disk = freefem.find(), tmp_path / "disk"
     disk.mkdir()
-    words = program.words(parameters.ROOT / "edp/disc-plane.edp", *COARSE, "-fields", "4", "-checkpoint_every", "10", "-out", "disk/out")
+    words = program.words(parameters.ROOT / "edp/program/disc-plane.edp", *COARSE, "-fields", "4", "-checkpoint_every", "10", "-out", "disk/out")
     script = (f"mount -t tmpfs -o nr_inodes={files} none disk || exit 77; \"$@\" > said 2> error; echo $? > code; ls -R disk > left\n"
               "mount -o remount,nr_inodes=100 disk && rm -f said\n"
               "if [ -e disk/out/checkpoint ]; then \"$@\" -restart disk/out/checkpoint; else \"$@\"; fi > said || exit 1; ls disk/out > finished")

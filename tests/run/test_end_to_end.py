@@ -202,7 +202,7 @@ def test_no_description_without_freefem(tmp_path, monkeypatch):
     program.write_text(f'#!/bin/sh\ncase "$*" in *describe*1.25*) exit 8;; esac\nexec {shutil.which("FreeFem++")} "$@"\n')
     program.chmod(0o755)
     monkeypatch.setenv("FREEFEM", str(program))
-    with pytest.raises(NotInstalled, match=r"does not run edp/describe.edp \(exit code 8\)"):
+    with pytest.raises(NotInstalled, match=r"does not run edp/program/describe.edp \(exit code 8\)"):
         describe({"speed": 1.25})
 
 

@@ -1,4 +1,4 @@
-"""`start = "equilibrium"` (edp/core/run/equilibrium.idp), and overlaps at the start that are the depth at rest."""
+"""`start = "equilibrium"` (edp/program/run/equilibrium.idp), and overlaps at the start that are the depth at rest."""
 
 import math
 

@@ -117,9 +117,9 @@ BAD = {
 
 @pytest.fixture(scope="module")
 def direct():
-    """direct(flag, value, ...): runs edp/disc-plane.edp without Python."""
+    """direct(flag, value, ...): runs edp/program/disc-plane.edp without Python."""
     program = freefem.find()  # the real one, also if a test replaces it
-    return lambda *flags: program.call("edp/disc-plane.edp", *flags, timeout=120)
+    return lambda *flags: program.call("edp/program/disc-plane.edp", *flags, timeout=120)
 
 
 @pytest.fixture(scope="module")

@@ -1,4 +1,4 @@
-"""The friction laws of edp/core/contact/friction.idp, tabulated by the real FreeFem++, and their
+"""The friction laws of edp/program/contact/friction.idp, tabulated by the real FreeFem++, and their
 figure."""
 
 import numpy as np

@@ -71,7 +71,7 @@ def test_where_they_cannot_be_built_nothing_loads_them(cache, program, monkeypat
 def test_a_plugin_of_another_version_is_left_alone(tmp_path):
     """The argument has the number of the calls that the scripts use."""
     program = replace(freefem.find(), plugin='-Dkernels1="/no/such/plugin"')
-    program.call("edp/disc-plane.edp", "-accuracy", "0.2", "-end_time", "1e-4", "-out", str(tmp_path / "out"), check=True)
+    program.call("edp/program/disc-plane.edp", "-accuracy", "0.2", "-end_time", "1e-4", "-out", str(tmp_path / "out"), check=True)
     assert json.loads((tmp_path / "out/record.json").read_text())["kernels"] == 0
 
 

@@ -56,7 +56,7 @@ def command(route: str, out: Path, speed: str = "8", **changed: str) -> list[str
         file.write_text(SWEEP if speed == "8" else SWEEP.replace("0.4", "0.3"))
         return [sys.executable, "-m", "ffimpact", "sweep", str(file), "--out", str(out)]
     if route.startswith("direct"):
-        return freefem.find().words("edp/disc-plane.edp", *freefem.words_of(values | {"out": out}))
+        return freefem.find().words("edp/program/disc-plane.edp", *freefem.words_of(values | {"out": out}))
     return [sys.executable, "-m", "ffimpact", "run", "disc-normal", "--quiet", "--set", *(f"{name}={value}" for name, value in values.items()), "--out", str(out)]
 
 

@@ -59,7 +59,7 @@ def test_unwritten_memory_changes_nothing(tmp_path, preloaded, name):
     for fill in ("000", "127"):
         environment = program.environment | {"FILL": fill, "LD_PRELOAD": f"{preloaded}:{program.environment.get('LD_PRELOAD', '')}"}
         flags = freefem.words_of(values | {"accuracy": 0.2, "out": tmp_path / fill})
-        done = program.call(f"edp/{script}.edp", *flags, env=environment)
+        done = program.call(f"edp/program/{script}.edp", *flags, env=environment)
         assert done.returncode == 0, done.stderr
         histories.append((tmp_path / fill / "history.csv").read_text())
     assert histories[0] == histories[1]

@@ -99,7 +99,7 @@ OWN = [
 def own(request, tmp_path_factory):
     """The mesh that the scripts make without Python, over its radius, and its requested sizes."""
     radius, bulk, contact, arc, symmetry = request.param
-    folder, core = tmp_path_factory.mktemp("own"), parameters.ROOT / "edp/core"
+    folder, core = tmp_path_factory.mktemp("own"), parameters.ROOT / "edp/program"
     rooms = "".join(f'include "{core}/input/{room}.idp"\n' for room in ("flags", "mesh-file", "outline", "sizes"))
     (folder / "own.edp").write_text(
         f'string script = "own";\n{rooms}contactArc = {arc!r};\ninclude "{core}/input/disc.idp"\n'

@@ -168,7 +168,7 @@ def test_progress_arrives(fake, tmp_path):
     them, too."""
     seen = []
     flags = {"fields": 0, "mesh": __file__, "out": tmp_path}
-    assert freefem.run(freefem.find(), "edp/disc-plane.edp", flags, tmp_path / "log.txt", seen.append) == (0, "")
+    assert freefem.run(freefem.find(), "edp/program/disc-plane.edp", flags, tmp_path / "log.txt", seen.append) == (0, "")
     assert seen[0] == freefem.At(0.25, 0.001, 50) and len(seen) == 3
     assert "progress 0.25" in (tmp_path / "log.txt").read_text()
 

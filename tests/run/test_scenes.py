@@ -209,7 +209,7 @@ def test_bodies_are_drawn_where_they_are(mine):
 # ---- what is refused
 
 def freefem_run(*flags: str, script: str = "bodies") -> subprocess.CompletedProcess:
-    return freefem.find().call(f"edp/{script}.edp", *flags)
+    return freefem.find().call(f"edp/program/{script}.edp", *flags)
 
 
 def values(folder) -> dict:

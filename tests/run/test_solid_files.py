@@ -1,4 +1,4 @@
-"""Meshes and scene files of edp/bodies-3d.edp: every error is one line with exit code 10, and no
+"""Meshes and scene files of edp/program/bodies-3d.edp: every error is one line with exit code 10, and no
 files are left."""
 
 import re
@@ -51,7 +51,7 @@ SCENES = {
 def refused(folder, words: str) -> None:
     words = words.replace("mesh: ", f"mesh: {folder}/mesh.mesh: ")
     flags = {"mesh": folder / "mesh.mesh", "bodies": folder / "scene.dat", "end_time": 1e-5, "out": folder / "out"}
-    done = freefem.find().call("edp/bodies-3d.edp", *freefem.words_of(flags))
+    done = freefem.find().call("edp/program/bodies-3d.edp", *freefem.words_of(flags))
     assert done.returncode == 10 and done.stderr.count("\n") == 1 and re.match(f"ffimpact: {words}", done.stderr), done.stderr
     assert not (folder / "out").exists()
 

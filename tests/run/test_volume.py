@@ -1,4 +1,4 @@
-"""nu -> 0.5 (edp/core/law/volume.idp): volume as the mean over an element, without locking, in
+"""nu -> 0.5 (edp/program/law/volume.idp): volume as the mean over an element, without locking, in
 scripts and kernels."""
 
 import pytest

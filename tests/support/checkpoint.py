@@ -21,7 +21,7 @@ EFFORT = ("start_seconds", "wall_seconds", "total_seconds", "cpu_seconds", "esti
 def direct(flags: dict, out: Path, script: str = "disc-plane") -> subprocess.Popen:
     """Starts FreeFem++ without Python."""
     program = freefem.find()
-    return subprocess.Popen(program.words(f"edp/{script}.edp", *freefem.words_of(flags | {"out": out})), cwd=parameters.ROOT, text=True,
+    return subprocess.Popen(program.words(f"edp/program/{script}.edp", *freefem.words_of(flags | {"out": out})), cwd=parameters.ROOT, text=True,
                             env=program.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
 

@@ -12,7 +12,7 @@ COARSE = ("-law", "neohookean", "-nu", "0.4", "-accuracy", "0.4")
 
 def start(*flags: str, cwd: Path, script: str = "disc-plane", **options) -> subprocess.Popen:
     program = freefem.find()
-    return subprocess.Popen(program.words(parameters.ROOT / f"edp/{script}.edp", *flags), cwd=cwd, text=True,
+    return subprocess.Popen(program.words(parameters.ROOT / f"edp/program/{script}.edp", *flags), cwd=cwd, text=True,
                             env=program.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)
 
 

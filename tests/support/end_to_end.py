@@ -11,7 +11,7 @@ from ffimpact.output.evaluate import evaluate
 
 
 def direct(*flags: str) -> subprocess.CompletedProcess:
-    process = freefem.find().call("edp/disc-plane.edp", *flags, timeout=120)
+    process = freefem.find().call("edp/program/disc-plane.edp", *flags, timeout=120)
     evaluate(Path(flags[flags.index("-out") + 1]))
     return process
 

@@ -93,7 +93,7 @@ def write_scene(folder: Path, values: dict[str, str]) -> None:
     """Writes scene.toml as the scripts do, with the used value of every parameter. The snapshots
     show half a disc."""
     flags = [word for name, text in values.items() for word in (f"-{name}", text)]
-    answer = subprocess.run([REAL, "-nw", "-ne", "-v", "0", "edp/describe.edp", *flags], capture_output=True, text=True)
+    answer = subprocess.run([REAL, "-nw", "-ne", "-v", "0", "edp/program/describe.edp", *flags], capture_output=True, text=True)
     used = json.loads(answer.stdout)["used"] | {"symmetry": "half"}
     (folder / "scene.toml").write_text('script = "disc-plane"\n' + "".join(f"{name} = {json.dumps(value)}\n" for name, value in used.items()))
 

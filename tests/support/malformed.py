@@ -55,7 +55,7 @@ def by_python(capsys, words: str, *arguments: str, code: int = 10) -> None:
 def directly(words: str, *flags: str, code: int = 10) -> str:
     """Runs FreeFem++ without Python and returns its message."""
     before = tree(Path.cwd())
-    process = freefem.find().call(parameters.ROOT / "edp/disc-plane.edp", *flags, cwd=None, timeout=20)
+    process = freefem.find().call(parameters.ROOT / "edp/program/disc-plane.edp", *flags, cwd=None, timeout=20)
     check(process.returncode, process.stderr, words, code, before)
     return process.stderr[len("ffimpact: "):-1]
 

@@ -145,7 +145,7 @@ def speeds(times, error=1e-5, nu=(0.3, 0.45)) -> pd.DataFrame:
 
 
 def laws() -> pd.DataFrame:
-    """The friction laws as edp/friction-laws.edp tabulates them, at fewer velocities."""
+    """The friction laws as edp/program/friction-laws.edp tabulates them, at fewer velocities."""
     epsilon, parts = VALUES["slip_velocity"], []
     v = np.sort(np.append(np.linspace(-4, 4, 81), [1 - 1e-12, 1e-12 - 1])) * epsilon
     stick = np.abs(v) < epsilon * (1 - 1e-14)

@@ -8,7 +8,7 @@ from ffimpact.input import flags, parameters
 
 
 def test_the_flags_of_the_scripts_are_those_of_the_table():
-    """edp/core/input/parameters.idp equals the text generated from the table by python -m
+    """edp/program/input/parameters.idp equals the text generated from the table by python -m
     ffimpact.input.flags."""
     assert flags.FILE.read_text() == flags.written()
 

@@ -1,11 +1,11 @@
-"""The folders of edp/core: the names that other folders use."""
+"""The folders of edp/program: the names that other folders use."""
 
 import re
 from pathlib import Path
 
 from ffimpact.places import ROOT
 
-CORE = ROOT / "edp/core"
+CORE = ROOT / "edp/program"
 MOST = 436
 TYPE = r"(?:real|int|bool|string|matrix|func|macro|varf|fespace|mesh3?|Qh|Linear|Quadratic|Piecewise|QF2)\b"
 DECLARED = re.compile(rf"(?:^|[;{{}}(,]|\b(?:IFMACRO\([^)]*\)))\s*({TYPE}(?:\s*\[[^\]]*\])*)\s*&?\s*([^;{{}}]*)", re.MULTILINE)
@@ -43,16 +43,16 @@ def names(text: str) -> set[str]:
 def leaving() -> dict[str, set[str]]:
     """The names of each folder that other folders or the scripts use. A file that declares a name
     itself uses its own."""
-    texts = {path: statements(path) for path in [*CORE.rglob("*.idp"), *CORE.parent.glob("*.edp"), *CORE.parent.glob("*.idp")]}
+    texts = {path: statements(path) for path in CORE.rglob("*.?dp")}
     words = {path: set(re.findall(r"[A-Za-z]\w*", text)) - names(text) for path, text in texts.items()}
-    rooms = {path.parent for path in texts if path.is_relative_to(CORE)}
+    rooms = {path.parent for path in texts} - {CORE}
     own = {room: set().union(*(names(outermost(text)) for path, text in texts.items() if path.parent == room)) for room in rooms}
     used = {room: set().union(*(words[path] for path in texts if path.parent != room)) for room in rooms}
     return {room.name: own[room] & used[room] for room in rooms}
 
 
 def test_names_that_leave_their_room_do_not_become_more():
-    """The number of names that other folders of edp/core use can only fall."""
+    """The number of names that other folders of edp/program use can only fall."""
     names_of_rooms = leaving()
     # Two folders provide some of the names, of which a script uses one.
     count = len(set().union(*names_of_rooms.values()))

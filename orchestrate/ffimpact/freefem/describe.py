@@ -1,4 +1,4 @@
-"""Queries the FreeFEM scripts edp/describe*.edp, which describe the scripts, a scene and its
+"""Queries the FreeFEM scripts edp/program/describe*.edp, which describe the scripts, a scene and its
 results. The source of the scripts is never parsed.
 """
 
@@ -16,7 +16,7 @@ LIMIT = 60  # time limit of a query [s]
 
 
 def describe(values: dict | None = None, script: str = "disc-plane") -> dict:
-    """Returns the answer of edp/describe.edp for a scene of edp/<script>.edp with the parameters
+    """Returns the answer of edp/program/describe.edp for a scene of edp/program/<script>.edp with the parameters
     `values`: scripts, parameters (rows of the table), bodies (number of bodies), `used` (every
     parameter with the value that is used, SI units), half (whether half the body is sufficient),
     touch_arc [rad] and accuracy_made.
@@ -31,11 +31,11 @@ def describe(values: dict | None = None, script: str = "disc-plane") -> dict:
 
 
 def describe_record(values: dict | None = None, script: str = "disc-plane") -> dict:
-    """Returns the answer of edp/describe-results.edp: what the record of a scene holds, as
+    """Returns the answer of edp/program/describe-results.edp: what the record of a scene holds, as
     described for output/meanings.py. Raises as describe().
     """
     return json.loads(
-        _ask("edp/describe-results.edp", *freefem.words_of({"script": script} | (values or {})))
+        _ask("edp/program/describe-results.edp", *freefem.words_of({"script": script} | (values or {})))
     )
 
 

@@ -48,8 +48,8 @@ CORES = len(os.sched_getaffinity(0))
 OLDEST = (4, 9)
 # Debian installs the plugins in this folder, in which its FreeFem++ does not search for them.
 DEBIAN_PLUGINS = "/usr/lib/freefem++"
-DESCRIBE = "edp/describe.edp"
-CLOCK = ROOT / "edp/clock.c"
+DESCRIBE = "edp/program/describe.edp"
+CLOCK = ROOT / "edp/program/clock.c"
 OPEN_FILES = "/proc/self/fd/"
 BANNER = re.compile(r"FreeFem\+\+ v(\d+\.\d\d?)\b")
 SAYS = re.compile(r"progress (\S+) (t=\S+ steps=\S+.*)$")
@@ -67,7 +67,7 @@ HOW = f"install it: {WAYS}" if INSTALLED else f"run: make setup   (or: {WAYS})"
 
 
 class At(NamedTuple):
-    """The progress of a run, as its solver prints it (edp/core/run/march.idp)."""
+    """The progress of a run, as its solver prints it (edp/program/run/march.idp)."""
 
     share: float  # estimated fraction of its steps that is completed, in [0, 1]
     t: float  # time in the run [s]
@@ -242,7 +242,7 @@ def _blas_kernels() -> dict[str, str]:
 
 
 def quick_clock(environment: Mapping[str, str]) -> dict[str, str]:
-    """Returns the environment variable that preloads the clock() of edp/clock.c, or nothing if it
+    """Returns the environment variable that preloads the clock() of edp/program/clock.c, or nothing if it
     cannot be compiled. Names in LD_PRELOAD end at blanks and colons. If the path contains one, the
     variable refers to an open file that the processes inherit.
     """
@@ -268,7 +268,7 @@ def quick_clock(environment: Mapping[str, str]) -> dict[str, str]:
 
 
 def _probe(command: str, environment: dict[str, str]) -> dict | None:
-    """Returns the answer of edp/describe.edp without a scene, or None if FreeFem++ does not start
+    """Returns the answer of edp/program/describe.edp without a scene, or None if FreeFem++ does not start
     or lacks a plugin that the scenes load. The version is taken from the banner: scripts see it as
     a number, in which 4.10 equals 4.1.
     """

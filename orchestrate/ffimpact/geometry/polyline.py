@@ -4,7 +4,7 @@ A polyline is an open or closed chain of vertices (n, 2) [m]. The free side is t
 direction of travel and the solid is to the right: a closed clockwise chain is a block, a closed
 counter-clockwise chain a container. An open chain continues straight beyond both ends. The surface
 lies at the distance `rounding` [m] from the chain on the free side: convex corners become arcs of
-this radius, concave corners stay sharp (edp/core/contact/shapes.idp).
+this radius, concave corners stay sharp (edp/program/contact/shapes.idp).
 """
 
 import math
@@ -18,7 +18,7 @@ from .outlines import cross
 __all__ = ["Sides", "check", "gap", "inset", "numbers", "radius_at", "sides_of"]
 
 # A vertex is a corner if the direction turns by more than this angle [rad]
-# (edp/core/contact/shapes.idp).
+# (edp/program/contact/shapes.idp).
 CORNER = math.radians(30)
 NEAR = 1e-12  # round-off tolerance of lengths, relative to the size of the chain
 

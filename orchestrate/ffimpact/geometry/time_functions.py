@@ -2,7 +2,7 @@
 t [s] or a table.
 
 Each becomes a piecewise cubic Hermite polynomial, which the scripts evaluate
-(edp/core/input/conditions.idp). A table is interpolated monotonically and with a continuous slope
+(edp/program/input/conditions.idp). A table is interpolated monotonically and with a continuous slope
 (Fritsch and Carlson 1980). An expression is interpolated with an error of CLOSE times its largest
 value, which enclosures of its derivatives guarantee (enclosures.py).
 """

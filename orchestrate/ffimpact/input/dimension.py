@@ -23,7 +23,7 @@ __all__ = [
 class Dimension:
     """A dimension and its FreeFEM scripts.
 
-    `script` is the file edp/<script>.edp for scenes of bodies. `axes` is the number of components
+    `script` is the file edp/program/<script>.edp for scenes of bodies. `axes` is the number of components
     of a point. `like` is the script whose element sizes, step and penalty apply to contact pairs:
     that of a disc or of a ball that hits a plane. `cases` are the scripts of the paper's cases.
     """

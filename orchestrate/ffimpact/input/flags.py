@@ -2,7 +2,7 @@
 
     python -m ffimpact.input.flags
 
-writes the part of edp/core/input/parameters.idp between its two marks.
+writes the part of edp/program/input/parameters.idp between its two marks.
 """
 
 from itertools import groupby
@@ -13,7 +13,7 @@ from .table import PARAMETERS
 
 __all__ = ["FILE", "flags", "variable", "written"]
 
-FILE = ROOT / "edp/core/input/parameters.idp"
+FILE = ROOT / "edp/program/input/parameters.idp"
 BEGIN, END = "// THE TABLE", "// END OF THE TABLE\n"
 # FreeFEM variables whose names differ from their flags. The scripts' own dt is that of a step, and
 # start is the name of arguments.

@@ -346,7 +346,7 @@ def _refusal(
 class Material(Entries):
     """The material of a body; `law` is a constitutive law, and the classes below are the laws.
 
-    The laws are in edp/core/law. The damping is of the Kelvin-Voigt type with `viscosity` and
+    The laws are in edp/program/law. The damping is of the Kelvin-Voigt type with `viscosity` and
     `bulk_viscosity` [Pa s], or with `loss`, the loss factor at the first mode. A Maxwell branch has
     `relaxation_modulus` [Pa] and `relaxation_time` [s].
     """

@@ -1,7 +1,7 @@
 """The table of the parameters of a run: names, defaults, ranges, units and meanings.
 
 All other texts about parameters are generated from this table: flags.py writes the flags of the
-FreeFEM scripts (edp/core/input/parameters.idp), schema.py the JSON schema for editors, and
+FreeFEM scripts (edp/program/input/parameters.idp), schema.py the JSON schema for editors, and
 docs/pages.py the table of docs/reference/parameters.md. Numbers are in SI units. The program
 chooses a parameter with the value `auto`, or with 0 if the meaning of the parameter says so.
 """
@@ -31,7 +31,7 @@ MESHED = (
     "bodies-axisymmetric",
     "bodies-3d",
 )
-LAWS = ("svk", "neohookean", "mooney-rivlin", "ogden", "incompressible")  # edp/core/law/laws.idp
+LAWS = ("svk", "neohookean", "mooney-rivlin", "ogden", "incompressible")  # edp/program/law/laws.idp
 
 # A row without scripts behind the meaning is a parameter of all scripts.
 ROWS = (
@@ -40,7 +40,7 @@ ROWS = (
         "svk",
         LAWS,
         "constitutive law: St. Venant-Kirchhoff (5), compressible neo-Hookean (6), or another of "
-        "core/law/laws.idp",
+        "program/law/laws.idp",
         FALLING,
     ),
     real("young", 7e6, 1e-6, 1e18, "Pa", "Young's modulus E", FALLING),
@@ -56,7 +56,7 @@ ROWS = (
     real("density", 1722, 1e-15, 1e12, "kg/m3", "reference density", FALLING),
     numbers(
         "law_parameters",
-        "what the law takes beyond young and nu, separated by commas: core/law/laws.idp",
+        "what the law takes beyond young and nu, separated by commas: program/law/laws.idp",
         FALLING,
     ),
     real(

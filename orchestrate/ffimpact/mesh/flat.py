@@ -149,7 +149,7 @@ def check_simple(path: str, corners: np.ndarray) -> None:
 def mesh_file(body: Mesh, folder: Path, script: str) -> mesh.Mesh:
     """The mesh of a body's file in m, with the centres of the circles on which its edges lie.
 
-    FreeFEM checks the mesh as edp/<script>.edp checks each mesh file, and finds the circles. The
+    FreeFEM checks the mesh as edp/program/<script>.edp checks each mesh file, and finds the circles. The
     mesh is a whole body in the plane, half a meridian section with edges on the axis, or a section
     to the right of an axis that it does not reach. Raises BadInput if the mesh is not accepted.
     """

@@ -24,7 +24,7 @@ LABELS = {"contact": mesh.FREE, "symmetry": mesh.AXIS}
 def load(path: Path, alone: bool = False) -> bytes:
     """Returns the mesh of a file as the bytes of a FreeFEM .msh file.
 
-    A gmsh file is converted. A FreeFEM file is returned unchanged; edp/core/input/mesh-file.idp
+    A gmsh file is converted. A FreeFEM file is returned unchanged; edp/program/input/mesh-file.idp
     checks its content. If the body is `alone` on a plane, the outlines of its holes never come into
     contact. Raises BadInput if the file cannot be read or a gmsh mesh is not accepted.
     """

@@ -79,7 +79,7 @@ GROWTH = 0.3  # increase of the element size per length of distance from the con
 # Decimals of the coordinates and sizes that gmsh gets, relative to the size of the body. Without
 # rounding, round-off would decide ties, and the mesh would depend on the unit of length.
 DIGITS = 10
-# Region number of the triangles of discs that this module meshes: edp/core/input/mesh-file.idp
+# Region number of the triangles of discs that this module meshes: edp/program/input/mesh-file.idp
 # treats their outline as a circle, however long its edges are.
 OWN = 360
 Curve = Callable[[np.ndarray], np.ndarray]  # points (n, 2) [m] at parameters (n,) in [0, 1]

@@ -49,7 +49,7 @@ __all__ = [
     "write_contacts",
 ]
 
-RECORDED = "contacts.bin"  # written by edp/core/run/contacts.idp
+RECORDED = "contacts.bin"  # written by edp/program/run/contacts.idp
 THRESHOLD = 0.01  # of the largest force, for thresholded contact times
 SLIGHTEST, DRIVEN, STEADY = (
     0.05,

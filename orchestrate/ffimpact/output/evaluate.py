@@ -16,7 +16,7 @@ from .results import read_history, read_json, reading, write_json
 
 __all__ = ["RECORD", "evaluate"]
 
-RECORD = "record.json"  # written last by edp/core/run/summary.idp
+RECORD = "record.json"  # written last by edp/program/run/summary.idp
 
 
 def evaluate(folder: Path) -> None:

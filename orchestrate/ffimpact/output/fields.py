@@ -13,7 +13,7 @@ from .results import reading
 
 __all__ = ["POINT_COLUMNS", "RECORDED", "read_arrays", "write_fields"]
 
-RECORDED = "states.bin"  # written by edp/core/run/record.idp
+RECORDED = "states.bin"  # written by edp/program/run/record.idp
 # Unit and meaning of the columns of fields/contact.csv. Z, z and the names with _z exist in three
 # dimensions only.
 POINT_COLUMNS = {

@@ -12,7 +12,7 @@ __all__ = ["describe_results"]
 
 
 def describe_results(values: dict | None = None, script: str = "disc-plane") -> dict[str, Any]:
-    """Returns what the results of a scene of edp/<script>.edp hold, by key:
+    """Returns what the results of a scene of edp/program/<script>.edp hold, by key:
 
     - `bodies`: the number of bodies; `columns` of history.csv; `summary`: the numbers of
       summary.json;

@@ -10,7 +10,7 @@ from .fields import read_arrays
 
 __all__ = ["RECORDED", "write_modes"]
 
-RECORDED = "modes.bin"  # written by edp/core/run/modes.idp
+RECORDED = "modes.bin"  # written by edp/program/run/modes.idp
 TITLES = "mode,frequency,energy,strain_energy,kinetic_energy"
 
 

@@ -1,5 +1,5 @@
 """Figure 3 of the paper: the friction laws (11)-(13). The curves are computed by the same function
-of edp/core/contact/friction.idp that the runs use.
+of edp/program/contact/friction.idp that the runs use.
 """
 
 import argparse
@@ -53,7 +53,7 @@ def main(argv: list[str]) -> int:
 
 
 def tabulate(folder: Path, values: dict[str, parameters.Value]) -> pd.DataFrame:
-    """Returns the table that edp/friction-laws.edp writes: panel, law, transition, side, v [m/s],
+    """Returns the table that edp/program/friction-laws.edp writes: panel, law, transition, side, v [m/s],
     ratio [-], slope [s/m]. The script describes the columns. Raises Unreadable if the folder cannot
     be written, else Failure.
     """
@@ -67,7 +67,7 @@ def tabulate(folder: Path, values: dict[str, parameters.Value]) -> pd.DataFrame:
             f"{folder} cannot be written: {error.strerror}; choose another --out"
         ) from None
     code, message = freefem.run(
-        program, "edp/friction-laws.edp", values | {"out": folder}, folder / "log.txt"
+        program, "edp/program/friction-laws.edp", values | {"out": folder}, folder / "log.txt"
     )
     if code != 0:
         raise Failure(

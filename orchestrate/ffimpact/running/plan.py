@@ -1,7 +1,7 @@
 """Foretells what a run will take: mesh, steps, processor time and memory.
 
 The mesh is made and the solver started as for a run. The solver prints the largest step and the
-number of steps that it expects (edp/core/run/march.idp), and takes steps for TIMED of processor
+number of steps that it expects (edp/program/run/march.idp), and takes steps for TIMED of processor
 time. Then it is ended. The time of these steps is extrapolated.
 """
 
@@ -171,7 +171,7 @@ def measure(scene: Scene, foreign: bytes | None = None, estimate: bool = True) -
         prepared = time.process_time() - began
         process = freefem.start(
             freefem.find(),
-            f"edp/{scene.script}.edp",
+            f"edp/program/{scene.script}.edp",
             flags | {"out": folder / "run"},
             folder / "log.txt",
         )

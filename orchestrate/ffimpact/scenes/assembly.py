@@ -89,7 +89,7 @@ class Assembly:
     used: dict
 
     def write(self, folder: Path) -> None:
-        """Writes mesh.msh (in three dimensions mesh.mesh) and scene.dat, which edp/bodies.edp
+        """Writes mesh.msh (in three dimensions mesh.mesh) and scene.dat, which edp/program/bodies.edp
         reads.
         """
         if isinstance(self.mesh, solid_mesh.SolidMesh):
@@ -731,7 +731,7 @@ def data_file(
     conditions: Sequence[tuple] = (),
 ) -> str:
     """Returns the text of scene.dat, words and numbers (SI, radians), in the format of
-    edp/core/input/scene-file.idp.
+    edp/program/input/scene-file.idp.
 
     `disc` holds the parameters of the disc, or ball, for the rules of sizes. `rounds` are the lines
     of circles, or of spheres and cylinders, `conditions` those of supports and loads. If there is a

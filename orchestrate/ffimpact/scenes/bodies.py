@@ -77,7 +77,7 @@ class Body:
     loads: tuple[Load, ...] = ()
     rigid: bool = False
     mass: float = 0.0  # entry of a rigid body [kg/m; kg]; 0: by density
-    # Moments of a rigid body's entry `inertia`, ordered as in edp/core/input/conditions.idp; 0: by
+    # Moments of a rigid body's entry `inertia`, ordered as in edp/program/input/conditions.idp; 0: by
     # density.
     moments: tuple[float, ...] = (0.0,) * 6
 
@@ -88,7 +88,7 @@ class Body:
     @property
     def moduli(self) -> tuple[float, float]:
         """lambda + 2 mu and mu [Pa] in a wave across the body. Damping adds to them: they are
-        absolute values at omega = pi / transit (stiffen() of edp/core/input/sizes.idp).
+        absolute values at omega = pi / transit (stiffen() of edp/program/input/sizes.idp).
 
         The part of lambda above nu = STIFFEST acts on the volume of elements and not in waves.
         """

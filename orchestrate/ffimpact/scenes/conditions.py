@@ -36,7 +36,7 @@ SIDES = {
 }
 WHOLE = ("all", "outer", "inner")
 ON_SIDE = 1e-6  # largest distance from a side that counts as on it, over the body's extent
-KINDS = {"traction": 0, "pressure": 1, "gas": 2}  # numbers as in edp/core/input/conditions.idp
+KINDS = {"traction": 0, "pressure": 1, "gas": 2}  # numbers as in edp/program/input/conditions.idp
 
 
 @dataclass(frozen=True)

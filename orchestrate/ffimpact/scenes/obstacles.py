@@ -1,5 +1,5 @@
 """Rigid obstacles: [[obstacle]] tables as the numbers that the scripts read
-(edp/core/contact/shapes.idp), and signed distances, SI units.
+(edp/program/contact/shapes.idp), and signed distances, SI units.
 
 Obstacles of a scene of revolution lie across the axis x = 0 or on it, or begin or end there.
 """
@@ -42,7 +42,7 @@ DRIVE = ("motion", "rotation", "pivot", "axis")  # entries of an obstacle with a
 @dataclass(frozen=True)
 class Obstacle:
     """One obstacle; the kinds are the classes below. `numbers` are those that the scripts read
-    (edp/core/contact/shapes.idp).
+    (edp/program/contact/shapes.idp).
     """
 
     name: str

@@ -1,5 +1,5 @@
 """Finds the boundary elements of supports and loads on the meshes of the bodies, and writes their
-sections of scene.dat (edp/core/input/scene-file.idp).
+sections of scene.dat (edp/program/input/scene-file.idp).
 """
 
 from collections.abc import Sequence

@@ -61,7 +61,7 @@ FOLDING = 0.2
 WIDE = 100.0  # width [m] of a body from a file above which its units are doubtful
 TOUCHING = 1e-9  # overlap at the start that is round-off, over half the thickness of the body
 # Overlap, likewise, that may be the depth at rest under weight or loads. The solver knows the penalty
-# and judges it by its force (edp/core/run/start.idp).
+# and judges it by its force (edp/program/run/start.idp).
 SUNK = 0.05
 
 
@@ -86,7 +86,7 @@ class Scene:
     `content` holds the tables of the file, `values` every parameter of a run and `contact` those of
     [contact]. Values that are left to the program (auto, 0) stay as they are. If `bodies` is empty
     the scene is one of the paper's cases: then `values`, and with them `content`, hold EVERY
-    parameter that edp/<script>.edp takes, in SI units.
+    parameter that edp/program/<script>.edp takes, in SI units.
     """
 
     name: str

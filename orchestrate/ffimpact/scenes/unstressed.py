@@ -22,7 +22,7 @@ def find_unstressed(scene: Scene, flags: Mapping[str, object], where: Path) -> N
     """Writes the displacement W from the given shape x to the unstressed one X = x + W to the file
     MESH.unstressed beside the mesh, for the run with these flags in the folder `where`.
 
-    In an iteration, edp/core/run/unstressed.idp displaces X by u, into equilibrium with the gases.
+    In an iteration, edp/program/run/unstressed.idp displaces X by u, into equilibrium with the gases.
     The fixed point W = -u is sought (Sellier, 2011), with Anderson's acceleration. Raises BadInput
     if it is not found.
     """
@@ -34,7 +34,7 @@ def find_unstressed(scene: Scene, flags: Mapping[str, object], where: Path) -> N
     for _ in range(MOST):
         code, message = freefem.run(
             freefem.find(),
-            f"edp/{scene.script}.edp",
+            f"edp/program/{scene.script}.edp",
             {**flags, "out": out},
             where / "log.txt",
         )

@@ -2,8 +2,8 @@
    call. This one reads it only after a tick of the coarse clock (every 1 to 10 ms), which needs no
    system call. Results are the same to the byte. freefem.py of orchestrate/ffimpact/freefem builds
    and preloads it; by hand:
-     cc -O2 -shared -fPIC -o libclock.so edp/clock.c
-     LD_PRELOAD=$PWD/libclock.so FreeFem++ -nw edp/disc-plane.edp */
+     cc -O2 -shared -fPIC -o libclock.so edp/program/clock.c
+     LD_PRELOAD=$PWD/libclock.so FreeFem++ -nw edp/program/disc-plane.edp */
 #include <time.h>
 
 clock_t clock(void)
