@@ -90,3 +90,14 @@ def test_coarse_elements_of_stiff_bodies_keep_the_answers(text, tmp_path):
     assert coarse["dofs"] < 0.6 * close["dofs"]
     assert coarse["impulse"] == pytest.approx(close["impulse"], rel=0.01)
     assert coarse["final_vy_1"] == pytest.approx(close["final_vy_1"], abs=0.02 * 3)
+
+
+def test_a_shielded_body_has_no_small_elements(tmp_path):
+    """A rigid weight that falls on a pad would strike the plate under it with a sharp contact. The
+    plate has small elements only if the pad lies aside."""
+    weight = 'rigid = true\nmass = 20\n'
+    text = SOFT.replace("accuracy = 0.005", "accuracy = 0.02").replace('law = "neohookean"\nyoung = 5e6\nnu = 0.45\ndensity = 1100\n', weight) \
+        + 'width = 0.3\nheight = 0.01\nposition = [0, -0.02]\n' + HELD \
+        + '[[body]]\nname = "pad"\nshape = "rectangle"\nwidth = 0.06\nheight = 0.02\nlaw = "neohookean"\nyoung = 5e6\nnu = 0.45\ndensity = 1200\n'
+    between, aside = (sizes_of(scene_of(text + f"position = [{x}, -0.005]\n", tmp_path)) for x in (0.09, -0.05))
+    assert between[1].contact > 5 * aside[1].contact and between[0].contact > 5 * aside[0].contact

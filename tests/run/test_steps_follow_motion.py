@@ -5,6 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from benchmarks import draws
+from ffimpact import scene
+from ffimpact.running.run import run as run_scene
 from verification.measure import bodies
 
 # A clamped strip of length L and height H under a step of gravity g.
@@ -45,13 +48,13 @@ def strike(tmp_path, ratio: float | None, supports=(), **entries):
     """A rubber disc strikes a free block that is `ratio` times as stiff, or a rigid plane."""
     disc = {"name": "disc", "shape": "disc", "radius": 0.02, "young": 5e6, "nu": 0.45, "density": 1100,
             "position": [0, 0.0201], "velocity": [0, -3]}
-    scene = {**LAW, "accuracy": 0.05, "end_time": 4e-3, "body": [disc], **entries}
+    content = {**LAW, "accuracy": 0.05, "end_time": 4e-3, "body": [disc], **entries}
     if ratio is None:
-        scene["obstacle"] = [{"kind": "plane", "point": [0, 0], "normal": [0, 1]}]
+        content["obstacle"] = [{"kind": "plane", "point": [0, 0], "normal": [0, 1]}]
     else:
-        scene["body"].append({"name": "block", "shape": "rectangle", "width": 0.12, "height": 0.03, "young": 5e6 * ratio,
+        content["body"].append({"name": "block", "shape": "rectangle", "width": 0.12, "height": 0.03, "young": 5e6 * ratio,
                               "nu": 0.3, "density": 1100, "position": [0, -0.015], "support": list(supports)})
-    return bodies(tmp_path / f"{ratio}", scene)
+    return bodies(tmp_path / f"{ratio}", content)
 
 
 @pytest.mark.parametrize("held", [False, True])
@@ -106,3 +109,36 @@ def test_pressing_takes_few_steps(tmp_path):
     assert plates.mean() / 2 == pytest.approx(force, rel=0.04)
     assert run.summary["steps"] < 800 and run.summary["energy_drift"] < 1e-6
     assert not [words for words in run.summary["warnings"] if words.startswith(("not over", "chatter"))]
+
+
+def test_steps_follow_the_vibration_after_an_impact(tmp_path):
+    """A disc leaves a clamped strip, which vibrates on. Its slowest period is 200 transits of the
+    disc: no further contact is waited for in steps of an impact."""
+    strip = {**STRIP, "young": 5e6, "nu": 0.3, "density": 1000}
+    disc = {"shape": "disc", "radius": 0.01, "young": 1e6, "nu": 0.3, "density": 100, "position": [0.1, 0.0151], "velocity": [0, -2]}
+    run = bodies(tmp_path, {**LAW, "accuracy": 0.05, "end_time": 0.1, "body": [disc, strip]})
+    t, dt = run.history["t"], run.history["dt"]
+    during = (run.history["normal_force"] > 0) & (t < t[run.history["normal_force"] > 0][0] + 1e-3)
+    assert dt[t > 0.06].mean() > 4 * dt[during].mean()
+    assert run.summary["energy_drift"] < 1e-6
+
+
+def test_no_step_leaps_into_a_contact(tmp_path):
+    """A ring flies to a strip whose supports hardly move, in steps in which it would pass through the
+    strip. No such step is computed: its contact would take most of the time of the run."""
+    grips = [{"where": side, "motion": [f"{sign}1e-5*(1-cos(pi*t/0.1))/2", 0]} for side, sign in (("left", "-"), ("right", ""))]
+    strip = {"shape": "rectangle", "width": 0.3, "height": 0.01, "position": [0, 0], "young": 5e7, "nu": 0.3, "density": 100, "support": grips}
+    ring = {"shape": "ring", "radius": 0.03, "inner_radius": 0.024, "young": 5e6, "nu": 0.3, "density": 1200,
+            "position": [0, 0.235], "velocity": [0, -20]}
+    run = bodies(tmp_path, {**LAW, "accuracy": 0.1, "end_time": 0.0106, "body": [ring, strip]})
+    first = int((run.history["normal_force"] > 0).argmax())
+    assert run.history["dt"][1:first].max() > 2e-3 > 1e3 * run.history["dt"][first:].min() and first > 0
+    assert run.summary["phase_seconds"]["contact"] < 0.4 * run.summary["cpu_seconds"]
+
+
+def test_bodies_at_rest_on_each_other_are_not_flown(tmp_path):
+    """A nail stands on a block until a hammer arrives. Its gap of round-off is closed, which no
+    flight of a thousand passes has to show."""
+    problem = scene.load(str(draws.OWN / "hammer-nail.toml"))
+    summary = run_scene(problem, {"end_time": 1e-5, "accuracy": 0.1}, tmp_path / "run", estimate=False).summary
+    assert summary["phase_seconds"]["flight"] < 0.2 * summary["cpu_seconds"]

@@ -35,6 +35,7 @@ FAR = 1e6
 RESTITUTION = 0.5
 ECCENTRIC = 1e-2  # smallest lever arm of an impact that turns a body, over its bounding radius
 MORE = 3  # further onsets of contact of two bodies that are computed after the first one
+PARTS = 64  # parts of the way to an onset of contact, for bodies that are in the way
 # Gaps over the smaller half thickness: the pair counts as in contact, and the search ends.
 MET, CLOSED = 1e-3, 1e-9
 
@@ -54,6 +55,7 @@ class Onset:
     - `never`: whether the pair, as rigid bodies, never comes into contact.
     - `pressed`: closing speed [m/s] of an impact with as wide a contact as the motion of a support
       makes.
+    - `shielded`: whether a third body keeps the pair apart (_is_shielded()).
     """
 
     first: int
@@ -68,6 +70,7 @@ class Onset:
     normal: np.ndarray
     never: bool = False
     pressed: float = 0.0
+    shielded: bool = False
 
     def own_normal(self, k: int, body: Body) -> np.ndarray:
         """Returns the normal in the axes of body number k, not turned, without the round-off of the
@@ -100,7 +103,22 @@ def onsets_of(scene: Scene) -> list[Onset]:
     )
     obstacles = [-1 - k for k in range(len(scene.obstacles))]
     pairs = [(i, j) for i, others in enumerate(_near(scene)) for j in [*others, *obstacles]]
-    return [onset for pair in pairs for onset in _in_turn(scene, _onset(scene, *pair))]
+    onsets = [onset for pair in pairs for onset in _in_turn(scene, _onset(scene, *pair))]
+    partners: dict[int, set[int]] = {}
+    for onset in onsets:
+        partners.setdefault(onset.first, set()).add(onset.second)
+        partners.setdefault(onset.second, set()).add(onset.first)
+    return [
+        replace(
+            onset,
+            shielded=any(
+                _is_shielded(scene, onset, k)
+                for k in partners[onset.first] | partners[onset.second]
+                if k >= 0 and k not in (onset.first, onset.second)
+            ),
+        )
+        for onset in onsets
+    ]
 
 
 def _near(scene: Scene) -> list[list[int]]:
@@ -133,6 +151,36 @@ def _fall(scene: Scene) -> np.ndarray:
         scene.values["body_force_y"] - scene.values["gravity"],
     )
     return fall
+
+
+def _is_shielded(scene: Scene, onset: Onset, k: int) -> bool:
+    """Whether body k keeps both surfaces of an onset of contact apart: on the straight way to the
+    onset, the point of contact of one of them moves through body k for its half thickness or more.
+    """
+    shield, t = scene.bodies[k], onset.time
+    other = scene.bodies[onset.second] if onset.second >= 0 else scene.obstacles[-1 - onset.second]
+    if not 0 < t < math.inf:
+        return False
+
+    def fall(surface: Body | Obstacle) -> np.ndarray:
+        free = isinstance(surface, Body) and not surface.supports
+        return _fall(scene) * free
+
+    # The outlines of the onset are in a frame that moves with an obstacle and falls like `other`.
+    frame = other.velocity if isinstance(other, Obstacle) else np.zeros(len(onset.normal))
+    centre = shield.position + (shield.velocity - frame) * t
+    centre = centre + (fall(shield) - fall(other)) * t**2 / 2
+    shape = shield.at(0.0, np.zeros(len(centre)))
+    before = t * np.linspace(0, 1, PARTS + 1)[:, None]
+    for surface in (scene.bodies[onset.first], other):
+        velocity = surface.velocity - shield.velocity
+        pull = fall(surface) - fall(shield)
+        way = _middle(onset) - centre - velocity * (t - before) - pull * (t**2 - before**2) / 2
+        inside = shape.gap((way[:-1] + way[1:]) / 2) < 0
+        through = np.linalg.norm(np.diff(way, axis=0), axis=1)[inside].sum()
+        if through >= (1 - 1 / PARTS) * shield.outline.half_thickness:
+            return True
+    return False
 
 
 def _in_turn(scene: Scene, onset: Onset) -> list[Onset]:
@@ -199,7 +247,7 @@ def _middle(onset: Onset) -> np.ndarray:
     """Returns the point of contact at an onset. For a face on another face it is the middle, so
     that a body set down flat does not turn.
     """
-    points = np.vstack([shape.points for shape in onset.outlines if isinstance(shape, Outline)])
+    points = np.vstack([shape.points for shape in onset.outlines if not isinstance(shape, Obstacle)])
     off = np.max([abs(shape.gap(points)) for shape in onset.outlines], axis=0)
     along = (points - points[off.argmin()]) @ onset.normal
     on = points[(off <= off.min() + MET * onset.radius) & (abs(along) <= MET * onset.radius)]
@@ -456,16 +504,14 @@ def _parts(vector: np.ndarray, normal: np.ndarray) -> tuple[float, float]:
 def _at(
     body: Body, other: Body | Obstacle, t: float, pull: np.ndarray
 ) -> tuple[Shape, Shape | Obstacle]:
-    """Returns both shapes at the time t [s], in the frame of the obstacle or of bodies that fall
-    freely.
+    """Returns both shapes at the time t [s], in a frame that moves with an obstacle and falls like
+    another body; `pull` is the acceleration of `body` in that frame.
     """
-
-    def flown(free_body: Body, velocity: np.ndarray) -> Shape:
-        return free_body.at(t, free_body.position + velocity * t + pull * t**2 / 2)
-
     if isinstance(other, Body):
-        return flown(body, body.velocity), flown(other, other.velocity)
-    return flown(body, body.velocity - other.velocity), other
+        velocity, struck = body.velocity, other.at(t, other.position + other.velocity * t)
+    else:
+        velocity, struck = body.velocity - other.velocity, other
+    return body.at(t, body.position + velocity * t + pull * t**2 / 2), struck
 
 
 def _first_touch(

@@ -513,7 +513,11 @@ def element_sizes(k: int, ask: Asker) -> Sizes:
     """
     body = ask.scene.bodies[k]
     bulk = body.mesh_size or _bulk(k, ask)
-    hits = [_hit(body, k, onset, ask) for onset in ask.onsets if k in (onset.first, onset.second)]
+    hits = [
+        _hit(body, k, onset, ask)
+        for onset in ask.onsets
+        if k in (onset.first, onset.second) and not onset.shielded
+    ]
     mine = [front for front in ask.fronts.values() if k in front.sizes]
     if body.rigid and not body.mesh_size:
         bulk = _bulk_of_rigid(body, min((size for size, *_ in hits), default=math.inf))
