@@ -247,7 +247,9 @@ def _middle(onset: Onset) -> np.ndarray:
     """Returns the point of contact at an onset. For a face on another face it is the middle, so
     that a body set down flat does not turn.
     """
-    points = np.vstack([shape.points for shape in onset.outlines if not isinstance(shape, Obstacle)])
+    points = np.vstack(
+        [shape.points for shape in onset.outlines if not isinstance(shape, Obstacle)]
+    )
     off = np.max([abs(shape.gap(points)) for shape in onset.outlines], axis=0)
     along = (points - points[off.argmin()]) @ onset.normal
     on = points[(off <= off.min() + MET * onset.radius) & (abs(along) <= MET * onset.radius)]
