@@ -175,9 +175,9 @@ def _is_shielded(scene: Scene, onset: Onset, k: int) -> bool:
     for surface in (scene.bodies[onset.first], other):
         velocity = surface.velocity - shield.velocity
         pull = fall(surface) - fall(shield)
-        way = _middle(onset) - centre - velocity * (t - before) - pull * (t**2 - before**2) / 2
-        inside = shape.gap((way[:-1] + way[1:]) / 2) < 0
-        through = np.linalg.norm(np.diff(way, axis=0), axis=1)[inside].sum()
+        path = _middle(onset) - centre - velocity * (t - before) - pull * (t**2 - before**2) / 2
+        inside = shape.gap((path[:-1] + path[1:]) / 2) < 0
+        through = np.linalg.norm(np.diff(path, axis=0), axis=1)[inside].sum()
         if through >= (1 - 1 / PARTS) * shield.outline.half_thickness:
             return True
     return False
