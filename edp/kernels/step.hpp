@@ -141,6 +141,8 @@ class ImplicitStep {
       }
       contraction = iterations - renewedAt < 2
         ? 0.1 : std::sqrt(contraction * residualNow / residualBefore);
+      if (!consecutive && isAtJump())
+        return scripts->search() == 0 && !collapses() ? accept() : bodies::diverged;
       if (wearsOut(contraction)) {
         const int failed = renew();
         if (failed != bodies::succeeded) return failed;
@@ -362,6 +364,18 @@ class ImplicitStep {
     for (size_t e = 0; e < translations.size; e++)
       sum[translations.column[e]] += translations.value[e] * residual[translations.row[e]];
     return sum.lpNorm<Eigen::Infinity>();
+  }
+  bool isAtJump() {
+    // Whether the line search has failed on a new A although nearly nothing is left of the residual:
+    // where a contact point changes its facet, B jumps, and no increment balances the step. Goes
+    // back to the previous iterate. The work that is left stays in the energy balance.
+    const double enough = 100;                   // over the tolerances of testConvergence()
+    if (renewed == 0 || iterations - renewedAt != 1) return false;
+    evaluateAt(dBack, pressureBack);
+    residualWorkRatio = work() / motion.energyScale;
+    return status == bodies::succeeded && residualWorkRatio <= enough * settings.tolerance
+      && std::abs(residual.dot(searchDirection))
+        <= enough * enough * settings.correctionTolerance * motion.energyScale;
   }
   bool collapses() const {
     // Whether a point loses four fifths of its volume in the step. An implicit step has more than
