@@ -25,9 +25,9 @@ from verification import commands
 
 from . import draws, page
 
-# Seeds and numbers of the scenes by option. estimate.SAFETY is calibrated on the seeds 1001 and
-# 1002 of all kinds of scenes, and on 28 scenes of the seed 89 of `others`. Mesh sizes are calibrated
-# on the seeds 1, 2, 5, 40 and 7.
+# Seeds and numbers of the scenes by option. estimate.SAFETY and the compared histories are calibrated
+# on the seeds 1001 and 1002 of all kinds of scenes, 301 of `held` and `others`, 302 and 401 of `held`.
+# Mesh sizes are calibrated on the seeds 1, 2, 5, 40 and 7.
 SCENES = {"round": (69, 240), "coarse": (73, 180), "flat": (79, 60), "held": (85, 60), "others": (87, 30)}
 # Elements and steps of the reference are 3 times smaller than those of the first run. In these
 # scenes, which would take hours, they are 2 times smaller than those of the answer, which finer
