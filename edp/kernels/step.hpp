@@ -366,9 +366,9 @@ class ImplicitStep {
     return sum.lpNorm<Eigen::Infinity>();
   }
   bool isAtJump() {
-    // Whether the line search has failed on a new A although nearly nothing is left of the residual:
-    // where a contact point changes its facet, B jumps, and no increment balances the step. Goes
-    // back to the previous iterate. The work that is left stays in the energy balance.
+    // Whether the line search has failed on a new A although hardly any residual is left: where a
+    // contact point changes its facet, B jumps, and no increment balances the step. Goes back to
+    // the previous iterate. The work that is left stays in the energy balance.
     const double enough = 100;                   // over the tolerances of testConvergence()
     if (renewed == 0 || iterations - renewedAt != 1) return false;
     evaluateAt(dBack, pressureBack);

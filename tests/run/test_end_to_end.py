@@ -214,6 +214,7 @@ def test_a_step_far_too_large_for_friction_ends_early(tmp_path):
     """
     flags = ("-law", "neohookean", "-speed", "12", "-angle", "60", "-friction_static", "0.7", "-friction_dynamic", "0.5", "-slip_velocity", "0.1", "-penalty", "1e10")
     process = direct(*flags, "-dt", "4e-4", "-out", str(tmp_path / "out"))
+    assert "friction and contact forces did not settle" in process.stderr and "accepted" not in process.stderr
     assert process.returncode == 11 and re.search(r"dt = 0.0004 s is too long for its friction, .* take dt = 0, or up to 0.00024\d+ s", process.stderr)
     assert process.stderr.count("\n") == 1 and json.loads((tmp_path / "out/failure.json").read_text())["steps"] < 6
 

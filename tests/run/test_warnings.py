@@ -168,6 +168,14 @@ def test_numbers_of_the_warnings_are_those_of_the_history(disc):
     assert number == pytest.approx(100 * h["contact"][peak] / h["elastic"][peak], rel=0.05)
 
 
+def test_a_trifle_is_no_warning(disc):
+    """A penalty a tenth below the one that the advice names is not worth a warning."""
+    soft, = sentences_of(disc(COARSE | dict(penalty=1e9)), "penalty")
+    least = float(re.search(r"at least (\d\S*)", soft)[1])
+    for share, said in ((0.4, True), (0.9, False), (1.0, False)):
+        assert bool(sentences_of(disc(COARSE | dict(penalty=share * least)), "penalty")) == said
+
+
 @pytest.mark.parametrize("flags", [LONG, COARSE, COARSE | dict(height=1e-3), COARSE | dict(dt=3e-4), OBLIQUE | dict(slip_velocity=2)])
 def test_thresholded_contact_time(disc, flags):
     """From the first to the last crossing of 1 % of the largest step mean of the normal force,

@@ -38,6 +38,8 @@ __all__ = [
 FEWEST_POINTS = {2: 9, 3: 60}
 FEWEST_STEPS = 15  # in contact
 SOFTEST = 0.02  # penetration over the compression of the bodies, by their energies
+# Penetrations above these limits by less than this factor change nothing that a reader could see.
+TRIFLE = 1.25
 DEEPEST, UNSEEN = 0.05, 0.01  # penetration over the radius or half thickness
 CREEP = 0.05  # velocity of sticking points over that of the centre
 JUMPS = 0.01  # share of points and steps in a jump of the friction law
@@ -412,7 +414,7 @@ def _contact(e: Evidence) -> Iterator[Sentence]:
         (rise == 0 or rise > front)
         and not e.is_pushed_in
         and not all(body["rigid"] for body in e.bodies)
-        and depth > SOFTEST
+        and depth > TRIFLE * SOFTEST
     ):
         yield warn(
             f"penalty: it stores {percent(facts['penalty_share'])} of the elastic energy at its "
@@ -587,7 +589,7 @@ def _pairs(e: Evidence) -> Iterator[Sentence]:
     """The worst contact pair of each kind by name: penetration, contact points, and what passes
     between these."""
     pairs = e.facts["pairs"]
-    deep = [pair for pair in pairs if pair["deepest"] > DEEPEST * e.radius(pair)]
+    deep = [pair for pair in pairs if pair["deepest"] > TRIFLE * DEEPEST * e.radius(pair)]
     if deep and not e.is_pushed_in:
         worst = max(pairs, key=lambda pair: pair["deepest"] / e.radius(pair))
         share = worst["deepest"] / e.radius(worst)
