@@ -57,14 +57,14 @@ install() {   # packages; 1 without root, sudo or apt-get
   apt install -y --no-install-recommends "${wanted[@]}"
 }
 if [ ${#missing[@]} -gt 0 ]; then install "${missing[@]}" || stop "cannot install without apt-get and root or sudo; as root run: apt-get install ${missing[*]}"; fi
-[ -d /usr/include/eigen3 ] || install libeigen3-dev || say "without Eigen (libeigen3-dev) the scripts run without compiled kernels, more slowly"
+[ -d /usr/include/eigen3 ] || install libeigen3-dev || stop "no Eigen: apt-get install libeigen3-dev"
 
-# What the kernels are compiled with (orchestrate/ffimpact/freefem/kernels.py): nobody has to have it.
+# What the kernels are compiled with (orchestrate/ffimpact/freefem/kernels.py).
 installed() { dpkg -s "$1" >/dev/null 2>&1; }
 tools=()
 for package in g++ libsuitesparse-dev; do installed $package || tools+=("$package"); done
 if installed freefem++ && ! installed libfreefem++-dev; then tools+=(libfreefem++-dev); fi   # others bring their headers with them
-if [ ${#tools[@]} -gt 0 ]; then install "${tools[@]}" || say "cannot install ${tools[*]}: runs go without compiled kernels, slower"; fi
+if [ ${#tools[@]} -gt 0 ]; then install "${tools[@]}" || stop "cannot install ${tools[*]}, which the compiled kernels need"; fi
 
 # Debian's FreeFem++ looks for its plugins in a folder that does not exist.
 if ! probe; then
@@ -84,5 +84,5 @@ fi
 .venv/bin/python -m pip install -q --disable-pip-version-check --no-deps -e .   # import ffimpact, and the command
 .venv/bin/python -c 'import gmsh, matplotlib.pyplot'   # they load, and matplotlib's font list is made now, not in the first run
 .venv/bin/python -m compileall -q orchestrate           # now, not in the first run, or in every one where nothing may be written
-.venv/bin/python -c 'from ffimpact.freefem import freefem; freefem.find()'   # compiles the clock and the kernels where there is a compiler
+.venv/bin/python -c 'from ffimpact.freefem import freefem; freefem.find()'   # compiles the clock and the kernels
 say "ready"

@@ -6,6 +6,7 @@ import sys
 
 import pytest
 
+from ffimpact.freefem import freefem, kernels
 from tests.support import fake_freefem
 
 # A shell makes its background jobs ignore Ctrl-C, which tests send.
@@ -19,6 +20,8 @@ def fake(tmp_path, monkeypatch):
     program, count = tmp_path / "FreeFem++", tmp_path / "starts"
     program.write_text(f'#!/bin/sh\nexec {shlex.join([sys.executable, fake_freefem.__file__])} "$@"\n')
     program.chmod(0o755)
+    word = freefem.find().plugin  # the substitute has no compiler
+    monkeypatch.setattr(kernels, "build", lambda *_: word)
     monkeypatch.setenv("FREEFEM", str(program))
     monkeypatch.setenv("FAKE_REAL", fake_freefem.REAL)
     monkeypatch.setenv("FAKE_COUNT", str(count))

@@ -79,20 +79,9 @@ def test_slots_within_reach_are_found_wherever_the_body_goes(numbers):
     assert numbers["none"] == 0 and numbers["missed"] == 0 and numbers["most"] < numbers["slots"]
 
 
-def test_scripts_agree_with_kernels(measure, numbers):
-    """Scripts compute planes, circle and bowl in the same way, to round-off."""
-    scripted = measure("obstacles", scripts=1)
-    for shape in ("plane", "inclined", *CURVED):
-        for name in ("gap", "unit", "begin", "end", "place", "slip", "across", "moment"):
-            assert scripted[name + shape] < 1e-14
-        assert scripted[f"slope{shape}"] < 1e-7 and scripted[f"pieces{shape}"] == 0
-    assert max(scripted["turned"], scripted["work"]) < 1e-13
-
-
-@pytest.mark.parametrize("scripts", [0, 1])
-def test_rows_of_planes_are_built_once(measure, scripts):
+def test_rows_of_planes_are_built_once(measure):
     """Planes, both of them moving, have constant Jacobians that satisfy the same identities."""
-    planes = measure("obstacles", planes=1, scripts=scripts)
+    planes = measure("obstacles", planes=1)
     assert planes["fixed"] == 1 and planes["kept"] == 0
     for shape in ("plane", "inclined"):
         assert max(planes[name + shape] for name in ("gap", "begin", "end", "place", "slip")) < 1e-14 and planes[f"across{shape}"] < 1e-14

@@ -48,35 +48,27 @@ def winding(x: np.ndarray, nodes: np.ndarray) -> float:
     return (angle[-1] - angle[0]).sum() / (2 * np.pi)
 
 
-def kernel_is_the_scripts(numbers: dict) -> None:
-    """Asserts that the compiled gap (edp/kernels/pairs.hpp) has the same contact candidates and
-    unknowns as the scripts, with equal numbers to round-off, over all steps."""
-    assert not numbers["built"] or numbers["slotsOff"] == 0 and max(numbers[name] for name in ("gapsOff", "rowsOff")) < 1e-12
-
-
 CASES = [(2, 0.02, 0.05, 0), (1, 0.02, 0.05, 0.7), (2, 0.1, 0.1, 2.5), (1, 0.1, 0.1, 0.4), (2, 0, 0, 0)]
 
 
 @pytest.mark.few(3)
-@pytest.mark.parametrize("without", ["none", "kernels"])
 @pytest.mark.parametrize("degree, depth, noise, tilt", CASES)
-def test_rows_conserve(measure, degree, depth, noise, tilt, without):
-    """Kernel and scripts satisfy B d = q1 - q0.
+def test_rows_conserve(measure, degree, depth, noise, tilt):
+    """The rows satisfy B d = q1 - q0.
 
     This also holds if the step rotates the pair by a radian, which changes no gap, or moves it
     along the block by a third of an edge, forty times. No row of B has a resultant force or moment
     about the middle configuration, on edges, vertices and kinks. A step begins with the
     penetrations at the end of the last step.
     """
-    numbers = measure("pair", degree=degree, depth=depth, noise=noise, tilt=tilt, without=without)
-    assert numbers["randomInside"] > 10 and numbers["vertices"] > 0 or noise == 0
+    numbers = measure("pair", degree=degree, depth=depth, noise=noise, tilt=tilt)
+    assert numbers["randomInside"] > 10 or noise == 0
     assert numbers["cornerGap"] < ROUND_OFF  # a point exactly on a corner of the other body
     for name in ("random", "turn", "corner"):
         assert numbers[name + "Exact"] < ROUND_OFF and numbers[name + "Force"] < ROUND_OFF and numbers[name + "Moment"] < ROUND_OFF
         assert 0.1 < numbers[name + "Largest"] < 1.2
     assert max(numbers["turnChange"], numbers["slideExact"], numbers["slideJump"]) < ROUND_OFF
     assert numbers["turnSlots"] == numbers["randomSlots"]
-    kernel_is_the_scripts(numbers)
 
 
 @pytest.mark.few(2)

@@ -9,7 +9,6 @@ import pytest
 
 from . import measure as runs
 from .solids import Scene, ball, brick, write
-from .test_pair import kernel_is_the_scripts
 
 ROUND_OFF = 1e-13
 CASES = [{}, {"degree": 1, "tilt": 0.7}, {"tilt": 2.5, "depth": 0.1}, {"corner": 1, "depth": 0.1}, {"corner": 2, "depth": 0.1, "degree": 1}, {"noise": 0, "depth": 0}]
@@ -24,11 +23,9 @@ def march(tmp_path):
 # ---- gap Jacobians
 
 @pytest.mark.few(2)
-# Whose results the kernel must equal.
-@pytest.mark.parametrize("without", ["none", pytest.param("kernels", marks=pytest.mark.robustness)])
 @pytest.mark.parametrize("case", CASES)
-def test_rows_conserve(measure, case, without):
-    """Kernel and scripts satisfy B d = q1 - q0, also if the step rotates the pair by a radian or
+def test_rows_conserve(measure, case):
+    """The rows satisfy B d = q1 - q0, also if the step rotates the pair by a radian or
     moves it along the block.
 
     No row of B, S_1, S_2 has a resultant force or moment about the middle configuration, inside
@@ -36,13 +33,12 @@ def test_rows_conserve(measure, case, without):
     penetrations at the end of the last step. Which faces share a closest point, and that they share
     it, does not depend on where Newton's method stops on each of them (tilt 2.5).
     """
-    numbers = measure("pair-3d", **case, without=without)
-    assert numbers["randomInside"] > 10 and (numbers["edges"] > 8 or case.get("noise") == 0)
+    numbers = measure("pair-3d", **case)
+    assert numbers["randomInside"] > 10
     for name in ("random", "turn"):
         assert max(numbers[name + "Exact"], numbers[name + "Force"], numbers[name + "Moment"]) < ROUND_OFF
         assert 0.1 < numbers[name + "Largest"] < 3
     assert max(numbers["turnChange"], numbers["slideExact"], numbers["slideJump"]) < ROUND_OFF
-    kernel_is_the_scripts(numbers)
 
 
 def shapes(r, s):
@@ -93,15 +89,15 @@ def test_gaps_are_those_of_an_exhaustive_search(measure, tmp_path_factory):
     assert near > 15
 
 
-@pytest.mark.parametrize("degree, scripts", [(2, 0), (1, 0), (2, 1)])
-def test_rigid_obstacles(measure, degree, scripts):
-    """Moving planes, spheres and a hollow sphere, by kernels and scripts: gaps agree with closed
+@pytest.mark.parametrize("degree", [2, 1])
+def test_rigid_obstacles(measure, degree):
+    """Moving planes, spheres and a hollow sphere: gaps agree with closed
     forms.
 
     B d and S d with the motion of the obstacles are exact, t1, t2, n is a frame, and the force of a
     round obstacle goes through its centre.
     """
-    numbers = measure("obstacles-3d", degree=degree, scripts=scripts)
+    numbers = measure("obstacles-3d", degree=degree)
     assert numbers["near"] > 500
     assert max(numbers[name] for name in ("gap", "exact", "slip", "frame", "moment", "force")) < ROUND_OFF
 

@@ -81,8 +81,9 @@ public:
   std::vector<int> pairA, pairB, firstPair, pairOf;
   std::vector<double> massOf;
   std::vector<double> block;
-  // elements with a volume term of their own: number in the scripts, sum of weights, tangent slope
-  // and g0 (node, component) of volume.idp; slopeKnown: slope and g0 are set
+  // elements with a volume term of their own (volume.idp): number in the scripts, sum of weights,
+  // and for the tangent g0 = sum(w) dtheta/du (node, component) and slope = U''/sum(w), a stiffness
+  // slope g0 g0^T; slopeKnown: both are set
   std::vector<int> cell;
   std::vector<double> elementWeight, slope, g0;
   bool slopeKnown = false;
@@ -214,12 +215,7 @@ public:
         W[q] += laws::stored(m, laws::invariantsBeyond(c, tensorAt<T>(damping, q)), 1);
     });
     for (size_t g = 0; g < cell.size(); g++) {
-      double theta = 0;
-      dispatch([&](auto stored) {
-        for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++)
-          theta += weight[q] / elementWeight[g]
-            * laws::volume(material(q), tensorAt<decltype(stored)>(C, q));
-      });
+      const double theta = meanVolume(g, C);
       for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++)
         W[q] += laws::volumeEnergy(material(q), theta);
     }
@@ -248,9 +244,20 @@ public:
     });
   }
   void ellipticities(const double *C, double *e) const {
+    // Where W is quadratic in C, the pressure of the element takes the place of kappa tr E of the
+    // point in N.S N.
     atPoints([&](auto stored, int q) {
       e[q] = material(q).law->ellipticity(material(q), tensorAt<decltype(stored)>(C, q), D == 3);
     });
+    for (size_t g = 0; g < cell.size(); g++) {
+      const laws::Material &m = material(firstPoint[g]);
+      if (!m.volumeByTrace) continue;
+      const double p = laws::pressure(m, meanVolume(g, C));
+      dispatch([&](auto stored) {
+        for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++)
+          e[q] += (p - m.bulk * laws::volume(m, tensorAt<decltype(stored)>(C, q))) / m.mu;
+      });
+    }
   }
   void smallestStretches(const double *C, double *stretch) const {
     // Smallest principal stretch; in plane strain the smaller one in the plane.
@@ -289,6 +296,16 @@ private:
   std::vector<double> nodal, nodalForces, increment, remainders;
   // contributions of each element to nodalForces and remainders
   std::vector<double> own, ownRemainders;
+
+  double meanVolume(size_t g, const double *C) const {   // theta of element g at C
+    double theta = 0;
+    dispatch([&](auto stored) {
+      for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++)
+        theta += weight[q] / elementWeight[g]
+          * laws::volume(material(q), tensorAt<decltype(stored)>(C, q));
+    });
+    return theta;
+  }
 
   // Calls f(stored) with the Stored<...> of these bodies.
   template<class Function> void dispatch(Function f) const {
@@ -518,8 +535,7 @@ private:
 
   template<class T> void slopes(int q, const Tensor &F, const Symmetric &S, double p,
                                 double scale, double rate, double A[][T::F]) const {
-    // A = scale w dP_iJ/dF_kL, dP_iJ/dF_kL = delta_ik S_JL + F_iI F_kK D_IJKL, as setPointModuli()
-    // of assembly.idp.
+    // A = scale w dP_iJ/dF_kL, dP_iJ/dF_kL = delta_ik S_JL + F_iI F_kK D_IJKL.
     const laws::Moduli moduli = laws::moduli(material(q), laws::rightCauchyGreen(F), p, scale,
                                              rate);
     double G[6][T::F];                     // F_kK D_IJKL

@@ -1,6 +1,7 @@
 // contact-law.hpp: forces on one contact point in a step and their derivatives: the normal force
-// (10) and, with friction, the tangential force (11)-(13). Scripted in program/contact/normal.idp,
-// friction.idp and candidate-forces.idp, which define the symbols. Exports Law, Candidate, Forces.
+// (10), t_N = k v_N^m for a penetration v_N > 0, and, with friction, the tangential force
+// (11)-(13), t_T = -mu_f(v_T) phi(v_T) |t_N|, v_T = slip/dt. k has the weight of the point. Exports
+// Law, Candidate, Forces.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -48,8 +49,8 @@ struct Law {
 
   void elastic(double vN0, double vN1, double k, double &t, double &stiff) const {
     // (10): t = k v_N^m where v_N > 0, and stiff = dt/dvN1, for penetrations vN0, vN1 at the start
-    // and end of the step. stepMean: the mean of the law from vN0 to vN1 (discreteGradient() of
-    // normal.idp), by a series where the penetration hardly changes.
+    // and end of the step. stepMean: the mean (Phi_1 - Phi_0)/(vN1 - vN0) of the potential Phi =
+    // k v_N^(m+1)/(m+1), whose work is the change of Phi, by a series where vN hardly changes.
     const double m = exponent, middle = (vN0 + vN1) / 2;
     t = stiff = 0;
     if (lawInstant == stepMean) {
@@ -78,7 +79,9 @@ struct Law {
   }
 
   void regularise(double vOverEps, double &phi, double &dPhi) const {
-    // phi (13) and its derivative at |v|/eps, as regularise() of friction.idp.
+    // phi (13) and its derivative at |v|/eps. At eps sqrt is 0.71 and tanh 0.76. The printed phi3
+    // jumps upwards at eps, and a step may then have no solution: a ramp over the last fraction
+    // `bridge` of eps replaces the jump.
     switch (regularization) {
       case sqrtOf:
         phi = vOverEps / std::sqrt(vOverEps * vOverEps + 1);
@@ -97,8 +100,10 @@ struct Law {
   }
 
   void muPhiAt(double v, const Candidate &a, double &muPhi, double &slope) const {
-    // mu_f phi [-] (12), (13) and its derivative [s/m] at the velocity v [m/s]. With a jump, either
-    // status is continued beyond epsilon (friction.idp).
+    // mu_f phi [-] (12), (13) and its derivative [s/m] at the velocity v [m/s]. With a jump of mu_f
+    // a step can have two solutions. The status selects the branch, mu_e phi or mu_d phi, and each
+    // branch continues monotonically across epsilon. A point keeps its status while its velocity
+    // agrees; then the converged solution satisfies the law as printed.
     const double pi = 3.14159265358979323846, vOverEps = std::abs(v) / slipVelocity,
       low = a.muStatic * (1 - bridge) / 2, rise = (a.muDynamic - low) / bridge;
     double phi = 0, dPhi = 0, mu = a.sticks ? a.muStatic : a.muDynamic, dMu = 0;

@@ -173,6 +173,24 @@ static void addStep() {
     touching.takeJacobian();
     touching.evaluate(Kept<double>{&d}.numbers());
   });
+  add("kernelTractions", +[](Reals vN0, Reals gapSlip, Reals k, Reals muStatic, Reals muDynamic,
+                            Ints sticks, double dt, long lawInstant, Reals t, Reals slope) {
+    // Forces t on n points and their slopes by kernelLaw, for verification. vN0 (n): penetrations
+    // at the start; gapSlip (m n): those at the end and the slips. slope: row i, column j at (3 i +
+    // j) n.
+    const long n = vN0.N(), m = gapSlip.N() / n;
+    contact::Law law = touching.law;
+    law.dt = dt;
+    law.lawInstant = int(lawInstant);
+    for (long i = 0; i < n; i++) {
+      contact::Forces forces = {};
+      double x[3] = {};
+      for (long c = 0; c < m; c++) x[c] = gapSlip[c * n + i];
+      law.at({vN0[i], k[i], muStatic[i], muDynamic[i], sticks[i] == 1}, x, nullptr, forces);
+      for (long c = 0; c < m; c++) t[c * n + i] = forces.t[c];
+      for (long c = 0; c < 9; c++) slope[c * n + i] = forces.slope[c / 3][c % 3];
+    }
+  });
   add("kernelForget", +[]() { step.forget(); });
   add("kernelState", +[](Reals state) {
     // Stores in an array what step and obstacles remember from earlier steps.

@@ -1,8 +1,7 @@
-// laws.hpp: the laws of edp/program/law at one quadrature point: energy, stress, moduli
-// and ellipticity, with damping, relaxation and the volume term. All tensors have three dimensions;
-// in plane strain F_33 = C_33 = 1. Stresses and moduli in Pa. A new law is a struct derived from
-// Conserving and one line in find(); svk.idp and neohookean.idp define the symbols,
-// laws.idp lists all laws.
+// laws.hpp: the laws S = g(E) (4) at one quadrature point: energy, stress, moduli and ellipticity,
+// with damping, relaxation and the volume term. All tensors have three dimensions; in plane strain
+// F_33 = C_33 = 1. Stresses and moduli in Pa. A new law is a struct derived from Conserving, a line
+// in find(), and one in program/law/laws.idp.
 #pragma once
 #include <cstring>
 #include <map>
@@ -81,8 +80,14 @@ struct Svk : Conserving<Svk> {
     D.add(identity, identity, m.lambda, m.mu);
   }
   double ellipticity(const Material &m, const Symmetric &C, bool spatial) const {
-    // Smallest eigenvalue over mu in the plane or in the three principal planes of C; formulas in
-    // planeEllipticity() and svkEllipticity() of svk.idp.
+    // Smallest eigenvalue e over mu of Q(N) = (N.S N) I + (lambda + mu) F N (x) F N + mu F F^T over
+    // the unit N of the plane or of the three principal planes of C. With the stretches L1 >= L2 in
+    // the plane, J = L1 L2, k = 1 + lambda/mu and 2 z = L1^2 + (1+k) L2^2 + k (L1^2 - L2^2) N1^2 it
+    // is a constant + (1 + 2/k) z - sqrt(z^2 - (1+k) J^2), convex with its minimum at
+    // 2 z = (2+k) J: e = (k+1)/(2k) [(k-2)(L1^2 + L2^2) + 4 J] - k. If L1 > (1+k) L2, no N has this
+    // z, the minimum is at N along L2: e = (k-1)/2 (L1^2 + L2^2) + (k+2) L2^2 - k. A stretch normal
+    // to the plane adds (k-1)/2 (C - 1). Where e <= 0 the solution depends on the mesh: the law is
+    // not polyconvex (in uniaxial strain at the stretch 0.586 for nu = 0, 0.706 for 0.3).
     const double k = 1 + (m.lambda + m.bulk) / m.mu;
     const Vector<3> L = principal(C, spatial);
     double least = 1e300;
@@ -112,10 +117,10 @@ inline double atanhRest(double x) {
   return rest * y * x;
 }
 
-// The logarithmic volume term W = -m ln J + l/2 (ln J)^2, as neohookeanStress(), volumeCorrection()
-// and volumeModuli() of neohookean.idp. The results are nan for det C <= 0. algorithmicStress()
-// calls stress() and gradientCorrection() with the same C. They are inlined, and ln() is declared
-// free of side effects, so that the compiler evaluates the logarithm once for both.
+// The logarithmic volume term W = -m ln J + l/2 (ln J)^2. The results are nan for det C <= 0.
+// algorithmicStress() calls stress() and gradientCorrection() with the same C. They are inlined,
+// and ln() is declared free of side effects, so that the compiler evaluates the logarithm once for
+// both.
 __attribute__((const, noinline)) inline double ln(double x) { return std::log(x); }
 #define SHARED __attribute__((always_inline)) inline
 struct Logarithm {
@@ -313,7 +318,7 @@ inline const Law *find(const std::string &name) {
   return all.count(name) ? all.at(name) : nullptr;
 }
 
-// W(C) - W(I) [J/m3] without cancellation at small strains: energyDensity() of law.idp.
+// W(C) - W(I) [J/m3] without cancellation at small strains.
 inline double energy(const Material &m, const Symmetric &C) {
   const Symmetric M = 0.5 * (C + identity), H = 0.5 * (C - identity);
   return m.law->gradientCorrection(m, M, H) / 2 + contract(m.law->stress(m, M), H);
@@ -419,7 +424,7 @@ inline double pressure(const Material &m, double theta0, double theta1) {
 
 inline Moduli moduli(const Material &m, const Symmetric &C, double p, double scale, double rate) {
   // Moduli of the law, of the element pressure p and of damping at rate = 1/dt (0: none), as
-  // moduli() of law.idp. The tangent has scale times D, so viscous moduli are divided by scale.
+  // The tangent has scale times D, so viscous moduli are divided by scale.
   Moduli D;
   m.law->addModuli(m, C, D);
   double l = 0, n = 0;

@@ -1,8 +1,8 @@
-// pairs.hpp: the gap between deformable bodies (9) and its conserving gap Jacobian, as
-// program/contact/pair.idp, which derives the formulas: search for candidates, closest-point
-// projection onto the facets of the counter-body (edges in the plane, faces in space; A is the
-// dimension), rows of B and S, and the geometric contact stiffness at vertices. A candidate has the
-// number counterBody np + point. Exports Pairs.
+// pairs.hpp: the gap between deformable bodies (9) and its conserving gap Jacobian: search for
+// candidates, closest-point projection onto the facets of the counter-body (edges in the plane,
+// faces in space; A is the dimension), rows of B and S, and the geometric contact stiffness at
+// vertices. On a vertex, in space also an edge, n is along x - y, outwards by the mean normal of
+// the facets that meet there. A candidate has the number counterBody np + point. Exports Pairs.
 #pragma once
 #include <map>
 #include <memory>
@@ -143,8 +143,10 @@ inline Vector<3> normalOf(const ClosestPoint<3> &closestPoint, double side) {
   return side * closestPoint.tangents.col(0).cross(closestPoint.tangents.col(1)).normalized();
 }
 
-// The vectors c_l (columns) in the slip t.rho + c_l.(N_a,l delta y_a) along t. They subtract the
-// rotation of the facet, which turns the gap vector g n (closest.idp). m: normal of the facet.
+// The slip of x past the rotating facet along t is t.rho - t.(theta x g n) = t.rho + c_l.(N_a,l
+// delta y_a), g the gap, n its normal, m the normal of the facet. The facet rotates by theta =
+// w - (m.w) m/2, w = sum over l of y^l x (N_a,l delta y_a), y^l dual to y_,l: the rotation itself
+// if it is rigid. Hence c_l = y^l x tau, tau = g (n x t - (m.(n x t)) m/2): the columns here.
 inline Vector<2> turning(const ClosestPoint<2> &closestPoint, const Vector<2> &,
                          const Vector<2> &m, const Vector<2> &, double g) {
   return -g / closestPoint.tangents.norm() * m;
@@ -575,11 +577,13 @@ private:
   }
 
   void row(int k, long n, bool seen, double change, const JacobianRows &rows) const {
-    // Row k of n of B and S in the middle configuration, (b) and (c) of pair.idp, zero if not seen:
+    // Row k of n of B and S in the middle configuration u0 + d/2, zero if not seen; for a variation
+    // delta
     //   rho = delta x - N_a delta y_a,  G delta = n.rho,
     //   S_j delta = t_j.rho + c_jl.(N_a,l delta y_a),  a = G d,  s_j = S_j d,
     //   B = -[G + kappa (a G + s_j S_j)],  kappa = (change - a)/(a^2 + s_j s_j).
-    // By the discrete-gradient correction kappa, B d is minus the `change` of the gap in the step.
+    // By the discrete-gradient correction kappa, B d is minus the `change` of the gap in the step,
+    // also if its ends are on different facets (Gonzalez 1996).
     const Projection &p = now[k];
     const long entries = 2 * A * surface.nodes * n;
     typedef Eigen::Matrix<double, A, A - 1> Frame;

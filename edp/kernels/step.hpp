@@ -12,7 +12,7 @@
 
 // Numbers that do not change in a run. `newMatrix`: factorise in every iteration.
 struct Settings {
-  double tolerance, correctionTolerance, momentumShare, leastVolumeRatio;   // newton.idp
+  double tolerance, correctionTolerance, momentumShare, leastVolumeRatio;   // step.idp
   bool breaks, newMatrix, allCandidates, damped, loads;
   long fallbackCost;                             // of a factorisation, in iterations
 };

@@ -60,7 +60,7 @@ inline Vector<3> principal(const Symmetric &C, bool spatial) {
   return {solver.eigenvalues()[1], solver.eigenvalues()[0], C[2]};
 }
 
-// Unit tangents (A, A - 1), perpendicular to n and to each other, as tangentFrames() of shapes.idp.
+// Unit tangents (A, A - 1), perpendicular to n and to each other.
 inline Vector<2> tangentsOf(const Vector<2> &n) { return {n[1], -n[0]}; }
 inline Eigen::Matrix<double, 3, 2> tangentsOf(const Vector<3> &n) {
   const double h = std::hypot(n[0], n[1]), x = std::sqrt(std::max(0., 1 - n[0] * n[0]));

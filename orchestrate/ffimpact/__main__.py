@@ -16,7 +16,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from . import __version__
-from .failure import BadInput, Failure, NotInstalled, Unreadable, brief, signals, unknown
+from .failure import BadInput, Failure, Unreadable, brief, signals, unknown
 from .places import shown
 
 __all__ = ["execute", "guarded", "leave", "main", "start"]
@@ -184,11 +184,6 @@ def _parser() -> argparse.ArgumentParser:
         help="print the JSON schema of scene files, with which editors complete and check them",
     )
     command.set_defaults(command=_schema)
-    command = commands.add_parser(
-        "kernels",
-        help="print the word that a FreeFem++ of your own needs to load the compiled kernels",
-    )
-    command.set_defaults(command=_kernels)
     command = commands.add_parser("figures", help="draw the figures of a result folder again")
     command.add_argument("folder", metavar="DIR", type=Path, help="the result folder")
     command.set_defaults(command=_figures)
@@ -289,17 +284,6 @@ def _schema(options: argparse.Namespace) -> None:
     from .schema import text
 
     print(text(), end="")
-
-
-def _kernels(options: argparse.Namespace) -> None:
-    from .freefem import freefem
-
-    if not (word := freefem.find().plugin):
-        raise NotInstalled(
-            "the kernels cannot be compiled: FreeFem++'s ff-c++, g++ or SuiteSparse's headers are missing; "
-            "run: apt-get install g++ libfreefem++-dev libsuitesparse-dev"
-        )
-    print(word)
 
 
 def _figures(options: argparse.Namespace) -> None:

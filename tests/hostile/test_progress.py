@@ -10,7 +10,7 @@ from ffimpact.freefem import freefem
 def test_scripts_report_the_share_of_their_steps(tmp_path, script, flags):
     """Near half of its steps a script reports this share, to a fifth, with the unknowns."""
     seen = []
-    assert freefem.run(freefem.find(), f"edp/program/{script}.edp", flags | {"without": "kernels", "out": tmp_path / "out"}, tmp_path / "log.txt", seen.append)[0] == 0
+    assert freefem.run(freefem.find(), f"edp/program/{script}.edp", flags | {"out": tmp_path / "out"}, tmp_path / "log.txt", seen.append)[0] == 0
     taken = (tmp_path / "out/history.csv").read_text().count("\n") - 2
     middle = min(seen, key=lambda at: abs(at.steps / taken - 0.5))
     assert middle.share == pytest.approx(middle.steps / taken, abs=0.2) and middle.steps / taken > 0.2

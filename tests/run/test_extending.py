@@ -109,4 +109,4 @@ def test_law_has_its_stress_its_tangent_and_its_energy(extended):
     summary = run(folder, "disc-normal", "--set", "law=ciarlet", "accuracy=0.05")
     assert summary["energy_drift"] < 1e-9 and summary["vibration_energy"] > 0.1 * summary["energy_initial"]
     mixed = run(folder, "two-discs", "--set", "body.1.law=ciarlet", "accuracy=0.05")
-    assert mixed["energy_drift"] < 1e-9 and mixed["vibration_energy_1"] != pytest.approx(mixed["vibration_energy_2"], rel=1e-4)
+    assert mixed["energy_drift"] < 1e-9 and mixed["vibration_energy_1"] != pytest.approx(mixed["vibration_energy_2"], rel=1e-5)

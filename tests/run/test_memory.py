@@ -33,7 +33,6 @@ RUNS = {
     "printed pairs": ("disc-block", BLOCK | {"pairing": "pairwise-printed"}),
     "explicit pairs": ("disc-block", BLOCK | {"pairing": "pairwise", "integrator": "central-difference"}),
     "closest points": ("disc-block", BLOCK | FRICTION),
-    "scripts alone": ("disc-plane", FRICTION | {"without": "kernels", "law": "neohookean"}),
     "explicit friction": ("disc-plane", FRICTION | {"integrator": "central-difference", "law": "neohookean"}),
     "rubber": ("ball-axisymmetric", {"law": "neohookean", "nu": 0.4999}),
 }

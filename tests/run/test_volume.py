@@ -1,5 +1,4 @@
-"""nu -> 0.5 (edp/program/law/volume.idp): volume as the mean over an element, without locking, in
-scripts and kernels."""
+"""nu -> 0.5 (edp/program/law/volume.idp): volume as the mean over an element, without locking."""
 
 import pytest
 
@@ -17,17 +16,11 @@ SCENES = {"disc": ("disc-plane", RUBBED), "svk": ("disc-plane", {"law": "svk", "
 @pytest.mark.few(1)
 @pytest.mark.parametrize("name", SCENES)
 def test_an_impact_keeps_energy_and_momenta(tmp_path, name):
-    """At nu = 0.4999 the balances close to 1e-9, with and without kernels. The summary has the
-    projected volume."""
+    """At nu = 0.4999 the balances close to 1e-9. The summary has the projected volume."""
     script, flags = SCENES[name]
-    run, scripted = (disc(tmp_path / without, script, **IMPACT | flags, without=without) for without in ("none", "kernels"))
-    summary = run.summary
+    summary = disc(tmp_path, script, **IMPACT | flags).summary
     assert summary["volume"] == "projected" and not any("locking" in warning for warning in summary["warnings"])
     assert summary["energy_drift"] < 1e-9 and summary["momentum_drift"] < 1e-9 and (summary["angular_momentum_drift"] or 0) < 1e-9
-    same = scripted.summary["rejected_steps"] == 0   # with friction and nu near 0.5 the scripts may need smaller steps
-    assert same or scripted.summary["impulse"] == pytest.approx(summary["impulse"], rel=0.03)
-    for column in ("normal_force", "kinetic", "elastic", "min_stretch", "min_ellipticity") if same else ():
-        assert run.history[column] == pytest.approx(scripted.history[column], rel=0, abs=1e-8 * max(abs(run.history[column]))), column
 
 
 def test_up_to_nu_045_nothing_changes(tmp_path):
@@ -71,19 +64,13 @@ HELD = {"law": "incompressible", "nu": 0.5, "accuracy": 0.1, "speed": 4}
 @pytest.mark.few(1)
 @pytest.mark.parametrize("name", SCENES)
 def test_incompressible_bodies_keep_their_volume(tmp_path, name):
-    """J = 1: the mean volume of every element is constant to 1e-6, energy and momenta to 1e-9, with
-    and without kernels."""
+    """J = 1: the mean volume of every element is constant to 1e-6, energy and momenta to 1e-9."""
     script, flags = SCENES[name]
     values = HELD | {"tolerance": 1e-14} | {key: value for key, value in flags.items() if key != "law"}
-    run, scripted = (disc(tmp_path / without, script, **values, without=without) for without in ("none", "kernels"))
-    summary = run.summary
+    summary = disc(tmp_path, script, **values).summary
     assert summary["volume_change"] < 1e-6 and summary["energy_drift"] < 1e-9
     assert summary["volume_spread"] >= 1 - summary["min_jacobian"] - 1e-6
     assert summary["momentum_drift"] < 1e-9 and (summary["angular_momentum_drift"] or 0) < 1e-9
-    same = scripted.summary["rejected_steps"] == 0
-    assert same or scripted.summary["impulse"] == pytest.approx(summary["impulse"], rel=0.03)
-    for column in ("normal_force", "kinetic", "elastic", "min_stretch") if same else ():
-        assert run.history[column] == pytest.approx(scripted.history[column], rel=0, abs=1e-8 * max(abs(run.history[column]))), column
 
 
 def test_snapshots_have_their_own_pressures(tmp_path):

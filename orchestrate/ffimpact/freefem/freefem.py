@@ -195,9 +195,10 @@ def _find(variables: tuple[tuple[str, str], ...]) -> FreeFem:
         raise NotInstalled(
             f"{command} is version {version}, needed is {OLDEST[0]}.{OLDEST[1]} or newer; {HOW}"
         )
-    return FreeFem(
-        command, version, environment, description, kernels.build(command, version, environment)
-    )
+    plugin = kernels.build(command, version, environment)
+    if not plugin:
+        raise NotInstalled(f"the compiled kernels cannot be built; {kernels.HOW}")
+    return FreeFem(command, version, environment, description, plugin)
 
 
 def _threads(threads: str) -> dict[str, str]:

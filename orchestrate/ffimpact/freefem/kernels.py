@@ -1,5 +1,5 @@
-"""Builds the compiled kernels of edp/kernels as a plugin for the installed FreeFem++, if there is a
-compiler. A word on the command line of a script loads the plugin.
+"""Builds the compiled kernels of edp/kernels as a plugin for the installed FreeFem++. A word on the
+command line of a script loads the plugin.
 """
 
 import re
@@ -12,18 +12,23 @@ from pathlib import Path
 from ..places import ROOT
 from .compiled import QUIET, compiled
 
-__all__ = ["SOURCES", "build"]
+__all__ = ["HOW", "SOURCES", "build"]
 
 SOURCES = ROOT / "edp/kernels"
 LIBRARIES = ("-lcholmod", "-lumfpack")
+HOW = (
+    "they need g++, ff-c++ and the headers of FreeFem++, SuiteSparse and Eigen, and a cache folder "
+    "(XDG_CACHE_HOME) that can be written: apt-get install g++ libfreefem++-dev libsuitesparse-dev "
+    "libeigen3-dev"
+)
 # Compiler flags, tried in this order. Without OpenMP the kernels use one thread.
 THREADS = ("-fopenmp",), ()
 
 
 def build(command: str, version: str, environment: Mapping[str, str]) -> str:
     """Returns the command-line word with which a script loads the plugin of the present sources for
-    this FreeFem++. If the plugin is missing, the ff-c++ in the folder of FreeFem++ builds it. If
-    that fails, the word is empty and the scripts run without kernels.
+    this FreeFem++. If the plugin is missing, the ff-c++ in the folder of FreeFem++ builds it. The
+    word is empty if that fails.
     """
     maker = Path(command).resolve().with_name("ff-c++")
     if not maker.exists():
@@ -39,7 +44,7 @@ def build(command: str, version: str, environment: Mapping[str, str]) -> str:
         return ""
     # The version of the interface through which the scripts call the kernels.
     interface = re.search(
-        r"IFMACRO\((kernels\d+)\)", (ROOT / "edp/kernels/kernels.idp").read_text()
+        r"(?m)^load (kernels\d+)$", (ROOT / "edp/program/kernels.idp").read_text()
     )[1]
     # FreeFEM puts its own folders before any name, so that the path first leads up to the root.
     return f'-D{interface}="{"../" * 40}{str(plugin.with_suffix("")).lstrip("/")}"'
@@ -57,7 +62,7 @@ def _make(command: str, maker: Path, environment: Mapping[str, str], folder: Pat
             cwd=folder,
             env=environment,
             check=not flags,
-            timeout=300,
+            timeout=1800,
             **QUIET,
         )
         if made.returncode == 0:

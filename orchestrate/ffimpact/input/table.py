@@ -381,7 +381,6 @@ ROWS = (
             "body-force",
             "frozen-factorisation",
             "contact-culling",
-            "kernels",
         ),
         "leave out one saving, to measure what it saves",
     ),
