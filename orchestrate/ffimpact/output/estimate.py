@@ -533,17 +533,18 @@ def largest(estimated: Mapping[str, float]) -> float:
 
 
 def touches(runs: Sequence[Answers]) -> list[str]:
-    """Returns a message if the two finest runs have different numbers of contact intervals. Their
-    differences then estimate little.
+    """Returns a message if the run and one of its levels have different numbers of contact intervals.
+    Their differences then estimate little.
     """
-    seen = [run.summary.get("contact_intervals") for run in runs[:2]]
+    seen = [run.summary.get("contact_intervals") for run in runs]
+    other = next((k for k, touched in enumerate(seen) if touched != seen[0]), 0)
     return (
         [
-            f"touches: {seen[0]} contact intervals, {seen[1]} with {COARSER:.1f} times larger elements and steps: "
-            "results of runs with different numbers of contacts may differ by more than the error estimates: "
-            "see contacts.csv, or ask for a smaller accuracy"
+            f"touches: {seen[0]} contact intervals, {seen[other]} with {COARSER**other:.1f} times larger elements and "
+            "steps: results of runs with different numbers of contacts may differ by more than the error "
+            "estimates: see contacts.csv, or ask for a smaller accuracy"
         ]
-        if len(set(seen)) > 1
+        if other
         else []
     )
 
