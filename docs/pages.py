@@ -72,7 +72,7 @@ OF_ESTIMATES = "".join(
         (
             "touches",
             "warning",
-            "the two finest runs have different numbers of contact intervals: error estimates may "
+            "a level of the estimate has another number of contact intervals: error estimates may "
             "be too small",
             "take a smaller accuracy, or the impulse, which does not depend on single touches",
         ),
