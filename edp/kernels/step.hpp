@@ -370,12 +370,16 @@ class ImplicitStep {
     // contact point changes its facet, B jumps, and no increment balances the step. Goes back to
     // the previous iterate. The work that is left stays in the energy balance.
     const double enough = 100;                   // over the tolerances of testConvergence()
+    const int why = status;                      // the try failed so: the reason of renew()
     if (renewed == 0 || iterations - renewedAt != 1) return false;
     evaluateAt(dBack, pressureBack);
     residualWorkRatio = work() / motion.energyScale;
-    return status == bodies::succeeded && residualWorkRatio <= enough * settings.tolerance
+    const bool accepted = status == bodies::succeeded
+      && residualWorkRatio <= enough * settings.tolerance
       && std::abs(residual.dot(searchDirection))
         <= enough * enough * settings.correctionTolerance * motion.energyScale;
+    if (!accepted) status = why;
+    return accepted;
   }
   bool collapses() const {
     // Whether a point loses four fifths of its volume in the step. An implicit step has more than
