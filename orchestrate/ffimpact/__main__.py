@@ -248,10 +248,10 @@ def _view(options: argparse.Namespace) -> None:
 
 
 def _evaluate(options: argparse.Namespace) -> None:
-    from .output import evaluate, results
+    from .output import evaluate, paper_script, results
 
     record = options.folder / evaluate.RECORD
-    if not record.exists():
+    if not record.exists() and not (options.folder / paper_script.ANSWERS).exists():
         raise Unreadable(
             f"{record} cannot be read: there is no such file (accepted: the folder of a run of an .edp script)"
         )
@@ -287,9 +287,10 @@ def _schema(options: argparse.Namespace) -> None:
 
 
 def _figures(options: argparse.Namespace) -> None:
-    from .output import results
+    from .output import evaluate, results
     from .report import drawing, solid
 
+    evaluate.evaluate(options.folder)
     results.read_summary(options.folder)  # raises Unreadable without a finished run
     drawn = drawing.draw(options.folder)
     for path in drawn:

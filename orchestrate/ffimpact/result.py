@@ -177,13 +177,14 @@ class Result:
             for name, row in self.table.iterrows()
         ]
         warnings = report.warning_lines(self.summary)
+        origin = ", by a script of the paper" if "made_by" in self.summary else ""
         more = (
             [f"  and {len(rows) - report.MOST} more: result.table"]
             if len(rows) > report.MOST
             else []
         )
         return "\n".join(
-            [f"Result in {shown(self.folder)}", *rows[: report.MOST], *more, *warnings]
+            [f"Result in {shown(self.folder)}{origin}", *rows[: report.MOST], *more, *warnings]
         )
 
     def _repr_html_(self) -> str:

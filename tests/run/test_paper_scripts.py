@@ -15,6 +15,7 @@ import pandas as pd
 import pytest
 
 import ffimpact
+from ffimpact.__main__ import main
 from ffimpact.freefem import freefem
 from ffimpact.places import ROOT
 
@@ -66,6 +67,20 @@ def test_a_body_on_the_plane_as_the_program_has_it(tmp_path, scene, script, flag
     assert history.spin.iloc[-1] == pytest.approx(result["rebound_spin"], rel=0.01, abs=1e-9)
     assert history.balance.abs().max() < 1e-8 * history.kinetic[0] and ends["unconverged_steps"] == 0
     assert history.friction_work.is_monotonic_increasing
+    reads_as_a_result(tmp_path, history, result)
+
+
+def reads_as_a_result(folder: Path, history: pd.DataFrame, result: ffimpact.Result) -> None:
+    """load() makes a summary of the script's files, marked and without estimates; compare() and the
+    figures read it beside the run in folder/run."""
+    loaded = ffimpact.load(folder / "script")
+    assert loaded.summary["made_by"] == "script" and not loaded.errors and "by a script of the paper" in repr(loaded)
+    assert loaded["impulse"] == pytest.approx((history.dt * history.normal_force)[1:].sum()) and loaded["steps"] == len(history) - 1
+    assert loaded["rebound_vy"] == history.vy.iloc[-1] and loaded["mass"] == pytest.approx(result["mass"], rel=1e-3)
+    assert loaded["vibration_energy"] == pytest.approx(result["vibration_energy"], abs=2 * SAME * result["energy_initial"])
+    table = ffimpact.compare(folder / "script", folder / "run")
+    assert {"contact_time", "impulse", "rebound_vy", "peak_force", "energy_drift"} <= set(table.index)
+    assert main(["figures", str(folder / "script")]) == 0 and (folder / "script/figures/force.png").exists()
 
 
 def test_a_ball_in_space_as_the_program_has_it(tmp_path):

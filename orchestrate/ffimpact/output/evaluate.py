@@ -12,6 +12,7 @@ import numpy as np
 from . import contacts, warnings
 from .fields import write_fields
 from .modes import write_modes
+from .paper_script import ANSWERS, evaluate_script
 from .results import read_history, read_json, reading, write_json
 
 __all__ = ["RECORD", "evaluate"]
@@ -20,9 +21,11 @@ RECORD = "record.json"  # written last by edp/program/run/summary.idp
 
 
 def evaluate(folder: Path) -> None:
-    """Evaluates the record in `folder` and removes it; does nothing if there is none. Raises
-    Unreadable if a file of the record is damaged.
+    """Evaluates the record in `folder` and removes it, or the answers of a script of the paper; does
+    nothing if there are none. Raises Unreadable if a file of them is damaged.
     """
+    if (folder / ANSWERS).exists():
+        return evaluate_script(folder)
     failed = read_json(folder / "failure.json") if not (folder / RECORD).exists() else {}
     if "diagnostics" not in failed and not (folder / RECORD).exists():
         return

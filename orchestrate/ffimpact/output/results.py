@@ -30,6 +30,7 @@ __all__ = [
     "Record",
     "body_names",
     "check_files",
+    "columns_of",
     "content",
     "digest",
     "files_of",
@@ -213,18 +214,26 @@ def read_frame(path: Path, columns: Iterable[str] = (), **options) -> "DataFrame
 def read_history(folder: Path) -> dict[str, np.ndarray]:
     """Returns the columns of history.csv by name, each (steps,)."""
     path = folder / "history.csv"
-    head, _, rows = content(path).partition("\n")
+    text = content(path)
     with reading(path):
-        if not rows.endswith("\n"):
-            raise ValueError("it is empty or cut off")
-        lines = rows.splitlines()
-        table = np.loadtxt(lines, delimiter=",", ndmin=2)
-        if len(table) < len(lines):
-            raise ValueError("it has empty lines")
+        columns = columns_of(text)
+        rows = len(next(iter(columns.values())))
         # The history has one row more than steps, that of the start.
-        if len(table) <= (steps := read_json(folder / "summary.json").get("steps", 0)):
-            raise ValueError(f"it has {len(table)} rows of {steps + 1}")
-        return Contents(dict(zip(head.split(","), table.T, strict=True)), path)
+        if rows <= (steps := read_json(folder / "summary.json").get("steps", 0)):
+            raise ValueError(f"it has {rows} rows of {steps + 1}")
+        return Contents(columns, path)
+
+
+def columns_of(text: str) -> dict[str, np.ndarray]:
+    """Returns the columns of a history by name. Raises ValueError if the text is cut off."""
+    head, _, rows = text.partition("\n")
+    if not rows.endswith("\n"):
+        raise ValueError("it is empty or cut off")
+    lines = rows.splitlines()
+    table = np.loadtxt(lines, delimiter=",", ndmin=2)
+    if len(table) < len(lines):
+        raise ValueError("it has empty lines")
+    return dict(zip(head.split(","), table.T, strict=True))
 
 
 def read_scene(folder: Path) -> dict[str, Value]:
@@ -387,7 +396,7 @@ TABLE: Kind = (
     ),
 )
 KINDS_OF: dict[str, Kind] = (
-    dict.fromkeys(("status", "message", "ended", "integrator", "volume"), TEXT)
+    dict.fromkeys(("status", "message", "ended", "made_by", "integrator", "volume"), TEXT)
     | dict.fromkeys(
         (
             "warnings",

@@ -11,8 +11,9 @@ import numpy as np
 from .. import progress, scene
 from ..failure import BadInput, Failure
 from ..input.parameters import add_set, overrides
+from ..output.evaluate import evaluate
 from ..output.folder import result_folder
-from ..output.results import Record, body_names, mechanical_energy, suffixes
+from ..output.results import Record, body_names, mechanical_energy, read_record, suffixes
 from ..places import RESULTS, shown
 from ..running.run import run
 from . import report
@@ -40,7 +41,10 @@ def main(argv: list[str]) -> int:
     """
     parser = argparse.ArgumentParser(prog="ffimpact compare", description=__doc__)
     parser.add_argument(
-        "scenes", metavar="SCENE", nargs="+", help="two or more built-in scenes or TOML files"
+        "scenes",
+        metavar="SCENE",
+        nargs="+",
+        help="two or more built-in scenes, TOML files, or folders of finished runs",
     )
     add_set(parser, "set a parameter in all of them")
     parser.add_argument(
@@ -51,13 +55,16 @@ def main(argv: list[str]) -> int:
         help="a folder for a folder of each scene",
     )
     options = parser.parse_args(argv)
-    scenes, folder = [scene.load(name) for name in options.scenes], result_folder(options.out)
+    scenes, folder = [_scene_or_run(name) for name in options.scenes], result_folder(options.out)
     if len({candidate.name for candidate in scenes}) < max(2, len(scenes)):
         raise BadInput("compare: two or more different scenes are needed")
     results, failed = {}, None
     for loaded in progress.in_turn("compare", scenes):
         try:
-            result = run(loaded, overrides(options.set), folder / loaded.name)
+            if isinstance(loaded, Path):
+                result = _finished(loaded)
+            else:
+                result = run(loaded, overrides(options.set), folder / loaded.name)
             results[loaded.name] = result
             report.draw(result)
             print(report.report(result) + "\n")
@@ -71,6 +78,17 @@ def main(argv: list[str]) -> int:
     if failed:
         raise failed
     return 0
+
+
+def _scene_or_run(name: str) -> scene.Scene | Path:
+    """Returns the folder of a finished run, or loads a scene."""
+    return Path(name) if Path(name).is_dir() else scene.load(name)
+
+
+def _finished(folder: Path) -> Record:
+    """Returns the run in a folder, evaluated if it is of an .edp script."""
+    evaluate(folder)
+    return read_record(folder)
 
 
 def draw(results: dict[str, Record], path: Path) -> None:
