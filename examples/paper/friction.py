@@ -88,7 +88,7 @@ def _steps(slope: float, beyond: float = 1.0) -> Callable[[np.ndarray], np.ndarr
 def _apart(laws: pd.DataFrame, panel: str, law: str, formula: Callable) -> float:
     """Largest deviation of a tabulated curve, with the jump, from a formula in the velocity. As in
     the program, |v| = ε is sliding."""
-    curve = laws[(laws.panel == panel) & (laws.law == law) & (laws.transition == "jump")]
+    curve = laws[(laws.panel == panel) & (laws.law == law)]
     v = np.where((curve.side == "stick") | (np.abs(curve.v) >= EPSILON), curve.v, np.sign(curve.v) * EPSILON)
     return float(np.abs(curve.ratio - formula(v)).max())
 

@@ -94,7 +94,7 @@ def _needed(results: judging.Results) -> Iterator[tuple[str, list[Path], Callabl
     place = results.folder / "stick-slip"
     yield ("stick-slip", [place / "stick-slip.csv", place / "stick-slip.png"],
            partial(_hold, _runs(place, scene.load(stick_slip.SCENE), stick_slip.BASE, stick_slip.grid(stick_slip.AXES))))
-    laws = [ROOT / "edp/program/contact/friction.idp", ROOT / "edp/program/friction-laws.edp"]
+    laws = [ROOT / "edp/paper/friction.idp", ROOT / "edp/friction-laws.edp"]
     drawn = [results.folder / "friction-laws" / name for name in ("laws.csv", "friction-laws.png")]
     yield "friction-laws", drawn, lambda: all(made.stat().st_mtime >= law.stat().st_mtime for made in drawn for law in laws)
     yield "verify", [], lambda: verify.there(results.folder / "verify")

@@ -145,14 +145,14 @@ def speeds(times, error=1e-5, nu=(0.3, 0.45)) -> pd.DataFrame:
 
 
 def laws() -> pd.DataFrame:
-    """The friction laws as edp/program/friction-laws.edp tabulates them, at fewer velocities."""
+    """The friction laws as edp/friction-laws.edp tabulates them, at fewer velocities."""
     epsilon, parts = VALUES["slip_velocity"], []
     v = np.sort(np.append(np.linspace(-4, 4, 81), [1 - 1e-12, 1e-12 - 1])) * epsilon
     stick = np.abs(v) < epsilon * (1 - 1e-14)
     for panel, law, inside, outside in (("b", "sqrt", None, v / np.hypot(v, epsilon)), ("b", "tanh", None, np.tanh(v / epsilon)), ("b", "linear", v / epsilon, np.sign(v)),
                                         ("b", "linear-printed", v / (2 * epsilon), np.sign(v)), ("c", "linear", 0.7 * v / epsilon, 0.5 * np.sign(v))):
         ratio = outside if inside is None else np.where(stick, inside, outside)
-        parts.append(pd.DataFrame({"panel": panel, "law": law, "transition": "jump", "side": np.where(stick, "stick", "slip"), "v": v, "ratio": ratio}))
+        parts.append(pd.DataFrame({"panel": panel, "law": law, "side": np.where(stick, "stick", "slip"), "v": v, "ratio": ratio}))
     return pd.concat(parts, ignore_index=True)
 
 

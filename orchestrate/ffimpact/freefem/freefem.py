@@ -106,7 +106,8 @@ class FreeFem:
     plugin: str = ""  # the command-line word that loads the compiled kernels
 
     def words(self, script: str | Path, *flags: str) -> list[str]:
-        """Returns the command that runs a script."""
+        """Returns the command that runs a script. The paper's scripts (edp/*.edp) have no kernels."""
+        plugin = "" if Path(script).parent.name == "edp" else self.plugin
         return [
             *LAUNCHER,
             self.command,
@@ -115,7 +116,7 @@ class FreeFem:
             "-v",
             "0",
             str(script),
-            *filter(None, [self.plugin]),
+            *filter(None, [plugin]),
             *flags,
         ]
 

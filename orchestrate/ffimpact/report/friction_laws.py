@@ -1,5 +1,5 @@
-"""Figure 3 of the paper: the friction laws (11)-(13). The curves are computed by the same function
-of edp/program/contact/friction.idp that the runs use.
+"""Figure 3 of the paper: the friction laws (11)-(13), as the paper's script edp/friction-laws.edp
+tabulates them.
 """
 
 import argparse
@@ -53,8 +53,8 @@ def main(argv: list[str]) -> int:
 
 
 def tabulate(folder: Path, values: dict[str, parameters.Value]) -> pd.DataFrame:
-    """Returns the table that edp/program/friction-laws.edp writes: panel, law, transition, side, v [m/s],
-    ratio [-], slope [s/m]. The script describes the columns. Raises Unreadable if the folder cannot
+    """Returns the table that edp/friction-laws.edp writes: panel, law, side, v [m/s], ratio [-],
+    slope [s/m]. The script describes the columns. Raises Unreadable if the folder cannot
     be written, else Failure.
     """
     program = freefem.find()
@@ -67,7 +67,7 @@ def tabulate(folder: Path, values: dict[str, parameters.Value]) -> pd.DataFrame:
             f"{folder} cannot be written: {error.strerror}; choose another --out"
         ) from None
     code, message = freefem.run(
-        program, "edp/program/friction-laws.edp", values | {"out": folder}, folder / "log.txt"
+        program, "edp/friction-laws.edp", values | {"out": folder}, folder / "log.txt"
     )
     if code != 0:
         raise Failure(
@@ -109,17 +109,7 @@ def draw(laws: pd.DataFrame, values: dict[str, float], path: Path) -> None:
         )
         legend(b, **BELOW, handlelength=1.6, ncols=2)
         both = laws[laws.panel == "c"]
-        _curve(
-            c,
-            both[both.transition == "jump"],
-            BLUE,
-            "-",
-            "jump at $|v_T| = \\varepsilon$, as in the paper",
-            1.6,
-        )
-        _curve(
-            c, both[both.transition == "smooth"], ORANGE, "--", "smooth (friction_transition)", 1.4
-        )
+        _curve(c, both, BLUE, "-", "jump at $|v_T| = \\varepsilon$", 1.6)
         ticks = {
             f"{sign}\\mu_{kind}": float(sign + "1") * values[f"friction_{name}"]
             for sign in ("-", "+")
