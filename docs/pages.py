@@ -23,16 +23,9 @@ import ffimpact
 from ffimpact import __main__ as command_line, failure, schema
 from ffimpact.input import models, parameters
 from ffimpact.input.parameter import Parameter, Rule
-from ffimpact.output.meanings import describe_results
+from ffimpact.output.columns import FILES, NEEDS
 from ffimpact.places import PACKAGE, ROOT, shown
 
-TABLES = (
-    ("history.csv", "history", ("columns", "body_columns")),
-    ("summary.json", "summary", ("summary", "body_summary")),
-    ("contacts.csv", "contacts", ("contact_columns",)),
-    ("fields/contact.csv", "points", ()),
-)
-SCRIPTS = ("disc-plane", "disc-block", "ball-axisymmetric", "ball-plane")
 EQUATION = re.compile(r"// ((?:\(\d+\)(?:, |–| ))*\(\d+\))(?::| |$)")
 
 
@@ -206,22 +199,18 @@ def kinds(word: str, table: Mapping[str, type], common: type[models.Entries]) ->
 
 def results() -> str:
     """Tables of the files, columns and numbers of a run."""
-    descriptions = [describe_results({}, script) for script in SCRIPTS]
-    text, meanings = "", descriptions[0]["meanings"]
-    for file, table, lists in TABLES:
-        explanations = {
-            name: entry for group in reversed(meanings.values()) for name, entry in group.items()
-        } | meanings[table]
-        names = {name: None for description in descriptions for key in lists for name in description[key]}
-        names |= {name: None for name in meanings[table]}
-        of_body = {
-            name for description in descriptions for key in lists if key.startswith("body") for name in description[key]
-        }
-        text += f"\n## `{file}`\n| name | unit | meaning |\n|---|---|---|\n"
-        text += "".join(
-            f"| `{name}`{' `_1` …' if name in of_body else ''} | {explanations[name][0]} | {cell(explanations[name][1])} |\n"
-            for name in names
+    text = ""
+    for file, tables in FILES.items():
+        rows = {row.name: row for table in tables for row in table}
+        alone, numbered = (
+            {row.name for table in tables for row in table if getattr(row, kind)}
+            for kind in ("whole", "part")
         )
+        text += f"\n## `{file}`\n| name | unit | meaning |\n|---|---|---|\n"
+        for name, row in rows.items():
+            titles = [f"`{name}`"] * (name in alone) + [f"`{name}_1` …"] * (name in numbered)
+            needs = f" ({NEEDS[row.needs]})" if row.needs else ""
+            text += f"| {' '.join(titles)} | {row.unit} | {cell(row.meaning)}{needs} |\n"
     return text
 
 

@@ -7,7 +7,6 @@ and states.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from html import escape
@@ -19,10 +18,10 @@ import pandas as pd
 from .failure import BadInput, NotInstalled, Unreadable, unknown
 from .input.dimension import per_metre
 from .output import vtu
+from .output.columns import units
 from .output.errors import errors
 from .output.evaluate import evaluate
 from .output.filters import channel_class, filtered
-from .output.meanings import describe_results
 from .output.results import Record, numbers, read_record, read_summary, reading
 from .places import shown
 from .report import report
@@ -143,19 +142,7 @@ class Result:
         """The unit of each number and column. Only plane strain has units per metre of
         thickness.
         """
-        script = self.summary["provenance"]["script"]
-        meanings = describe_results(script=script)["meanings"]
-        units = {
-            name: entry[0]
-            for table in ("summary", "history", "contacts")
-            for name, entry in meanings[table].items()
-        } | {
-            name: meanings["summary"][bare][0]
-            for name in self.summary
-            if (bare := re.sub(r"_[0-9]+$", "", name)) in meanings["summary"]
-        }
-        suffix = "" if per_metre(script) else "/m"
-        return {name: unit.removesuffix(suffix) for name, unit in units.items()}
+        return units(per_metre(self.summary["provenance"]["script"]), self.summary)
 
     @property
     def table(self) -> pd.DataFrame:

@@ -11,13 +11,15 @@ import sys
 import numpy as np
 import pytest
 
+import ffimpact as ff
 from ffimpact import scene
+from ffimpact.__main__ import main
 from ffimpact.failure import NotInstalled
 from ffimpact.freefem import freefem
 from ffimpact.freefem.describe import describe
 from ffimpact.input import parameters
 from ffimpact.output import results, vtu
-from ffimpact.output.meanings import describe_results
+from ffimpact.output.columns import FILES
 from ffimpact.report import literature, report
 from ffimpact.running import run
 from tests.support.end_to_end import COARSE, call, direct
@@ -37,14 +39,14 @@ def test_folder_holds_what_the_contract_says(result):
         "contact.png", "energies.png", "force.png", "shapes.png", "velocity.png"}
 
 
-def test_scripts_describe_what_they_write(result):
-    """The columns and numbers that the scripts describe are those of the files, in their order."""
-    description, written = describe_results(), json.loads((result.folder / "summary.json").read_text())
-    assert (result.folder / "history.csv").read_text().splitlines()[0].split(",") == description["columns"]
-    assert [key for key in written if key in description["summary"]] == description["summary"]
+def test_a_run_records_the_columns_and_numbers_of_the_table(result):
+    """The names of a scene by the table are those of the files, in their order."""
+    used, written = scene.load("disc-normal"), json.loads((result.folder / "summary.json").read_text())
+    assert (result.folder / "history.csv").read_text().splitlines()[0].split(",") == used.columns
+    assert [key for key in written if key in used.numbers] == used.numbers
     numbers = {key for key, value in written.items() if type(value) in (int, float)}
     # These come from other runs or from Python.
-    assert numbers - {"estimate_cpu_seconds", "refinements", "total_seconds"} <= set(description["summary"])
+    assert numbers - {"estimate_cpu_seconds", "refinements", "total_seconds"} <= set(used.numbers)
 
 
 def test_history_and_summary_agree(result):
@@ -243,9 +245,22 @@ def test_chatter_is_11_or_a_warning(tmp_path, how):
 
 
 def test_every_number_of_a_run_has_a_unit_and_a_meaning(result):
-    """Each key of the summary and each column of the tables that a run writes is one that the scripts explain (docs/reference/results.md)."""
-    meanings = {name for table in describe_results()["meanings"].values() for name in table}
+    """Each key of the summary and each column of the tables that a run writes is one that the table explains (docs/reference/results.md)."""
+    meanings = {row.name for tables in FILES.values() for table in tables for row in table}
     assert set(result.summary) <= meanings, set(result.summary) - meanings
     for name in ("history.csv", "contacts.csv", "fields/contact.csv"):
         columns = set((result.folder / name).read_text().partition("\n")[0].split(","))
         assert columns <= meanings, columns - meanings
+
+
+def test_a_result_is_shown_and_drawn_without_freefem(result, monkeypatch, capsys):
+    """Units, tables, comparison and figures of a finished run start no FreeFem++."""
+    monkeypatch.setenv("FREEFEM", "/nowhere/FreeFem++")
+    with pytest.raises(NotInstalled):
+        freefem.find()
+    monkeypatch.setattr(freefem, "find", lambda: pytest.fail("FreeFem++ is sought"))
+    shown = ff.load(result.folder)
+    assert shown.units["peak_force"] == "N/m" and shown.table.unit["rebound_vy"] == "m/s"
+    assert "N s/m" in repr(shown) and "N s/m" in shown._repr_html_()
+    assert list(ff.compare(shown, result.folder, names="impulse").unit) == ["N s/m"]
+    assert shown.plot.force().get_ylabel() and main(["figures", str(result.folder)]) == 0

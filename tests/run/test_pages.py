@@ -9,7 +9,6 @@ import ffimpact
 import pages
 from benchmarks import figures, page
 from ffimpact import scene
-from ffimpact.output.meanings import describe_results
 from ffimpact.places import PACKAGE, ROOT
 
 PAGES = [
@@ -34,26 +33,6 @@ def name_of(path):
 def test_pages_are_as_the_scripts_have_it(path):
     """The pages equal the output of python docs/pages.py."""
     assert path.read_text() == pages.pages()[path], "python docs/pages.py"
-
-
-@pytest.mark.parametrize("script", pages.SCRIPTS)
-def test_every_column_and_number_has_a_meaning(script):
-    """Each has a unit and a meaning. No others have one."""
-    description = describe_results(
-        {} if "ball-axi" in script else {"angle": 60, "friction_static": 0.3}, script
-    )
-    named = {
-        name
-        for key in ("columns", "summary", "contact_columns", "body_columns", "body_summary")
-        for name in description[key]
-    }
-    meanings = [name for table in description["meanings"].values() for name in table]
-    assert named <= set(meanings), named - set(meanings)
-    assert all(
-        words and not words.startswith(" ")
-        for table in description["meanings"].values()
-        for _, words in table.values()
-    )
 
 
 def test_every_equation_of_the_paper_has_its_line():

@@ -1,5 +1,5 @@
-"""Queries the FreeFEM scripts edp/program/describe*.edp, which describe the scripts, a scene and its
-results. The source of the scripts is never parsed.
+"""Queries the FreeFEM script edp/program/describe.edp, which describes the scripts and a scene. The
+source of the scripts is never parsed.
 """
 
 import copy
@@ -10,7 +10,7 @@ from functools import cache
 from ..failure import BadInput, NotInstalled
 from . import freefem
 
-__all__ = ["describe", "describe_record"]
+__all__ = ["describe"]
 
 LIMIT = 60  # time limit of a query [s]
 
@@ -27,15 +27,6 @@ def describe(values: dict | None = None, script: str = "disc-plane") -> dict:
         return copy.deepcopy(freefem.find().description)
     return json.loads(
         _ask(freefem.DESCRIBE, *freefem.words_of({"script": script} | (values or {})))
-    )
-
-
-def describe_record(values: dict | None = None, script: str = "disc-plane") -> dict:
-    """Returns the answer of edp/program/describe-results.edp: what the record of a scene holds, as
-    described for output/meanings.py. Raises as describe().
-    """
-    return json.loads(
-        _ask("edp/program/describe-results.edp", *freefem.words_of({"script": script} | (values or {})))
     )
 
 

@@ -28,12 +28,11 @@ from typing import Any
 
 import numpy as np
 
+from .columns import CONTACTS, RUN_NUMBERS
 from .fields import read_arrays
 
 __all__ = [
-    "CONTACT_COLUMNS",
     "RECORDED",
-    "RUN_NUMBERS",
     "THRESHOLD",
     "Interval",
     "Motion",
@@ -57,106 +56,11 @@ SLIGHTEST, DRIVEN, STEADY = (
     0.99,
 )  # shares of the velocity jump, and of the impulse (above)
 FIRST = 3  # number of bounces in first_restitutions
-SAME = "likewise"
-# unit and meaning of the columns of contacts.csv; an empty meaning is that of the summary
-CONTACT_COLUMNS = {
-    "body": ("", "number of the body, from 1"),
-    "partner": ("", "k: body k, also the body itself; -k: obstacle k"),
-    "start": ("s", "first point in contact"),
-    "end": ("s", "last point out of contact"),
-    "over": ("", "0: still in contact at the end of the run"),
-    "time": ("s", "end - start"),
-    "thresholded_time": ("s", "between 1 % of the largest force of the interval"),
-    "impulse": ("", ""),
-    "impulse_x": ("", ""),
-    "impulse_y": ("", ""),
-    "impulse_z": ("", ""),
-    "peak_force": ("", ""),
-    "peak_time": ("s", "middle of the step with the largest mean force"),
-    "normal_x": ("1", "direction of the normal impulse, towards the body"),
-    "normal_y": ("1", SAME),
-    "normal_z": ("1", SAME),
-    "approach": (
-        "m/s",
-        "normal velocity to the counter-body before contact, of the rigid motions at the first "
-        "contact",
-    ),
-    "separation": ("m/s", "the same after contact"),
-    "lever": ("m", "distance of the centre of mass from the line of the normal force"),
-    "partner_lever": ("m", "the same of the counter-body, 0 for an obstacle"),
-    "slip_before": ("m/s", "velocity along the counter-body before contact"),
-    "slip_after": ("m/s", "velocity along it in the direction of slip_before, after contact"),
-    "restitution": ("", ""),
-    "restitution_poisson": ("1", "ratio of the impulse during separation to that during approach"),
-    "restitution_energetic": (
-        "1",
-        "root of the work of the normal force during separation over that during approach",
-    ),
-    "restitution_tangential": ("", ""),
-    "impulse_ratio": ("", ""),
-    "angle_in": ("", ""),
-    "angle_out": ("", ""),
-    "friction_work": ("", ""),
-    "creep_work": ("", ""),
-    "slip_work": ("", ""),
-    "translation_energy": ("", ""),
-    "rotation_energy": ("", ""),
-    "vibration_energy": ("", ""),
-    "viscous_work": (
-        "J/m",
-        "energy that viscosity and relaxation took of all bodies from start to end, whole steps",
-    ),
-}
 # columns without a meaning where a body is in contact with itself
 OF_TWO = (
     *("normal_x", "normal_y", "normal_z"),
     *("approach", "separation", "slip_before", "slip_after"),
 )
-# unit and meaning of the numbers of summary.json that are evaluated here. restitution,
-# restitution_tangential and angle_out are None unless the run is one impact that is over, of one
-# contact pair; impulse_ratio and angle_in need one pair and one normal. bounces counts all pairs,
-# and thresholded_contact_time is that of the total normal force.
-RUN_NUMBERS = {
-    "thresholded_contact_time": ("s", "between the crossings of 1 % of the largest force"),
-    "peak_uncertainty": (
-        "1",
-        "share by which penalty and mesh may change peak_force, if single contact points dominate "
-        "the force or it oscillates on the penalty; else null",
-    ),
-    "bounces": (
-        "",
-        "impacts that are over: intervals of contact with a restitution (contacts.csv)",
-    ),
-    "first_restitutions": ("1", "list of the restitutions of the first bounces, up to three"),
-    "rest_time": (
-        "s",
-        "time from which on the kinetic energy is at most accuracy^2 times the stored energy; null "
-        "unless the run ended at rest",
-    ),
-    "restitution": (
-        "1",
-        "normal velocity after over that before contact, of the rigid motion of the point of first "
-        "contact; null unless it is of one impact "
-        "that is over, along one normal, with an approach of at least a quarter of impulse over "
-        "reduced mass. With a body on supports it contains the vibration of that body",
-    ),
-    "restitution_tangential": (
-        "1",
-        "minus the slip after over the slip before contact, at that point; null if the slip "
-        "before is less than a twentieth of impulse over reduced mass",
-    ),
-    "impulse_ratio": (
-        "1",
-        "impulse along the counter-body over that across; null if the normal turns",
-    ),
-    "angle_in": (
-        "degrees",
-        "of the velocity of the centre to the surface before contact, 90: along the normal; null "
-        "if the normal turns or that velocity is less than "
-        "a twentieth of impulse over reduced mass",
-    ),
-    "angle_out": ("degrees", "the same after contact"),
-}
 
 
 @dataclass(frozen=True)
@@ -323,7 +227,7 @@ class Interval:
             *self.energies,
             self.viscous_work,
         ]
-        row = dict(zip(CONTACT_COLUMNS, values, strict=True))
+        row = dict(zip((column.name for column in CONTACTS), values, strict=True))
         return row | (dict.fromkeys(OF_TWO) if self.own else {})
 
 
@@ -358,7 +262,7 @@ def intervals_of(folder: Path, diagnostics: Mapping[str, Any]) -> list[Interval]
 
 def write_contacts(path: Path, intervals: list[Interval], damped: bool) -> None:
     """Writes contacts.csv; a number without a meaning is an empty cell."""
-    names = [name for name in CONTACT_COLUMNS if damped or name != "viscous_work"]
+    names = [column.name for column in CONTACTS if damped or column.needs != "damped"]
     lines = [",".join(names)]
     for interval in intervals:
         row = interval.row()
@@ -395,7 +299,7 @@ def at_both_ends(name: str) -> list[str]:
 
 
 def of_run(intervals: list[Interval]) -> dict[str, Any]:
-    """The numbers RUN_NUMBERS of summary.json but thresholded_contact_time and rest_time. Contacts
+    """The numbers RUN_NUMBERS (columns.py) of summary.json but thresholded_contact_time and rest_time. Contacts
     of bodies with themselves do not count.
     """
     intervals = [interval for interval in intervals if not interval.own]
@@ -421,7 +325,9 @@ def of_run(intervals: list[Interval]) -> dict[str, Any]:
         and bool(np.linalg.norm(normal) >= STEADY * size)
     )
     numbers: dict[str, Any] = dict.fromkeys(
-        name for name in RUN_NUMBERS if name not in ("thresholded_contact_time", "rest_time")
+        column.name
+        for column in RUN_NUMBERS
+        if column.name not in ("thresholded_contact_time", "rest_time")
     )
     bounces = [interval for interval in intervals if interval.impact]
     numbers["bounces"] = len(bounces)

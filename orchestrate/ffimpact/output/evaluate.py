@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from . import contacts, warnings
+from .columns import RUN_NUMBERS
 from .fields import write_fields
 from .modes import write_modes
 from .paper_script import ANSWERS, evaluate_script
@@ -66,7 +67,7 @@ def _summary(evidence: warnings.Evidence) -> dict[str, Any]:
     for name, value in evidence.record.items():
         summary |= sentences if name == "diagnostics" else _at_both_ends(evidence, name, value)
         if name == "contact_time":
-            summary |= {run_number: numbers[run_number] for run_number in contacts.RUN_NUMBERS}
+            summary |= {column.name: numbers[column.name] for column in RUN_NUMBERS}
         if name == "ended":
             summary["later_contact_possible"] = evidence.later_contact_possible
     return summary

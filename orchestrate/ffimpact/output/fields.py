@@ -11,43 +11,9 @@ import numpy as np
 
 from .results import reading
 
-__all__ = ["POINT_COLUMNS", "RECORDED", "read_arrays", "write_fields"]
+__all__ = ["RECORDED", "read_arrays", "write_fields"]
 
 RECORDED = "states.bin"  # written by edp/program/run/record.idp
-# Unit and meaning of the columns of fields/contact.csv. Z, z and the names with _z exist in three
-# dimensions only.
-POINT_COLUMNS = {
-    "t": ("s", "instant"),
-    "body": ("", "the body of the contact point, from 1"),
-    "partner": ("", "the counter-body: a body from 1, an obstacle -1, -2 ..."),
-    "s": (
-        "m",
-        "along the outline from the first contact, the body to the left; in three dimensions the distance from the first contact",
-    ),
-    "X": ("m", "reference position"),
-    "Y": ("m", "likewise"),
-    "Z": ("m", "likewise"),
-    "x": ("m", "position at the instant"),
-    "y": ("m", "likewise"),
-    "z": ("m", "likewise"),
-    "weight": (
-        "m",
-        "share of the outline that the point stands for; in three dimensions of the surface [m2]",
-    ),
-    "pressure": ("Pa", "normal traction per reference length, mean over the step"),
-    "shear": (
-        "Pa",
-        "tangential traction along the normal of the counter-body turned by -90 degrees",
-    ),
-    "shear_z": ("Pa", "along the second tangent"),
-    "slip_velocity": ("m/s", "along the first tangent"),
-    "slip_velocity_z": ("m/s", "along the second"),
-    "slides": ("", "1: |v_T| >= the parameter slip_velocity"),
-    "projected_pressure": (
-        "Pa",
-        "L2 projection of the pressure on the shape functions of the displacement along the outline; it has the same resultant and moment",
-    ),
-}
 # Columns that the files of points for ParaView do not repeat.
 PLACES = ("t", "s", "X", "Y", "Z", "x", "y", "z")
 Arrays = dict[str, np.ndarray]
@@ -170,7 +136,7 @@ def _write_series(path: Path, prefix: str, times: list[float]) -> None:
 
 
 def _points_under_load(surface: Arrays, state: Arrays, along: "_Along") -> Arrays:
-    """Returns the columns of fields/contact.csv (POINT_COLUMNS) for the points under load in a
+    """Returns the columns of fields/contact.csv (POINTS of columns.py) for the points under load in a
     state.
     """
     count = len(surface["pointBody"])

@@ -55,8 +55,8 @@ def read(folder: Path) -> np.recarray:
     """Reads contacts.csv of the run in `folder`: one row for every interval of contact of two
     bodies, or of a body with an obstacle (`partner` < 0).
 
-    edp/program/run/columns.idp describes the columns and their units. Raises Unreadable if the file is
-    not such a table.
+    output/columns.py describes the columns and their units. Raises Unreadable if the file is not
+    such a table.
     """
     return read_table(folder / "contacts.csv", NEEDED)
 

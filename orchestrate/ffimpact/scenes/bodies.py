@@ -27,7 +27,7 @@ from ..mesh.solid_mesh import SolidMesh
 from ..mesh.solids import Solid
 from .conditions import Load, Support, read_loads, read_supports
 
-__all__ = ["Body", "DAMPED", "DAMPING", "SIZES", "STIFF", "read", "stiffened"]
+__all__ = ["Body", "DAMPED", "DAMPING", "SIZES", "STIFF", "STIFFEST", "read", "stiffened"]
 
 # Modules with the functions shape() and motion().
 GEOMETRY = {PLANE_STRAIN: flat, AXISYMMETRIC: revolution, SOLID: solids}

@@ -27,9 +27,9 @@ from ..input.models import CONTACT, MATERIAL, OWN, listed
 from ..input.parameters import Value
 from ..input.table import MESHED, SCRIPTS
 from ..mesh.solid_file import declares_unit, takes_in_others
-from ..output.meanings import describe_results
+from ..output.columns import Features, recorded
 from . import bodies, conditions, mirror, obstacles
-from .bodies import SIZES, Body
+from .bodies import SIZES, STIFFEST, Body
 from .entries import release, set_entry, toml_value
 from .obstacles import Obstacle
 
@@ -194,33 +194,31 @@ class Scene:
     @property
     def numbers(self) -> list[str]:
         """The names of the numbers of summary.json."""
-        return self._named("summary")
+        return recorded("summary.json", self.features)
 
     @property
     def columns(self) -> list[str]:
         """The names of the columns of history.csv."""
-        return self._named("columns")
+        return recorded("history.csv", self.features)
 
-    def _named(self, what: str) -> list[str]:
-        """The names of columns or of numbers (`what`). If there are several bodies, the names of
-        quantities of one body have the suffixes _1, _2 ...
-        """
-        description = describe_results(script=self.script)
-        bodies = len(self.bodies) or description["bodies"]
-        more = description["damped"] * self.damped + description["projected"] * (
-            what == "columns" and self._projected(description["plain_nu"])
-        )
-        damping = (self.contact or self.values)["penalty_damping"]
-        return (
-            description[what]
-            + description["penalty_damped"] * bool(damping)
-            + more
-            + [
-                f"{name}_{b}"
-                for b in range(1, bodies + 1)
-                for name in description[f"body_{what}"] + more
-                if bodies > 1
-            ]
+    @property
+    def features(self) -> Features:
+        """What decides the names of numbers and columns."""
+        loads = [load for body in self.bodies for load in body.loads]
+        words = {
+            "directed": not self.bodies,
+            "penalty_damped": bool((self.contact or self.values)["penalty_damping"]),
+            "damped": self.damped,
+            "projected": self._projected,
+            "solid": self.script in (SOLID.script, *SOLID.cases),
+            "spatial": self.script == SOLID.script,
+        }
+        return Features(
+            words=frozenset(word for word, has in words.items() if has),
+            bodies=len(self.bodies) or (2 if self.script == "disc-block" else 1),
+            supports=sum(len(body.supports) for body in self.bodies),
+            loads=len(loads),
+            gases=tuple(k for k, load in enumerate(loads, 1) if load.kind == "gas"),
         )
 
     @property
@@ -230,15 +228,16 @@ class Scene:
             self.values.get(name) for name in bodies.DAMPED
         )
 
-    def _projected(self, plain_nu: float) -> bool:
+    @property
+    def _projected(self) -> bool:
         """Whether the volume of the elements is projected. This needs quadratic elements, a
-        `volume` that is not "plain" and a body with nu above `plain_nu`.
+        `volume` that is not "plain" and a body with nu above STIFFEST.
         """
         stiffest = max([body.nu for body in self.bodies] or [self.values["nu"]])
         return (
             self.values.get("volume") != "plain"
             and self.values["degree"] == 2
-            and stiffest > plain_nu
+            and stiffest > STIFFEST
         )
 
     @property

@@ -24,7 +24,6 @@ import argparse
 import fcntl
 import itertools
 import os
-import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -37,8 +36,8 @@ from .. import scene
 from ..failure import BadInput, Busy, Failure, Unreadable, brief, suggestion, unknown
 from ..input import dimension, parameters
 from ..input.parameters import Value
+from ..output import columns
 from ..output.folder import result_folder
-from ..output.meanings import describe_results
 from ..places import RESULTS, shown
 from . import study, sweep_figures
 
@@ -454,16 +453,11 @@ def table(sweep: Sweep, out: Path) -> pd.DataFrame:
 
 
 def _units(sweep: Sweep, names: list[str]) -> str:
-    """Returns the units of columns of sweep.csv in words, from the parameters and the meanings of
-    the summary.
+    """Returns the units of columns of sweep.csv in words, from the parameters and the table of
+    what a run records.
     """
-    meanings = describe_results(script=sweep.sample.script)["meanings"]["summary"]
-    units = {
-        name: meanings[key][0]
-        if (key := re.sub("_[0-9]+$", "", name)) in meanings
-        else sweep_figures.unit_of(name)
-        for name in names
-    }
+    of_table = columns.units(dimension.per_metre(sweep.sample.script), names)
+    units = {name: of_table.get(name) or sweep_figures.unit_of(name) for name in names}
     text = ", ".join(f"{name} {unit}" for name, unit in units.items() if unit not in ("", "-", "1"))
     return f"units: {text}" if text else "units: none"
 
