@@ -266,28 +266,42 @@ def _literal(expression: ast.expr) -> str:
 
 
 def equations(prefix: str = "") -> str:
-    """A table of the equations of the paper: for each the lines of scripts and of kernels that have
-    it, and what these say of it."""
-    definitions: dict[int, dict[str, list[tuple[Path, int, str]]]] = {k: {"idp": [], "hpp": []} for k in range(1, 16)}
-    for path in sorted([*(ROOT / "edp/program").rglob("*.idp"), *(ROOT / "edp/kernels").glob("*.hpp")]):
+    """A table of the equations of the paper: for each its lines in the paper's scripts, in kernels
+    and in the program's scripts, and what the first say of it."""
+    homes = {
+        "paper": [*(ROOT / "edp").glob("*.edp"), *(ROOT / "edp/paper").glob("*.idp")],
+        "kernels": (ROOT / "edp/kernels").glob("*.hpp"),
+        "program": (ROOT / "edp/program").rglob("*.idp"),
+    }
+    text = "| equation | the paper's scripts | kernels | the program's scripts | what stands there |\n"
+    text += "|---|---|---|---|---|\n"
+    places = {home: marked(sorted(paths)) for home, paths in homes.items()}
+    for equation in range(1, 16):
+        cells = []
+        for home in homes:
+            links = [
+                f"[{path.relative_to(ROOT / 'edp').as_posix().removeprefix('program/')}:{number}]"
+                f"({prefix}{path.relative_to(ROOT)}#L{number})"
+                for path, number, _ in places[home].get(equation, [])
+            ]
+            cells.append(", ".join(links) or "—")
+        words = dict.fromkeys(words for _, _, words in places["paper"].get(equation, []) if words)
+        text += f"| ({equation}) | {' | '.join(cells)} | {cell('; '.join(words))} |\n"
+    return text
+
+
+def marked(paths: list[Path]) -> dict[int, list[tuple[Path, int, str]]]:
+    """The lines of code, by equation, whose comment begins with the number of an equation: file,
+    line and the rest of the comment."""
+    lines: dict[int, list[tuple[Path, int, str]]] = {}
+    for path in paths:
         for number, line in enumerate(path.read_text().splitlines(), 1):
             match = EQUATION.search(line)
-            if match and line[: match.start()].strip():  # a line of code, not a comment
+            if match and line[: match.start()].strip():
                 for equation in re.findall(r"\d+", match[1]):
-                    place = path, number, line[match.end() :].strip()
-                    definitions[int(equation)][path.suffix[1:]].append(place)
-    text = "| equation | script | kernel | what stands there |\n|---|---|---|---|\n"
-    for equation, places in definitions.items():
-        links = [
-            ", ".join(
-                f"[{path.parent.name}/{path.name}:{number}]({prefix}{path.relative_to(ROOT)}#L{number})"
-                for path, number, _ in places[kind]
-            )
-            for kind in ("idp", "hpp")
-        ]
-        words = dict.fromkeys(words for _, _, words in places["idp"] if words)
-        text += f"| ({equation}) | {links[0]} | {links[1] or '—'} | {cell('; '.join(words))} |\n"
-    return text
+                    words = line[match.end() :].strip()
+                    lines.setdefault(int(equation), []).append((path, number, words))
+    return lines
 
 
 def exit_codes() -> str:
