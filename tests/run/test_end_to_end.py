@@ -15,7 +15,7 @@ import ffimpact as ff
 from ffimpact import scene
 from ffimpact.__main__ import main
 from ffimpact.failure import NotInstalled
-from ffimpact.freefem import freefem
+from ffimpact.freefem import freefem, kernels
 from ffimpact.freefem.describe import describe
 from ffimpact.input import parameters
 from ffimpact.output import results, vtu
@@ -199,6 +199,7 @@ def test_no_description_without_freefem(tmp_path, monkeypatch):
     with pytest.raises(NotInstalled, match="not found"):
         describe({"speed": 1.25})
     program = tmp_path / "FreeFem++"
+    monkeypatch.setattr(kernels, "build", lambda *_: "-Dkernels")   # the substitute has no compiler
     program.write_text(f'#!/bin/sh\ncase "$*" in *describe*1.25*) exit 8;; esac\nexec {shutil.which("FreeFem++")} "$@"\n')
     program.chmod(0o755)
     monkeypatch.setenv("FREEFEM", str(program))
@@ -253,8 +254,8 @@ def test_every_number_of_a_run_has_a_unit_and_a_meaning(result):
         assert columns <= meanings, columns - meanings
 
 
-def test_a_result_is_shown_and_drawn_without_freefem(result, monkeypatch, capsys):
-    """Units, tables, comparison and figures of a finished run start no FreeFem++."""
+def test_a_result_is_shown_and_drawn_without_freefem(result, tmp_path, monkeypatch):
+    """Units, tables, comparison and figures of a finished run, and its reuse, start no FreeFem++."""
     monkeypatch.setenv("FREEFEM", "/nowhere/FreeFem++")
     with pytest.raises(NotInstalled):
         freefem.find()
@@ -264,3 +265,7 @@ def test_a_result_is_shown_and_drawn_without_freefem(result, monkeypatch, capsys
     assert "N s/m" in repr(shown) and "N s/m" in shown._repr_html_()
     assert list(ff.compare(shown, result.folder, names="impulse").unit) == ["N s/m"]
     assert shown.plot.force().get_ylabel() and main(["figures", str(result.folder)]) == 0
+    assert run.run(scene.load("disc-normal"), {}, result.folder).reused
+    shutil.copytree(result.folder, tmp_path / "again")
+    assert main(["compare", str(result.folder), str(tmp_path / "again"), "--out", str(tmp_path / "new/out")]) == 0
+    assert (tmp_path / "new/out/disc-normal-and-again.png").exists()

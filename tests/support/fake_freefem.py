@@ -123,7 +123,7 @@ def main(arguments: list[str]) -> int:
         with open(count, "a") as file:
             print(os.getpid(), file=file)
     script = next(i for i, word in enumerate(arguments) if word.endswith(".edp"))
-    flags = arguments[script + 1:]
+    flags = [word for word in arguments[script + 1:] if not word.startswith("-D")]   # -D: the kernels
     values = {name[1:]: text for name, text in zip(flags[::2], flags[1::2])}
     folder = Path(values.pop("out"))
     Path(values.pop("mesh")).read_text()

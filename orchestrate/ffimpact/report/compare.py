@@ -73,6 +73,7 @@ def main(argv: list[str]) -> int:
             failed = failed or failure
     if len(results) > 1:
         path = folder / ("-and-".join(results) + ".png")
+        folder.mkdir(parents=True, exist_ok=True)
         draw(results, path)
         print(f"compared in {shown(path)}")
     if failed:

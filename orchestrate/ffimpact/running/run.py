@@ -98,10 +98,11 @@ def run(
     started = time.monotonic()
     scene = scene.override(_sizes_left_to(mesh_file, scene) | (overrides or {}))
     folder = result_folder(Path(out or RESULTS / scene.name))
-    mesh_file, foreign = _mesh_of_file(scene, mesh_file)
+    mesh_file, foreign = _mesh_of_file(mesh_file)
     finished = finished_in(folder, force)
     if not force and (there := reusable(scene, folder, mesh_file, estimate)):
         return there
+    scene.description(foreign, mesh_file)
 
     program = freefem.find()
     if scene.meshed and not foreign:
@@ -169,7 +170,8 @@ def plan(
     run().
     """
     scene = scene.override(_sizes_left_to(mesh_file, scene) | (overrides or {}))
-    _, foreign = _mesh_of_file(scene, mesh_file)
+    path, foreign = _mesh_of_file(mesh_file)
+    scene.description(foreign, path)
     if scene.meshed and not foreign:
         mesh.start_gmsh()
     with work("foretelling the run"):
@@ -351,14 +353,12 @@ def _sizes_left_to(mesh_file: Path | str | None, scene: Scene) -> dict[str, Valu
     return dict.fromkeys(SIZES, 0) if mesh_file and not scene.bodies else {}
 
 
-def _mesh_of_file(scene: Scene, mesh_file: Path | str | None) -> tuple[Path | None, bytes | None]:
-    """Returns the path and the content of a mesh file. Raises BadInput for a scene or a mesh that
-    is not accepted, before any file is made.
+def _mesh_of_file(mesh_file: Path | str | None) -> tuple[Path | None, bytes | None]:
+    """Returns the path and the content of a mesh file. Raises BadInput for a mesh that is not
+    accepted.
     """
     path = _mesh_path(Path(mesh_file)) if mesh_file else None
-    foreign = gmsh_file.load(path, alone=True) if path else None
-    scene.description(foreign, path)
-    return path, foreign
+    return path, gmsh_file.load(path, alone=True) if path else None
 
 
 def _mesh_path(mesh_file: Path) -> Path:
