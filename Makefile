@@ -6,7 +6,7 @@ SWEEPS := oblique friction-jump friction-steps slip-limit contact-time-svk law-c
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws $(SWEEPS) stick-slip verify paper movie docs pictures check unit coverage test robustness bench bench-quick scaling equal-errors promise disc-block-errors pairing-comparison oblique-angles viscoelastic rubber users clean
+.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws $(SWEEPS) stick-slip verify paper-scripts paper movie docs pictures check unit coverage test robustness bench bench-quick scaling equal-errors promise disc-block-errors pairing-comparison oblique-angles viscoelastic rubber users clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
@@ -67,7 +67,10 @@ stick-slip: $(READY) ## search for the paper's order of sliding and sticking ove
 verify: $(READY) ## exact solutions with convergence: bar, rod, Hertz, rigid bodies, friction, manufactured motions
 	@$(PYTHON) -m verification $(ARGS)
 
-PAPER := disc-normal disc-oblique disc-rolling disc-block ball-axisymmetric ball friction-laws $(SWEEPS) stick-slip verify ball-comparison
+paper-scripts: $(READY) ## the paper as FreeFEM scripts alone (edp/*.edp), without the program
+	@$(PYTHON) -m examples.paper.scripts $(ARGS)
+
+PAPER := disc-normal disc-oblique disc-rolling disc-block ball-axisymmetric ball friction-laws $(SWEEPS) stick-slip verify ball-comparison paper-scripts
 paper: $(READY) ## all of the above, and results/paper/report.html
 	@$(PYTHON) -m examples.paper --make $(PAPER)
 

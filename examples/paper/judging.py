@@ -18,9 +18,12 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from ffimpact.output.evaluate import evaluate
 from ffimpact.output.results import read_frame, read_history, read_scene, read_summary
 from ffimpact.report.impacts import read_modes
 from ffimpact.sweeps import study, sweep, sweep_figures
+
+from . import scripts
 
 AGREES, DIFFERS, PARTLY, OPEN = "agrees", "does not agree", "partly", "not decided"
 # A change of energy below this share of the initial energy counts as constant.
@@ -92,6 +95,13 @@ class Results:
 
     def modes(self, name: str, **values) -> list[np.recarray]:
         return [read_modes(folder) for folder in self.pair(name, **values)]
+
+    def by_scripts(self, formulation: str, width: str | float) -> list[dict]:
+        """The summaries of the paper's script of the disc on the block on both meshes."""
+        folders = [self.folder / scripts.FOLDER / name for name in scripts.pair(formulation, width)]
+        for folder in folders:
+            evaluate(folder)
+        return [read_summary(folder) for folder in folders]
 
     def friction_laws(self) -> pd.DataFrame:
         """The table of figure 3."""

@@ -26,7 +26,8 @@ SHOWN = {"energies": "energies over time", "force": "contact force over time",
          "flight": "shapes on the flight and in the contact", "shapes": "deformed shapes"}
 PIXELS, DPI = 85, STYLE["savefig.dpi"]  # pixels per inch of the page and of a figure
 BACK = '<a href="#top">Back to the top</a>'
-TITLES = {"friction-laws": "The friction laws (11) to (13), from the functions that the solver runs (make friction-laws)",
+TITLES = {"friction-laws": "The friction laws (11) to (13), by the paper's script (make friction-laws)",
+          "pairs": "Force of the disc on the block by the paper's script: closest points (9), pairs (14), (15) (make paper-scripts)",
           "stick-slip": "Share of the load that slides in each third of the contact, over ε, k and ν (make stick-slip)",
           "-and-".join(("disc-normal", "disc-normal-neohookean", "ball-axisymmetric-svk", "ball-axisymmetric")):
           "Accelerations of the centre of mass, energies and velocities of discs and balls (make ball-comparison)"}

@@ -1,10 +1,13 @@
 """Section 3.2: closest points (9), their cost, and contact (14), (15) without a search for them.
 
-The case is the disc on the block on two meshes (sweep pairing).
+The case is the disc on the block on two meshes: the cost by the program (sweep pairing), (14) and
+(15) by the paper's own script edp/disc-block.edp (scripts.py).
 """
 
+from collections.abc import Callable
 from pathlib import Path
 
+from . import scripts
 from .judging import Results, both, graded, lost, states
 
 PAIRS = "pairing"
@@ -15,7 +18,7 @@ SAME = 0.01
 DEAR = 0.1
 PRINTED = {"pairwise": "with a repulsion that vanishes at ε", "pairwise-printed": "as printed"}
 # ε equals an element size in the contact region.
-ELEMENT = "auto"
+ELEMENT, DRAWN = scripts.ELEMENT, f"{scripts.FOLDER}/{scripts.FIGURE}"
 LOST = lost((PAIRS, {"pairing": "closest-point", "pairing_range": ELEMENT}))
 
 
@@ -26,9 +29,10 @@ def runs(results: Results, *widths: str | float) -> list[Path]:
                               for run in results.pair(PAIRS, pairing=pairing, pairing_range=width)))
 
 
-def separation(results: Results) -> float:
-    """The smaller ε of the sweep [m]."""
-    return float(next(value for value in results.table(PAIRS).pairing_range.unique() if value != ELEMENT))
+def script_runs(*widths: str | float) -> Callable[[Results], list[Path]]:
+    """The runs of the paper's script by all formulations with these ε [m], without duplicates."""
+    names = dict.fromkeys(name for width in widths for formulation in scripts.FORMULATIONS for name in scripts.pair(formulation, width))
+    return lambda results: [results.folder / scripts.FOLDER / name for name in names]
 
 
 @states("Section 3.2, equation (9)", "the minimum distance is found at each instant at the cost of CPU time", runs, PAIRS, LOST)
@@ -48,7 +52,8 @@ def search_costs(results: Results) -> tuple[str, str]:
                                           f"asked; boxes leave few edges to a point.")
 
 
-@states("Section 3.2, equations (14), (15)", "a sum over all points nearer than ε takes the place of the closest points", runs, PAIRS, LOST)
+@states("Section 3.2, equations (14), (15)", "a sum over all points nearer than ε takes the place of the closest points", script_runs(ELEMENT),
+        DRAWN, LOST)
 def sum_of_points(results: Results) -> tuple[str, str]:
     """As printed, on two meshes: agrees if rebounds and impulse equal those of closest points to 1
     % with the same number of contact intervals.
@@ -59,19 +64,19 @@ def sum_of_points(results: Results) -> tuple[str, str]:
 
 
 @states("Section 3.2, equation (15)", "with ε of the order of the separation of the points and a large k a point meets a single one of the "
-        "other body, and nothing has to be sought", lambda results: runs(results, separation(results)), PAIRS, LOST)
+        "other body, and nothing has to be sought", script_runs(ELEMENT, scripts.SEPARATION), DRAWN, LOST)
 def single_point(results: Results) -> tuple[str, str]:
     """As (14), (15) with this ε. The verdict depends on the results, not on the number of points.
     """
-    return _beside_closest(results, separation(results), "ε the separation of the points")
+    return _beside_closest(results, scripts.SEPARATION, "ε the separation of the points")
 
 
 def _beside_closest(results: Results, width: str | float, words: str) -> tuple[str, str]:
     """Verdict and words of (14), (15) with ε = `width`, compared with closest points."""
-    nearest = results.summaries(PAIRS, pairing="closest-point", pairing_range=ELEMENT)
+    nearest = results.by_scripts("closest-point", ELEMENT)
     usual, same, as_often, sentences = [near["contact_intervals"] for near in nearest], {}, {}, []
     for pairing, how in PRINTED.items():
-        ends = results.summaries(PAIRS, pairing=pairing, pairing_range=width)
+        ends = results.by_scripts(pairing, width)
         apart, touches = [_apart(*pair) for pair in zip(ends, nearest)], [end["contact_intervals"] for end in ends]
         peaks = both([end["peak_force"] / near["peak_force"] for end, near in zip(ends, nearest)], ".2f")
         slip = any("slip through" in warning for end in ends for warning in end["warnings"])

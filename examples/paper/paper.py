@@ -26,7 +26,7 @@ from ffimpact.sweeps import study, sweep
 from verification import verify
 
 # isort: off
-from . import judging, stick_slip
+from . import judging, scripts, stick_slip
 # These modules register the statements in this order.
 from . import limits, friction, impacts, pairs, bodies, times  # noqa: F401
 # isort: on
@@ -46,7 +46,7 @@ TARGETS = {"disc-oblique-svk": "disc-oblique", "disc-block-neohookean": "disc-bl
 SECONDS = {"disc-normal": 3, "disc-oblique": 40, "disc-rolling": 10, "friction-laws": 3, "oblique": 36, "friction-jump": 6,
            "friction-steps": 11, "slip-limit": 6, "contact-time-svk": 90, "law-comparison": 6, "contact-time-neohookean": 90, "pairing": 15,
            "calibrate": 115, "calibrate-oblique": 62, "calibrate-ball": 13, "calibrate-ball-3d": 27, "conservation": 8, "stick-slip": 70,
-           "verify": 200}
+           "verify": 200, "paper-scripts": 600}
 USUAL = 20
 
 
@@ -97,6 +97,8 @@ def _needed(results: judging.Results) -> Iterator[tuple[str, list[Path], Callabl
     laws = [ROOT / "edp/paper/friction.idp", ROOT / "edp/friction-laws.edp"]
     drawn = [results.folder / "friction-laws" / name for name in ("laws.csv", "friction-laws.png")]
     yield "friction-laws", drawn, lambda: all(made.stat().st_mtime >= law.stat().st_mtime for made in drawn for law in laws)
+    own = results.folder / scripts.FOLDER
+    yield "paper-scripts", [own / scripts.FIGURE], lambda: all(scripts.is_finished(own / name, script) for name, (script, _) in scripts.runs().items())
     yield "verify", [], lambda: verify.there(results.folder / "verify")
 
 

@@ -6,7 +6,7 @@ from copy import deepcopy
 import numpy as np
 import pandas as pd
 
-from examples.paper import judging as paper_judging
+from examples.paper import judging as paper_judging, scripts
 from ffimpact.report.friction_laws import VALUES
 
 # An impact of eleven steps in contact and a flight after it. The force has two maxima; everything
@@ -96,6 +96,10 @@ class Memory(paper_judging.Results):
     def summaries(self, name, **values):
         self.read |= set(self.pair(name, **values))
         return self.given["summaries"][name, *sorted(values.items())]
+
+    def by_scripts(self, formulation, width):
+        self.read |= {self.folder / "paper-scripts" / name for name in scripts.pair(formulation, width)}
+        return self.given["summaries"][pairs(formulation, width)]
 
     def has(self, name):
         return name in self.given["summary"]

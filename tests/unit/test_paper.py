@@ -1,12 +1,18 @@
 """The report of the paper: verdicts change with their numbers, the page is self-contained, a
 missing case stops it."""
 
+import os
 import re
 
 import numpy as np
 import pytest
 
-from examples.paper import bodies as paper_bodies, friction as paper_friction, page as paper_page
+from examples.paper import (
+    bodies as paper_bodies,
+    friction as paper_friction,
+    page as paper_page,
+    scripts,
+)
 from examples.paper.judging import DIFFERS, STATEMENTS, maxima
 from ffimpact import scene
 from ffimpact.input.parameters import ROOT
@@ -86,3 +92,21 @@ def test_text_of_all_pictures_has_one_size(tmp_path):
         figures.plt.close(figure)
     widths = [int(re.search(' width="([0-9]+)"', paper_page.picture_of(tmp_path / f"{inches}.png"))[1]) for inches in (2.5, 5.0)]
     assert widths[1] == pytest.approx(2 * widths[0], abs=1) and widths[1] == pytest.approx(5 * paper_page.PIXELS, abs=2)
+
+
+def test_runs_of_the_scripts():
+    """Each run of the paper's scripts has flags that its script reads, and pairs() names runs."""
+    every = scripts.runs()
+    for script, flags in every.values():
+        text = (ROOT / f"edp/{script}.edp").read_text()
+        assert {name for name in flags if not re.search(rf'(?:number|word)\("{name}"', text)} == set()
+    assert {name for kind in scripts.FORMULATIONS for width in ("auto", scripts.SEPARATION) for name in scripts.pair(kind, width)} < set(every)
+
+
+def test_a_run_of_an_older_script_is_not_finished(tmp_path):
+    """A run counts if its answers are newer than all files of its script."""
+    assert not scripts.is_finished(tmp_path, "disc-plane")
+    (tmp_path / scripts.ANSWERS).write_text("{}")
+    assert scripts.is_finished(tmp_path, "disc-plane")
+    os.utime(tmp_path / scripts.ANSWERS, (0, 0))
+    assert not scripts.is_finished(tmp_path, "disc-plane")
