@@ -54,7 +54,9 @@ def test_they_are_built_once_and_again_for_other_sources(cache, program, monkeyp
 def test_where_they_cannot_be_built_nothing_loads_them(cache, program, monkeypatch, tmp_path):
     """Sources that do not compile, a FreeFem++ without ff-c++ and a read-only cache folder are not
     errors."""
-    assert not kernels.build("/no/such/FreeFem++", program.version, {})
+    with monkeypatch.context() as empty:
+        empty.setenv("PATH", "")
+        assert not kernels.build("/no/such/FreeFem++", program.version, {})
     monkeypatch.setattr(kernels, "SOURCES", tmp_path / "broken")
     kernels.SOURCES.mkdir()
     (kernels.SOURCES / "kernels.cpp").write_text("#include <no-such-header>\n")

@@ -27,10 +27,11 @@ THREADS = ("-fopenmp",), ()
 
 def build(command: str, version: str, environment: Mapping[str, str]) -> str:
     """Returns the command-line word with which a script loads the plugin of the present sources for
-    this FreeFem++. If the plugin is missing, the ff-c++ in the folder of FreeFem++ builds it. The
-    word is empty if that fails.
+    this FreeFem++. If the plugin is missing, ff-c++ builds it: that in the folder of FreeFem++ or,
+    where FreeFem++ is a script elsewhere, that of the search path. The word is empty if that fails.
     """
-    maker = Path(command).resolve().with_name("ff-c++")
+    beside = Path(command).resolve().with_name("ff-c++")
+    maker = beside if beside.exists() else Path(shutil.which("ff-c++") or beside)
     if not maker.exists():
         return ""
     made_of = [
