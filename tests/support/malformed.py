@@ -99,7 +99,7 @@ FLAGS = {
     ("-", "speed", "8"): "'-'", ("-speed", "8", "\n"): "' '", ("'; touch pwned; '",): "touch pwned", ("-$(touch pwned)", "8"): "touch pwned",
     ("-speed", "8", "-\x07", "8"): "no such"}
 COMMANDS = {
-    (): "COMMAND", ("swep",): "COMMAND: 'swep' is not known; did you mean sweep. .accepted: run, view, evaluate, list, parameters, schema, kernels, figures, sweep, ", ("run",): "SCENE", ("run", ""): "no such scene", ("run", "disc-normal", "more"): "more", ("run", "disc-normal", "--set"): "--set",
+    (): "COMMAND", ("swep",): "COMMAND: 'swep' is not known; did you mean sweep. .accepted: run, view, evaluate, list, parameters, schema, figures, sweep, ", ("run",): "SCENE", ("run", ""): "no such scene", ("run", "disc-normal", "more"): "more", ("run", "disc-normal", "--set"): "--set",
     ("run", "disc-normal", "--set", "speed"): "--set: 'speed' is not of the form name=value", ("run", "disc-normal", "--set", "=8"): "--set: '=8'", ("run", "disc-normal", "--set", "speed="): "--set: 'speed='",
     ("run", "disc-normal", "--set", ""): "--set: ''", ("run", "disc-normal", "--speed", "8"): "--speed", ("run", "disc-normal", "--checkpoint-every", "often"): "checkpoint_every: 'often'",
     ("run", "disc-normal", "--checkpoint-every", "-1"): "checkpoint_every: -1", ("run", "disc-normal", "--out"): "--out", ("sweep",): "SWEEP",
