@@ -3,9 +3,13 @@ tables and reports show them."""
 
 from pathlib import Path
 
+import numpy as np
+import pytest
+
 import pages
 from ffimpact.output import notes
 from ffimpact.output.results import Record
+from ffimpact.output.warnings import Evidence
 from ffimpact.report import report
 from ffimpact.sweeps import study
 
@@ -78,3 +82,17 @@ def test_what_is_zero_or_unknown_has_no_row():
     numbers = dict(rebound_vx=1e-5, rebound_vy=2.0, rebound_spin=0, final_vy=None, friction_work=0, symmetric_along=["x"])
     assert printed({}, **numbers) == ["rebound_vy"]
     assert printed({}, **numbers | {"symmetric_along": [], "final_vy": 1.0}) == ["rebound_vx", "rebound_vy", "final_vy"]
+
+
+@pytest.mark.parametrize("means_of_ends, largest, loaded", [(0, 6.0, 2), (1, 4.0, 3)])
+def test_force_and_penalty_are_judged_by_the_history(means_of_ends, largest, loaded):
+    """Steps in contact and the largest mean force, of integrators with forces over the step and at its
+    ends; the penalty's share of the energy where the elastic energy is largest in contact (0.2 / 4),
+    not in the flight after it (5). Rigid bodies have none."""
+    columns = dict(t=[0, 1, 2, 3, 4], dt=[0, 1, 1, 1, 1], newton_iterations=[0, 3, 3, 3, 3],
+                   normal_force=[0, 2, 6, 0, 0], contact=[0, 0.1, 0.2, 0, 0], elastic=[0, 1, 4, 5, 5])
+    history = {name: np.array(column, float) for name, column in columns.items()}
+    evidence = Evidence({"diagnostics": {"means_of_ends": means_of_ends}}, history, [])
+    assert (evidence.largest_force, evidence.loaded_steps) == (largest, loaded)
+    assert evidence.penalty_share == pytest.approx(0.05)
+    assert Evidence(evidence.record, history | {"elastic": np.zeros(5)}, []).penalty_share == 0

@@ -99,6 +99,26 @@ class Evidence:
         step = self.history["dt"][solved]
         return self.history["t"][solved] - step / 2, step, normal[solved]
 
+    @property
+    def largest_force(self) -> float:
+        """The largest mean normal force of a step [N/m]."""
+        return float(max(self.forces[2], default=0.0))
+
+    @property
+    def loaded_steps(self) -> int:
+        """The number of steps in contact."""
+        return int((self.forces[2] > 0).sum())
+
+    @property
+    def penalty_share(self) -> float:
+        """The energy of the penalty over the elastic energy, when the latter is largest in contact;
+        0 without contact or elastic energy."""
+        penalty, elastic = self.history["contact"], self.history["elastic"]
+        largest = np.where(penalty > 0, elastic, 0.0).argmax()
+        if penalty[largest] == 0 or elastic[largest] == 0:
+            return 0.0
+        return float(penalty[largest] / elastic[largest])
+
     def thresholds(self, threshold: float = THRESHOLD) -> tuple[float, float] | None:
         """The instants [s] at which the normal force of the run crosses `threshold` times its
         maximum; None without contact."""
@@ -406,10 +426,10 @@ def _contact(e: Evidence) -> Iterator[Sentence]:
             "bounce faster than the waves in the bodies: take "
             f"{e.finer('a smaller contact_mesh_size')}, or integrator=energy-momentum"
         )
-    # penalty_share is the energy of the penalty over the elastic energy. The share of the
-    # penetration is (m + 1)/2 times it. The estimate includes a wave front that elements resolve.
+    # The share of the penetration is (m + 1)/2 times that of the energy. The estimate includes a
+    # wave front that elements resolve.
     front, rise = record["front_transit"] or 0, record["front_rise"] or 0
-    depth = facts["penalty_share"] * (facts["exponent_used"] + 1) / 2
+    depth = e.penalty_share * (facts["exponent_used"] + 1) / 2
     if (
         (rise == 0 or rise > front)
         and not e.is_pushed_in
@@ -417,16 +437,16 @@ def _contact(e: Evidence) -> Iterator[Sentence]:
         and depth > TRIFLE * SOFTEST
     ):
         yield warn(
-            f"penalty: it stores {percent(facts['penalty_share'])} of the elastic energy at its "
+            f"penalty: it stores {percent(e.penalty_share)} of the elastic energy at its "
             f"largest: up to {percent(2 * SOFTEST / (facts['exponent_used'] + 1))} is small. The "
             "contact is softer than that of a rigid plane: take a penalty of at least "
             f"{rounded(used * depth / SOFTEST)}"
         )
-    if facts["largest_force"] > 0:
+    if e.largest_force > 0:
         yield from _peak(e)
-    if facts["loaded_steps"] < FEWEST_STEPS and (facts["loaded_steps"] or not e.is_pushed_in):
+    if e.loaded_steps < FEWEST_STEPS and (e.loaded_steps or not e.is_pushed_in):
         yield warn(
-            f"steps: {facts['loaded_steps']} steps in contact: at least {FEWEST_STEPS} are needed: "
+            f"steps: {e.loaded_steps} steps in contact: at least {FEWEST_STEPS} are needed: "
             "take a smaller dt, or a smaller accuracy"
         )
     if facts["pairwise"]:
@@ -439,7 +459,7 @@ def peak_uncertainty(e: Evidence) -> float | None:
     """The share of the largest force that penalty and mesh may change; None if its error estimate
     includes that change.
     """
-    if not e.record["contact_intervals"] or not e.facts["largest_force"] > 0:
+    if not e.record["contact_intervals"] or not e.largest_force > 0:
         return None
     lasting, peak = _lasting(e)
     if _oscillates(e):
@@ -640,7 +660,7 @@ def _points(e: Evidence) -> Iterator[Sentence]:
     pairs, needed = e.facts["pairs"], FEWEST_POINTS[e.facts["dimension"]]
     if e.facts["pairwise"]:
         fewest = e.facts["touching_at_peak"]
-        rough = pairs[:1] if e.facts["largest_force"] > 0 and fewest < needed else []
+        rough = pairs[:1] if e.largest_force > 0 and fewest < needed else []
     else:
         largest = max((pair["peak"] for pair in pairs), default=0)
         rough = [
