@@ -73,6 +73,11 @@ def _summary(answers: dict[str, Any], history: dict[str, np.ndarray]) -> dict[st
         warnings.append(
             f"{answers['unconverged_steps']:g} steps did not converge: take smaller steps (dt)"
         )
+    if (inverted := history["min_jacobian"] <= 0).any():
+        time = 1e3 * history["t"][inverted][0]
+        warnings.append(
+            f"breakdown: det F <= 0 from {time:.3g} ms on; the result depends on the mesh"
+        )
     if answers["passed"]:
         warnings.append("bodies slip through each other: k or pairing_range is too small")
     last = {
