@@ -270,7 +270,7 @@ def equations(prefix: str = "") -> str:
     and in the program's scripts, and what the first say of it."""
     homes = {
         "paper": [*(ROOT / "edp").glob("*.edp"), *(ROOT / "edp/paper").glob("*.idp")],
-        "kernels": (ROOT / "edp/kernels").glob("*.hpp"),
+        "kernels": (ROOT / "edp/kernels").glob("*.[ch]pp"),
         "program": (ROOT / "edp/program").rglob("*.idp"),
     }
     text = "| equation | the paper's scripts | kernels | the program's scripts | what stands there |\n"

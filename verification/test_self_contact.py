@@ -1,4 +1,4 @@
-"""The conserving gap between a body and its own outline (edp/kernels/pairs.hpp), for a randomly
+"""The conserving gap between a body and its own outline (edp/kernels/pairs.cpp), for a randomly
 deformed hairpin with closed slot."""
 
 import pytest

@@ -4,7 +4,7 @@ output of results."""
 from style import BODY, INK, LIGHT, OTHER, arrow, box, diagram, save
 
 figure, ax = diagram(2.6)
-rows = (("obstacle", "input/models.py\nthe entry", "scenes/obstacles.py\nentry → numbers", "kernels/shapes.hpp\ngap and normal"),
+rows = (("obstacle", "input/models.py\nthe entry", "scenes/obstacles.py\nentry → numbers", "kernels/shapes.cpp\ngap and normal"),
         ("friction law", "input/table.py\nthe word", "", "program/contact/friction.idp\nφ and its derivative"),
         ("law", "input/table.py\nthe word", "", "program/law/NAME.idp\nS, tangent, energy"),
         ("figure", "", "report/NAME.py\nhistory → axes", ""))

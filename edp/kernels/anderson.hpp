@@ -5,7 +5,7 @@
 // iterations and steps, as long as A lasts. Mixing w instead of d keeps every iterate consistent
 // with the contact law. Exports Anderson.
 #pragma once
-#include "tensors.hpp"
+#include "arrays.hpp"
 
 class Anderson {
  public:
@@ -43,7 +43,7 @@ class Anderson {
     if (pressures.rows() > 0) pressure -= pressures * gamma;
   }
 
-  template<class Archive> void archive(Archive &archive) {
+  void archive(Archive &archive) {
     archive(newest);  archive(moves);  archive(corrections);  archive(pressures);  archive(gram);
   }
 

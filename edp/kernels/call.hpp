@@ -1,82 +1,16 @@
 // call.hpp: add(name, f) makes the C++ function f callable from FreeFEM scripts under `name`.
 // f takes any number of arguments (long, double, bool, double &, std::string &, Reals, Ints,
 // Table, Sparse, Callback) and returns long or nothing; FreeFEM then gets 0.
-// Exports add(), the argument types, copied(), and giveUp() and check() for fatal errors.
+// Exports add() and the argument types Sparse and Callback.
 #pragma once
-#include <cstdio>
-#include <cstdlib>
 #include <new>
 #include <string>
 #include <utility>
-#include <vector>
-#include "tensors.hpp"
 #include "ff++.hpp"
+#include "arrays.hpp"
+#include "failure.hpp"
 
-// Ends the program with one line on stderr, as fail() of parameters.idp.
-[[noreturn]] inline void giveUp(int code, const std::string &message) {
-  std::fprintf(stderr, "ffimpact: %s\n", message.c_str());
-  std::fflush(nullptr);
-  std::_Exit(code);
-}
-// For a library that has run out of memory.
-[[noreturn]] inline void giveUp(const std::string &what) {
-  giveUp(14, "memory: not enough for " + what
-    + ": take larger elements (mesh_size, contact_mesh_size) or a larger accuracy");
-}
-inline void check(bool good, const char *what) { if (!good) giveUp(what); }
-
-typedef KN<double> &Reals;                 // real[int]; converts to double *
-typedef KN<long> &Ints;                    // int[int]
-typedef KNM<double> &Table;                // real[int, int]
 typedef Matrice_Creuse<double> &Sparse;    // matrix
-
-template <class T, class R> std::vector<T> copied(const KN<R> &array) {
-  const R *from = array;
-  return std::vector<T>(from, from + array.N());
-}
-
-// A script array that later calls read or fill without having it as an argument. FreeFEM may
-// reallocate the numbers of an array, so the array is kept and not a pointer to its numbers.
-template <class R> struct Kept {
-  typedef Eigen::Matrix<R, Eigen::Dynamic, 1> Numbers;
-  KN<R> *array = nullptr;
-  operator R *() const { return array ? static_cast<R *>(*array) : nullptr; }
-  R &operator[](long i) const { return (*array)[i]; }
-  long size() const { return array->N(); }
-  Eigen::Map<Numbers> numbers() const { return {static_cast<R *>(*array), array->N()}; }
-};
-
-// Script arrays for the rows of gaps as triplets: B(row, unknown) = normal, and for each tangent
-// S_a(row, unknown) = slip, first all S_1.
-struct JacobianRows { Ints row, unknown;  Reals normal, slip; };
-
-// Writes values to `numbers`, or reads them from there in the same order.
-struct Archive {
-  std::vector<double> numbers;
-  size_t at = 0;
-  bool reads = false;
-  double next() { return numbers[at++]; }
-  template <class R> void number(R &x) {
-    if (reads) x = R(next());
-    else numbers.push_back(double(x));
-  }
-  void operator()(int &x) { number(x); }
-  void operator()(long &x) { number(x); }
-  void operator()(double &x) { number(x); }
-  void operator()(std::vector<int> &v) {
-    long n = v.size();
-    number(n);
-    v.resize(n);
-    for (int &x : v) number(x);
-  }
-  template <int columns> void operator()(Eigen::Matrix<double, Eigen::Dynamic, columns> &A) {
-    long rows = A.rows(), size = A.cols();
-    number(rows);
-    number(size);
-    A.resize(rows, size);
-    for (long k = 0; k < A.size(); k++) number(A.data()[k]);
-  }
-};
 
 // An argument that is an expression of the script, evaluated when the kernel calls it.
 struct Callback {

@@ -3,8 +3,6 @@
 // (11)-(13), t_T = -mu_f(v_T) phi(v_T) |t_N|, v_T = slip/dt. k has the weight of the point. Exports
 // Law, Candidate, Forces.
 #pragma once
-#include <algorithm>
-#include <cmath>
 #include "tensors.hpp"
 
 namespace contact {
@@ -29,141 +27,35 @@ struct Law {
 
   double penaltyForce(double vN, double k) const { return vN > 0 ? k * std::pow(vN, exponent) : 0; }
 
-  double normal(double vN0, double vN1, double k, double &t, double &stiff) const {
-    // The normal force t >= 0, (10) and the damping of the penalty, and stiff = dt/dvN1. Returns
-    // the damping tau (P1 - P0)/dt, P0 and P1 the forces of (10) at the start and end of the step,
-    // or the part of it that leaves t >= 0: contact is never adhesive. P increases with v_N, so
-    // that the damping never does positive work: its product with vN1 - vN0 is >= 0.
-    elastic(vN0, vN1, k, t, stiff);
-    if (retardation == 0) return 0;
-    const double damping = retardation / dt * (penaltyForce(vN1, k) - penaltyForce(vN0, k));
-    if (t + damping <= 0) {
-      const double released = -t;
-      t = stiff = 0;
-      return released;
-    }
-    t += damping;
-    if (vN1 > 0) stiff += retardation / dt * k * exponent * std::pow(vN1, exponent - 1);
-    return damping;
-  }
+  // The normal force t >= 0, (10) and the damping of the penalty, and stiff = dt/dvN1. Returns
+  // the damping tau (P1 - P0)/dt, P0 and P1 the forces of (10) at the start and end of the step,
+  // or the part of it that leaves t >= 0: contact is never adhesive. P increases with v_N, so
+  // that the damping never does positive work: its product with vN1 - vN0 is >= 0.
+  double normal(double vN0, double vN1, double k, double &t, double &stiff) const;
 
-  void elastic(double vN0, double vN1, double k, double &t, double &stiff) const {
-    // (10): t = k v_N^m where v_N > 0, and stiff = dt/dvN1, for penetrations vN0, vN1 at the start
-    // and end of the step. stepMean: the mean (Phi_1 - Phi_0)/(vN1 - vN0) of the potential Phi =
-    // k v_N^(m+1)/(m+1), whose work is the change of Phi, by a series where vN hardly changes.
-    const double m = exponent, middle = (vN0 + vN1) / 2;
-    t = stiff = 0;
-    if (lawInstant == stepMean) {
-      if (!(vN0 > 0 || vN1 > 0)) return;
-      const bool stays = std::min(vN0, vN1) > 0, moves = std::abs(vN1 - vN0) > 0.02 * (vN0 + vN1);
-      const double r = (vN1 - vN0) / (vN0 + vN1), r2 = r * r;
-      if (!stays) t = k * (std::pow(std::max(vN0, vN1), m + 1) / (m + 1) / std::abs(vN1 - vN0));
-      else if (m == 1) t = k * middle;     // m = 1: mean of (10) over the step
-      else if (moves)
-        t = k * ((std::pow(vN1, m + 1) - std::pow(vN0, m + 1)) / (m + 1) / (vN1 - vN0));
-      else t = k * (std::pow(middle, m)
-        * (1 + m * (m - 1) / 6 * r2 * (1 + (m - 2) * (m - 3) / 20 * r2
-          * (1 + (m - 4) * (m - 5) / 42 * r2))));
-      if (stays && m == 1) stiff = k / 2;
-      else if (!stays || moves) stiff = ((vN1 > 0 ? k * std::pow(vN1, m) : 0) - t) / (vN1 - vN0);
-      else stiff = k * m / 2 * std::pow(middle, m - 1) * (1 + (m - 1) / 3 * r);
-    }
-    if (lawInstant == stepMiddle && middle > 0) {
-      t = k * std::pow(middle, m);
-      stiff = k * m / 2 * std::pow(middle, m - 1);
-    }
-    if (lawInstant == stepEnd && vN1 > 0) {
-      t = k * std::pow(vN1, m);   // (10): t_N = -t_cN = k v_N^m if v_N > 0, else 0
-      stiff = k * m * std::pow(vN1, m - 1);
-    }
-  }
+  // (10): t = k v_N^m where v_N > 0, and stiff = dt/dvN1, for penetrations vN0, vN1 at the start
+  // and end of the step. stepMean: the mean (Phi_1 - Phi_0)/(vN1 - vN0) of the potential Phi =
+  // k v_N^(m+1)/(m+1), whose work is the change of Phi, by a series where vN hardly changes.
+  void elastic(double vN0, double vN1, double k, double &t, double &stiff) const;
 
-  void regularise(double vOverEps, double &phi, double &dPhi) const {
-    // phi (13) and its derivative at |v|/eps. At eps sqrt is 0.71 and tanh 0.76. The printed phi3
-    // jumps upwards at eps, and a step may then have no solution: a ramp over the last fraction
-    // `bridge` of eps replaces the jump.
-    switch (regularization) {
-      case sqrtOf:
-        phi = vOverEps / std::sqrt(vOverEps * vOverEps + 1);
-        dPhi = std::pow(vOverEps * vOverEps + 1, -1.5);
-        break;
-      case tanhOf: phi = std::tanh(vOverEps);  dPhi = 1 - phi * phi;  break;
-      case linear:
-        phi = std::min(vOverEps, 1.);      // (13): phi3, v/eps below eps (printed: v/(2 eps))
-        dPhi = vOverEps < 1;
-        break;
-      case linearPrinted:
-        phi = vOverEps < 1 - bridge ? vOverEps / 2
-          : std::min(1., (1 - bridge) / 2 + (vOverEps - 1 + bridge) * (1 + bridge) / (2 * bridge));
-        dPhi = vOverEps < 1 - bridge ? 0.5 : (vOverEps < 1 ? (1 + bridge) / (2 * bridge) : 0);
-    }
-  }
+  // phi (13) and its derivative at |v|/eps. At eps sqrt is 0.71 and tanh 0.76. The printed phi3
+  // jumps upwards at eps, and a step may then have no solution: a ramp over the last fraction
+  // `bridge` of eps replaces the jump.
+  void regularise(double vOverEps, double &phi, double &dPhi) const;
 
-  void muPhiAt(double v, const Candidate &a, double &muPhi, double &slope) const {
-    // mu_f phi [-] (12), (13) and its derivative [s/m] at the velocity v [m/s]. With a jump of mu_f
-    // a step can have two solutions. The status selects the branch, mu_e phi or mu_d phi, and each
-    // branch continues monotonically across epsilon. A point keeps its status while its velocity
-    // agrees; then the converged solution satisfies the law as printed.
-    const double pi = 3.14159265358979323846, vOverEps = std::abs(v) / slipVelocity,
-      low = a.muStatic * (1 - bridge) / 2, rise = (a.muDynamic - low) / bridge;
-    double phi = 0, dPhi = 0, mu = a.sticks ? a.muStatic : a.muDynamic, dMu = 0;
-    regularise(vOverEps, phi, dPhi);
-    if (!jumps) {   // mu_f falls smoothly from mu_e at eps to mu_d at 2 eps, as a half cosine
-      const double half = (a.muStatic - a.muDynamic) / 2;
-      mu = a.muDynamic + half * (1 + std::cos(pi * std::max(0., std::min(1., vOverEps - 1))));
-      if (vOverEps > 1 && vOverEps < 2) dMu = -half * pi * std::sin(pi * (vOverEps - 1));
-    }
-    muPhi = mu * phi;
-    slope = mu * dPhi + dMu * phi;
-    if (jumps && regularization == linearPrinted) {
-      // sticking: mu_e v/(2 eps), constant beyond eps; sliding: the same up to mu_d or to the ramp
-      if (a.sticks) {
-        muPhi = a.muStatic * std::min(vOverEps, 1.) / 2;
-        slope = vOverEps < 1 ? a.muStatic / 2 : 0;
-      }
-      else {
-        muPhi = vOverEps < 1 - bridge ? std::min(a.muDynamic, a.muStatic * vOverEps / 2)
-          : std::min(a.muDynamic, low + std::max(rise, 0.) * (vOverEps - 1 + bridge));
-        slope = muPhi >= a.muDynamic ? 0 : (vOverEps < 1 - bridge ? a.muStatic / 2 : rise);
-      }
-    }
-    if (v < 0) muPhi = -muPhi;
-    slope /= slipVelocity;
-  }
+  // mu_f phi [-] (12), (13) and its derivative [s/m] at the velocity v [m/s]. With a jump of mu_f
+  // a step can have two solutions. The status selects the branch, mu_e phi or mu_d phi, and each
+  // branch continues monotonically across epsilon. A point keeps its status while its velocity
+  // agrees; then the converged solution satisfies the law as printed.
+  void muPhiAt(double v, const Candidate &a, double &muPhi, double &slope) const;
 
-  void muPhiVector(const double *v, const Candidate &a, double *muPhi, double slope[2][2]) const {
-    // The vector mu_f phi(|v|) e, e = v/|v|, of `slips` components, and its derivative
-    // (mu_f phi)' e e^T + mu_f phi/|v| (I - e e^T). A negative (mu_f phi)' counts as 0 in space.
-    if (slips == 1) return muPhiAt(v[0], a, muPhi[0], slope[0][0]);
-    const double speed = std::hypot(v[0], v[1]), scale = std::max(speed, 1e-300),
-      e[2] = {v[0] / scale, v[1] / scale};
-    double size, along;                          // mu_f phi and its derivative at |v|
-    muPhiAt(speed, a, size, along);
-    const double across = speed > 1e-9 * slipVelocity ? size / speed : along,
-      more = std::max(along, 0.) - across;
-    for (int i = 0; i < 2; i++) muPhi[i] = size * e[i];
-    for (int i = 0; i < 2; i++) for (int j = 0; j < 2; j++)
-      slope[i][j] = (i == j ? across : 0) + more * e[i] * e[j];
-  }
+  // The vector mu_f phi(|v|) e, e = v/|v|, of `slips` components, and its derivative
+  // (mu_f phi)' e e^T + mu_f phi/|v| (I - e e^T). A negative (mu_f phi)' counts as 0 in space.
+  void muPhiVector(const double *v, const Candidate &a, double *muPhi, double slope[2][2]) const;
 
-  void at(const Candidate &a, const double *x, const double *linearisedAt, Forces &f) const {
-    // Forces on a point with the penetration x[0] at the end of the step and the slip x[1], x[2] in
-    // it. If the velocity linearisedAt is not null, mu_f phi is linearised there.
-    normal(a.vN0, x[0], a.k, f.t[0], f.slope[0][0]);
-    if (slips == 0) return;
-    double v[2], muPhi[2], slope[2][2];
-    for (int i = 0; i < slips; i++) v[i] = x[1 + i] / dt;
-    const double *vOfLaw = linearisedAt ? linearisedAt : v;
-    muPhiVector(vOfLaw, a, muPhi, slope);
-    for (int i = 0; i < slips; i++) for (int j = 0; j < slips && linearisedAt; j++)
-      muPhi[i] += slope[i][j] * (v[j] - vOfLaw[j]);
-    for (int i = 0; i < slips; i++) {
-      f.t[1 + i] = muPhi[i] * f.t[0];   // (11), (12): -t_T = mu_f phi(v_T) |t_N|; |t_T| <= mu_f t_N
-      f.slope[1 + i][0] = muPhi[i] * f.slope[0][0];
-      f.slope[0][1 + i] = 0;
-      for (int j = 0; j < slips; j++) f.slope[1 + i][1 + j] = slope[i][j] * f.t[0] / dt;
-    }
-  }
+  // Forces on a point with the penetration x[0] at the end of the step and the slip x[1], x[2] in
+  // it. If the velocity linearisedAt is not null, mu_f phi is linearised there.
+  void at(const Candidate &a, const double *x, const double *linearisedAt, Forces &f) const;
 };
 
 }

@@ -6,66 +6,19 @@
 // n values. Geometric contact stiffness c T^T T is treated as further points with the row T of B
 // and the force c x. Exports Problem.
 #pragma once
-#include <umfpack.h>
-#include "tensors.hpp"
 #include <memory>
 #include <vector>
-#include "call.hpp"
 #include "contact-law.hpp"
-
-extern "C" {
-void ssymv_(const char *, const int *, const float *, const float *, const int *, const float *,
-            const int *, const float *, float *, const int *);
-void dsymv_(const char *, const int *, const double *, const double *, const int *,
-            const double *, const int *, const double *, double *, const int *);
-void dgetrf_(const int *, const int *, double *, const int *, int *, int *);
-void dgetrs_(const char *, const int *, const int *, const double *, const int *, const int *,
-             double *, const int *, int *);
-void dpotrf_(const char *, const int *, double *, const int *, int *);
-void dpotri_(const char *, const int *, double *, const int *, int *);
-void spotrf_(const char *, const int *, float *, const int *, int *);
-void spotri_(const char *, const int *, float *, const int *, int *);
-}
+#include "status.hpp"
 
 namespace contact {
 
 using Indices = std::vector<int>;
 using Vector = Eigen::VectorXd;
 
-inline double largest(const Vector &a) {   // largest |a_i|, nan if there is one
-  return a.size() == 0 ? 0 : a.lpNorm<Eigen::Infinity>();
-}
-template <class Numbers, class Real>
-bool invert(int n, Numbers &A,
-            void (*factor)(const char *, const int *, Real *, const int *, int *),
-            void (*inverse)(const char *, const int *, Real *, const int *, int *)) {
-  // Replaces the symmetric n x n matrix A by its inverse, with LAPACK's potrf and potri. Returns
-  // false if A is not positive definite.
-  int info;
-  factor("L", &n, A.data(), &n, &info);
-  if (info != 0) return false;
-  inverse("L", &n, A.data(), &n, &info);
-  for (int j = 0; j < n; j++)
-    for (int i = j + 1; i < n; i++) A[(size_t)n * i + j] = A[(size_t)n * j + i];
-  return true;
-}
 inline bool isDiagonal(const Vector &A, int n) { return n > 1 && A.size() == n; }
-inline void multiply(const Vector &A, const Vector &x, Vector &y) {
-  // y = A x with a symmetric A, full or diagonal.
-  const double alpha = 1, beta = 0;
-  const int n = x.size(), step = 1;
-  if (isDiagonal(A, n)) { y = A.cwiseProduct(x);  return; }
-  y.resize(n);
-  if (n > 0) dsymv_("L", &n, &alpha, A.data(), &n, x.data(), &step, &beta, y.data(), &step);
-}
-inline void multiply(const Eigen::VectorXf &A, const Vector &x, Vector &y) {
-  // The same in single precision.
-  const float alpha = 1, beta = 0;
-  const int n = x.size(), step = 1;
-  Eigen::VectorXf from = x.cast<float>(), to(n);
-  if (n > 0) ssymv_("L", &n, &alpha, A.data(), &n, from.data(), &step, &beta, to.data(), &step);
-  y = to.cast<double>();
-}
+// y = A x with a symmetric A, full or diagonal.
+void multiply(const Vector &A, const Vector &x, Vector &y);
 
 // The gap Jacobian B on n unknowns: a block of gapRows rows for each active candidate, then a block
 // for each term of geometric contact stiffness, of which only the first row is used.
@@ -82,92 +35,20 @@ struct Rows {
 
   int blocks() const { return first.size() - 1; }
   int entries(int b) const { return first[b + 1] - first[b]; }
-  void begin(int unknowns, int rowsOfBlock) {
-    // Removes all points; the pattern is kept.
-    const std::shared_ptr<const Pattern> patternBefore = pattern;
-    *this = Rows();
-    n = unknowns;
-    gapRows = rowsOfBlock;
-    pattern = patternBefore;
-  }
-  void entry(int j, int kind, double v) {
-    // Adds v to row `kind`, unknown j of the point that is being built.
-    const int e = std::find(column.begin() + first.back(), column.end(), j) - column.begin();
-    if (e == (int)column.size()) {
-      column.push_back(j);
-      blockOf.push_back(blocks());
-      value.resize(value.size() + gapRows, 0.);
-    }
-    value[gapRows * e + kind] += v;
-  }
+  // Removes all points; the pattern is kept.
+  void begin(int unknowns, int rowsOfBlock);
+  // Adds v to row `kind`, unknown j of the point that is being built.
+  void entry(int j, int kind, double v);
   void endBlock() { first.push_back(column.size()); }
-  void end(const Vector &geometricTerms) {
-    geometric = geometricTerms;
-    points = blocks() - geometric.size();
-  }
-  void transposeTimes(const Vector &t, Vector &force) const {   // force = B^T t
-    force = Vector::Zero(n);
-    for (size_t e = 0; e < column.size(); e++)
-      for (int c = 0; c < gapRows; c++)
-        force[column[e]] += value[gapRows * e + c] * t[gapRows * blockOf[e] + c];
-  }
-  void times(const Vector &increment, Vector &move) const {   // move = B increment
-    move = Vector::Zero(gapRows * blocks());
-    for (size_t e = 0; e < column.size(); e++)
-      for (int c = 0; c < gapRows; c++)
-        move[gapRows * blockOf[e] + c] += value[gapRows * e + c] * increment[column[e]];
-  }
-  void slope(const Vector &D, const Vector &move, Vector &change) const {
-    // change = D move; D has a gapRows x gapRows block for each point
-    change = Vector::Zero(move.size());
-    for (int b = 0; b < blocks(); b++)
-      for (int i = 0; i < gapRows; i++)
-        for (int j = 0; j < gapRows; j++)
-          change[gapRows * b + i] += D[gapRows * (gapRows * b + i) + j] * move[gapRows * b + j];
-  }
-  template <class Function> void stiffness(const Vector &D, Function add) const {
-    // K = B^T D B: calls add(t, i, j, v) for each contribution v to K_ij, t their running number.
-    for (int b = 0, t = 0; b < blocks(); b++) {
-      const double *slopes = &D[gapRows * gapRows * b];
-      if (std::all_of(slopes, slopes + gapRows * gapRows, [](double d) { return d == 0; })) {
-        t += entries(b) * entries(b);
-        continue;
-      }
-      for (int e = first[b]; e < first[b + 1]; e++) {
-        double increment[3] = {}, *to = increment;   // column of D B
-        for (int i = 0; i < gapRows; i++, to++)
-          for (int c = 0; c < gapRows; c++) *to += slopes[gapRows * i + c] * value[gapRows * e + c];
-        for (int o = first[b]; o < first[b + 1]; o++, t++) {
-          double sum = 0;
-          for (int i = 0; i < gapRows; i++) sum += value[gapRows * o + i] * increment[i];
-          add(t, column[o], column[e], sum);
-        }
-      }
-    }
-  }
-  void makePattern() {
-    // Makes the pattern unless that of an earlier B with the same entries serves.
-    if (pattern && pattern->start.size() == (size_t)n + 1 && pattern->first == first
-        && pattern->column == column)
-      return;
-    Indices I, J;
-    void *symbolic = nullptr;
-    for (int b = 0; b < blocks(); b++)
-      for (int e = first[b]; e < first[b + 1]; e++)
-        for (int o = first[b]; o < first[b + 1]; o++) {
-          I.push_back(column[o]);
-          J.push_back(column[e]);
-        }
-    for (int j = 0; j < n; j++) { I.push_back(j);  J.push_back(j); }
-    Pattern made{first, column, Indices(n + 1), Indices(I.size()), Indices(I.size()), nullptr};
-    check(umfpack_di_triplet_to_col(n, n, I.size(), I.data(), J.data(), nullptr, made.start.data(),
-                                    made.row.data(), nullptr, made.place.data()) == UMFPACK_OK
-          && umfpack_di_symbolic(n, n, made.start.data(), made.row.data(), nullptr, &symbolic,
-                                 nullptr, nullptr) == UMFPACK_OK,
-          "there is not forceTolerance of it for the pattern of the contact");
-    made.symbolic.reset(symbolic, [](void *s) { umfpack_di_free_symbolic(&s); });
-    pattern = std::make_shared<const Pattern>(std::move(made));
-  }
+  void end(const Vector &geometricTerms);
+  void transposeTimes(const Vector &t, Vector &force) const;   // force = B^T t
+  void times(const Vector &increment, Vector &move) const;   // move = B increment
+  // change = D move; D has a gapRows x gapRows block for each point
+  void slope(const Vector &D, const Vector &move, Vector &change) const;
+  // K = B^T D B: calls add(t, i, j, v) for each contribution v to K_ij, t their running number.
+  template <class Function> void stiffness(const Vector &D, Function add) const;
+  // Makes the pattern unless that of an earlier B with the same entries serves.
+  void makePattern();
 };
 
 // The Newton matrix S + K on the unknowns, S = C^-1, K = B^T D B sparse, D = dt/dx, and its solver:
@@ -180,40 +61,15 @@ class Newton {
   bool made = false;
   Vector D;                                      // of the matrix, gapRows x gapRows for each point
   void forget() { made = false;  numeric.reset(); }
-  void stiffen(const Vector &C, Vector &S) {
-    // S = C^-1, full. For iterations it is only made in single precision, and S stays empty, if
-    // that finds C positive definite.
-    const int size = std::lround(std::sqrt((double)C.size()));
-    S.resize(0);
-    rounded = C.cast<float>();
-    if (size > mostDense && invert(size, rounded, spotrf_, spotri_)) return;
-    S = C;
-    invert(size, S, dpotrf_, dpotri_);
-    rounded = S.cast<float>();
-  }
-  bool fits(const Rows &B) const {
-    return made && n == B.n && D.size() == B.blocks() * B.gapRows * B.gapRows;
-  }
+  // S = C^-1, full. For iterations it is only made in single precision, and S stays empty, if
+  // that finds C positive definite.
+  void stiffen(const Vector &C, Vector &S);
+  bool fits(const Rows &B) const;
 
-  void make(Rows &B, const Vector &slopes, const Vector &S) {
-    // The matrix for D = slopes. An older P is kept while it converges quickly.
-    D = slopes;
-    n = B.n;
-    dense = n <= mostDense && !isDiagonal(S, n);
-    made = true;
-    if (dense) return factorDense(B, S);
-    B.makePattern();
-    if (!numeric || pattern != B.pattern || iterations > mostIterations) factorSparse(B, S);
-  }
-  void solve(const Rows &B, const Vector &f, const Vector &S, double goal, Vector &y) {
-    // Solves (S + K) y = f, iteratively to a residual of norm `goal` [N].
-    const int rightSides = 1;
-    int info;
-    if (!dense) return conjugate(B, f, S, goal, y);
-    y = f;
-    if (n > 0)
-      dgetrs_("N", &n, &rightSides, LU.data(), &n, pivots.data(), y.data(), &n, &info);
-  }
+  // The matrix for D = slopes. An older P is kept while it converges quickly.
+  void make(Rows &B, const Vector &slopes, const Vector &S);
+  // Solves (S + K) y = f, iteratively to a residual of norm `goal` [N].
+  void solve(const Rows &B, const Vector &f, const Vector &S, double goal, Vector &y);
 
  private:
   int n = 0, iterations = 0;                     // unknowns; iterations of the last solve
@@ -224,64 +80,9 @@ class Newton {
   std::shared_ptr<const Rows::Pattern> pattern;  // of P
   std::shared_ptr<void> numeric;                 // UMFPACK's LU of P
 
-  void factorDense(const Rows &B, const Vector &S) {   // LU of S + K
-    int info;                                    // > 0 if singular; the solution is then nan
-    LU = S;
-    pivots.resize(n);
-    B.stiffness(D, [this](int, int i, int j, double K) { LU[(size_t)n * j + i] += K; });
-    if (n > 0) dgetrf_(&n, &n, LU.data(), &n, pivots.data(), &info);
-  }
-
-  void factorSparse(const Rows &B, const Vector &S) {   // P and its LU
-    void *made = nullptr;
-    pattern = B.pattern;
-    const Indices &start = pattern->start, &row = pattern->row;
-    P.resize(start[n]);
-    for (int j = 0; j < n; j++) for (int e = start[j]; e < start[j + 1]; e++)
-      P[e] = isDiagonal(S, n) ? (row[e] == j) * S[j] : rounded[(size_t)n * j + row[e]];
-    B.stiffness(D, [&](int t, int, int, double K) { P[pattern->place[t]] += K; });
-    const int status = umfpack_di_numeric(start.data(), row.data(), P.data(),
-                                          pattern->symbolic.get(), &made, nullptr, nullptr);
-    check(status == UMFPACK_OK || status == UMFPACK_WARNING_singular_matrix,
-          "the matrix of the contact");
-    numeric.reset(made, [](void *s) { umfpack_di_free_numeric(&s); });
-  }
-
-  void conjugate(const Rows &B, const Vector &f, const Vector &S, double goal, Vector &y) {
-    // Generalised conjugate residuals (Eisenstat, Elman, Schultz 1983); the iterates are those of
-    // GMRES. Ends at a residual of norm `goal`, after 200 iterations at the latest.
-    double control[UMFPACK_CONTROL];
-    umfpack_di_defaults(control);
-    control[UMFPACK_IRSTEP] = 0;
-    Vector residual = f, move, change, more;
-    std::vector<Vector> increments, images;
-    y = Vector::Zero(n);
-    for (iterations = 0; iterations < 200 && residual.norm() > goal; iterations++) {
-      Vector increment(n), image;
-      const int status = umfpack_di_solve(UMFPACK_A, pattern->start.data(), pattern->row.data(),
-                                          P.data(), increment.data(), residual.data(),
-                                          numeric.get(), control, nullptr);
-      check(status == UMFPACK_OK || status == UMFPACK_WARNING_singular_matrix,
-            "the solution of the contact");
-      if (isDiagonal(S, n)) multiply(S, increment, image);
-      else multiply(rounded, increment, image);
-      B.times(increment, move);
-      B.slope(D, move, change);
-      B.transposeTimes(change, more);
-      image += more;
-      for (size_t k = 0; k < increments.size(); k++) {
-        const double h = image.dot(images[k]);
-        image -= h * images[k];
-        increment -= h * increments[k];
-      }
-      const double scale = 1 / std::max(image.norm(), 1e-300),
-        along = scale * scale * residual.dot(image);
-      y += along * increment;
-      residual -= along * image;
-      increments.push_back(scale * increment);
-      images.push_back(scale * image);
-    }
-  }
+  void factorDense(const Rows &B, const Vector &S);
+  void factorSparse(const Rows &B, const Vector &S);
+  void conjugate(const Rows &B, const Vector &f, const Vector &S, double goal, Vector &y);
 };
 
 // The contact problem on the active set, solved in every Newton step. With D = dt/dx its Newton
@@ -300,183 +101,26 @@ class Problem {
   int mostStatusChanges = 0;                     // of a point
   int matrices = 0, lineSearchFrom = 20;           // matrices of this solve; before the line search
 
-  void comply(const Vector &compliance) {   // C: n x n values, or n if C is diagonal
-    C = compliance;
-    stiff = false;
-  }
+  void comply(const Vector &compliance);   // C: n x n values, or n if C is diagonal
 
-  int solve(long mostContactMatrices, long &contactMatrices) {
-    // Newton's method for tau. With friction it uses the linearised law (linearise()) and keeps the
-    // matrix near convergence and for the start of the next solve; after `lineSearchFrom` matrices,
-    // and without friction, it is plain Newton with a line search. contactMatrices counts the
-    // matrices of the step with friction. Returns the number of iterations, -1 on failure.
-    const int hasFriction = law.slips > 0;
-    newton.made = newton.fits(B);
-    place();
-    evaluate(nullptr);
-    double biggest = 0, roundOff = 0, errorBefore = newton.made ? 1e300 : 0;
-    roundOff = largest(x);
-    const double close = 1e-13 + (hasFriction ? 1e-15 * roundOff / (law.dt * law.slipVelocity) : 0);
-    sigma.resize(0);
-    matrices = 0;
-    for (int it = 0; matrices < 60 && contactMatrices <= mostContactMatrices; it++) {
-      const double scale = largest(t) + largest(tau), error = largest(unbalance);
-      if (it == 0) biggest = scale;
-      bool done = error <= close * scale || scale == 0 || unbalance.norm() <= forceTolerance;
-      if (!done) {
-        if (!(error <= 1e6 * biggest)) return -1;   // divergence or nan
-        const bool searches = !hasFriction || matrices >= lineSearchFrom;
-        if (!hasFriction || error > (it == 0 ? 0.1 : 1e-3) * scale || error > 0.3 * errorBefore) {
-          matrices++;
-          if (hasFriction) contactMatrices++;
-          if (!searches) linearise();
-          stiffen();
-          newton.make(B, slopes, S);
-        }
-        errorBefore = error;
-        correct(searches ? 1e-6 : 1e-3);         // a line search needs an accurate direction
-        if (!advance(searches)) { if (error <= 1e-9 * scale) done = true;  else return -1; }
-      }
-      if (done) {
-        if (updateStatuses() == 0) { B.transposeTimes(tau, force);  return it; }
-        errorBefore = 0;
-      }
-    }
-    return -1;
-  }
+  // Newton's method for tau. With friction it uses the linearised law (linearise()) and keeps the
+  // matrix near convergence and for the start of the next solve; after `lineSearchFrom` matrices,
+  // and without friction, it is plain Newton with a line search. contactMatrices counts the
+  // matrices of the step with friction. Returns succeeded or diverged.
+  Status solve(long mostContactMatrices, long &contactMatrices);
 
  private:
   bool stiff = false;                            // S is that of the present C
   // slopes: D; unbalance: t - tau; step, move: Newton increments of tau and x; sigma: linearise()
   Vector C, S, x, t, slopes, unbalance, step, move, sigma;
-
-  void stiffen() {   // S = C^-1
-    if (stiff || C.size() == 0) return;
-    stiff = true;
-    if (isDiagonal(C, B.n)) S = C.cwiseInverse();
-    else newton.stiffen(C, S);
-  }
-  void displace(const Vector &f, Vector &increment) const {   // increment = B C B^T f
-    Vector g, y;
-    B.transposeTimes(f, g);
-    multiply(C, g, y);
-    B.times(y, increment);
-  }
-  void place() {   // x = x_w - B C B^T tau
-    displace(tau, x);
-    x = start - x;
-  }
-
-  void evaluate(const Vector *at) {
-    // t, D and t - tau at x; negative diagonal terms of D count as 0. `at`, if not null, has the
-    // velocity at which friction is linearised, slips values for each point; nan: not linearised.
-    const int k = B.gapRows;
-    t = Vector::Zero(x.size());
-    slopes = Vector::Zero(k * x.size());
-    for (int b = 0; b < B.points; b++) {
-      Forces f;
-      const double *linearised = at && (*at)[law.slips * b] == (*at)[law.slips * b]
-        ? &(*at)[law.slips * b] : nullptr;
-      law.at(point[b], &x[k * b], linearised, f);
-      for (int i = 0; i < k; i++) t[k * b + i] = f.t[i];
-      for (int i = 0; i < k; i++)
-        for (int j = 0; j < k; j++)
-          slopes[k * k * b + k * i + j] = i == j ? std::max(f.slope[i][j], 0.) : f.slope[i][j];
-    }
-    for (size_t s = 0; s < B.geometric.size(); s++) {
-      const int b = B.points + s;
-      t[k * b] = B.geometric[s] * x[k * b];
-      slopes[k * k * b] = B.geometric[s];
-    }
-    unbalance = t - tau;
-  }
-
-  void linearise() {
-    // Linearises friction at the velocity w that fits force and velocity best: phi(w) + w/sigma =
-    // t_T/(mu_f t_N) + v/sigma with the linear phi; sigma [m/s] is the velocity change that full
-    // friction causes in the step (resolvent: Alart and Curnier 1991; de Saxce and Feng 1998).
-    // Linearised at v, Newton's method oscillates: an inexact v does not determine the force.
-    const int k = B.gapRows, slips = law.slips, blocks = B.points;
-    if (sigma.size() == 0) {
-      Vector full = Vector::Zero(x.size()), increment;
-      for (int b = 0; b < blocks; b++) full[k * b + 1] = t[k * b] * point[b].muStatic;
-      displace(full, increment);
-      sigma.resize(blocks);
-      for (int b = 0; b < blocks; b++)
-        sigma[b] = std::max(increment[k * b + 1] / law.dt, law.slipVelocity);
-    }
-    Vector at = Vector::Constant(slips * blocks, NAN);
-    for (int b = 0; b < blocks; b++) {
-      const Candidate &a = point[b];
-      const double cap = std::max(1e-200,
-        t[k * b] * (a.sticks || !law.jumps ? a.muStatic : a.muDynamic));
-      double off = 0, blend[2] = {0, 0};
-      for (int i = 0; i < slips; i++) off = std::max(off, std::abs(unbalance[k * b + 1 + i]));
-      if (!(t[k * b] > 0 && off > 0.1 * cap)) continue;
-      for (int i = 0; i < slips; i++)
-        blend[i] = tau[k * b + 1 + i] / cap + x[k * b + 1 + i] / law.dt / sigma[b];
-      const double length = std::hypot(blend[0], blend[1]);
-      const double factor = length <= 1 + law.slipVelocity / sigma[b]
-        ? 1 / (1 / law.slipVelocity + 1 / sigma[b]) : sigma[b] * (length - 1) / length;
-      for (int i = 0; i < slips; i++) at[slips * b + i] = factor * blend[i];
-    }
-    evaluate(&at);
-  }
-
-  void correct(double share) {
-    // Solves (S + K) y = B^T (t - tau) to a relative residual `share`. Increments: of the forces
-    // step = t - tau - D B y, of gap and slip move = -B C B^T step.
-    Vector f, y, change;
-    B.transposeTimes(unbalance, f);
-    newton.solve(B, f, S, std::max(share * f.norm(), 1e-2 * forceTolerance), y);
-    B.times(y, move);
-    B.slope(newton.D, move, change);
-    step = unbalance - change;
-    displace(step, move);
-    move = -move;
-  }
-
-  bool advance(bool searches) {
-    // Adds `step` to tau and `move` to x, fully or, with a line search, up to the point where the
-    // slope of the convex potential has become small (bisection). Returns false if `move` is not a
-    // descent direction.
-    double low = 0, high = 1, s = 1, applied = 0;
-    const double slopeStart = unbalance.dot(move);
-    if (searches && !(slopeStart < 0)) return false;
-    for (int cut = 0; cut < 40; cut++) {
-      tau += (s - applied) * step;
-      x += (s - applied) * move;
-      applied = s;
-      evaluate(nullptr);
-      if (!searches) return true;
-      const double slope = unbalance.dot(move);
-      if (slope > -0.1 * slopeStart) high = s;   // too far
-      else if (slope < 0.9 * slopeStart && s < 1) low = s;   // too short
-      else return true;
-      s = (low + high) / 2;
-    }
-    return true;
-  }
-
-  int updateStatuses() {
-    // Changes the stick or slip status of points whose velocity contradicts it. Returns the number
-    // of changes. A point that exceeds mostStatusChanges keeps slipping.
-    const int k = B.gapRows;
-    int changed = 0;
-    if (!law.jumps || law.slips == 0) return 0;
-    for (int b = 0; b < B.points; b++) {
-      Candidate &a = point[b];
-      const double v = (law.slips == 1 ? std::abs(x[k * b + 1])
-        : std::hypot(x[k * b + 1], x[k * b + 2])) / law.dt;
-      if (!(t[k * b] > 0) || statusChanges[b] > mostStatusChanges
-          || !(a.sticks ? v >= law.slipVelocity : v < sticksBelow))
-        continue;
-      statusChanges[b]++;
-      if (a.sticks || statusChanges[b] <= mostStatusChanges) { a.sticks = !a.sticks;  changed++; }
-    }
-    if (changed > 0) evaluate(nullptr);
-    return changed;
-  }
+  void stiffen();
+  void displace(const Vector &f, Vector &increment) const;
+  void place();
+  void evaluate(const Vector *at);
+  void linearise();
+  void correct(double share);
+  bool advance(bool searches);
+  int updateStatuses();
 };
 
 }

@@ -2,9 +2,6 @@
 // names in the scripts. A process computes one scene, so its bodies and the factorisation of their
 // tangent are static objects.
 #include <cholmod.h>   // first: without SuiteSparse's headers the build ends at once
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 #include "call.hpp"
 #include "bodies.hpp"
 #include "factor.hpp"
@@ -114,12 +111,14 @@ static void addFactor() {
   });
   add("kernelTangentEntries", +[](Ints row, Ints column, Reals value) {
     // The entries of both triangles of A.
-    factor.entries([&](long n) { row.resize(n);  column.resize(n);  value.resize(n); },
-                   [&](long e, int i, int j, double a) {
-      row[e] = i;
-      column[e] = j;
-      value[e] = a;
-    });
+    const std::vector<Factor::Triplet> all = factor.entries();
+    const long n = long(all.size());
+    row.resize(n);  column.resize(n);  value.resize(n);
+    for (long e = 0; e < n; e++) {
+      row[e] = all[e].row;
+      column[e] = all[e].column;
+      value[e] = all[e].value;
+    }
   });
 }
 
@@ -213,9 +212,8 @@ static void addStep() {
     substep.begin(Kept<double>{&compliance}.numbers(), distance);
   });
   add("kernelSubstep", +[](Reals increment, Reals halfStepVelocity, double h, Callback gaps) {
-    return substep.take(Kept<double>{&increment}.numbers(),
-                        Kept<double>{&halfStepVelocity}.numbers(), h,
-                        gaps);
+    return long(substep.take(Kept<double>{&increment}.numbers(),
+                             Kept<double>{&halfStepVelocity}.numbers(), h, gaps));
   });
   add("kernelDampingWork", +[](double &work) { work = touching.dampingWork(); });
   add("kernelLaw", +[](double exponent, double retardation, double slipVelocity, double bridge,
@@ -248,8 +246,7 @@ static void addPairs() {
       copied<double>(pointShape), copied<int>(selfContact), copied<double>(reference),
       pairs::ShapeCoefficients(nodes, shape.M())};
     for (int a = 0; a < nodes; a++) for (int j = 0; j < shape.M(); j++) s.shape(a, j) = shape(a, j);
-    if (shape.M() == pairs::termsOf(2)) pairsOfBodies.reset(new pairs::Pairs<2>(s));
-    else pairsOfBodies.reset(new pairs::Pairs<3>(s));
+    pairsOfBodies = pairs::make(std::move(s));
   });
   add("kernelSearchPairs", +[](Reals x, double searchDistance) {
     return pairsOfBodies->search(x, searchDistance);
@@ -274,8 +271,8 @@ static void addObstacles() {
   add("kernelObstacle", +[](std::string &kind, long axes, Reals numbers, Reals velocity) {
     // Appends an obstacle.
     obstacles::Obstacle added;
-    added.shape.reset(shapes::make(long(sceneObstacles.obstacle.size()), kind, int(axes), numbers,
-                                   numbers.N()));
+    added.shape = shapes::make(long(sceneObstacles.obstacle.size()), kind, int(axes), numbers,
+                               numbers.N());
     added.velocity = spatial(velocity);
     sceneObstacles.axes = int(axes);
     sceneObstacles.obstacle.push_back(std::move(added));
@@ -334,17 +331,25 @@ static void addObstacles() {
 extern "C" void openblas_set_num_threads(int) __attribute__((weak));
 
 static void limitThreads() {
-  // One thread for BLAS and one for OpenMP, unless the environment sets their numbers: waiting
-  // BLAS threads take as much processor time as working ones.
+  // One thread for BLAS, unless the environment sets their number: waiting threads take as much
+  // processor time as working ones.
   if (!getenv("OPENBLAS_NUM_THREADS") && !getenv("OMP_NUM_THREADS") && openblas_set_num_threads)
     openblas_set_num_threads(1);
-#ifdef _OPENMP
-  if (!getenv("OMP_NUM_THREADS")) omp_set_num_threads(1);
-#endif
+}
+
+static void addStatuses() {                   // status.hpp
+  const auto name = [](const char *text, Status status) {
+    Global.New(text, CConstant<long>(status));
+  };
+  name("succeeded", succeeded);
+  name("diverged", diverged);
+  name("inverted", inverted);
+  name("notANumber", notANumber);
 }
 
 static void addKernels() {
   limitThreads();
+  addStatuses();
   addBodies();
   addFactor();
   addStep();

@@ -6,10 +6,10 @@
 // -B^T t_N - S_a^T (-t_Ta); the work of the obstacle on the body is motion.(t_N, -t_T).
 // Exports Obstacles.
 #pragma once
-#include "bodies.hpp"
-#include "call.hpp"
-#include "shapes.hpp"
 #include <eigen3/Eigen/Sparse>
+#include "arrays.hpp"
+#include "bodies.hpp"
+#include "shapes.hpp"
 
 namespace obstacles {
 
@@ -21,27 +21,9 @@ typedef Eigen::Matrix3d Rotation;
 struct TimeFunction {
   std::vector<double> time, value, slope;
 
-  size_t before(double t) const {          // the last knot at or before t
-    return std::upper_bound(time.begin(), time.end(), t) - time.begin() - 1;
-  }
-  double at(double t) const {
-    if (time.empty()) return 0;
-    if (t <= time.front()) return value.front() + (t - time.front()) * slope.front();
-    if (t >= time.back()) return value.back() + (t - time.back()) * slope.back();
-    const size_t k = before(t);
-    const double h = time[k + 1] - time[k], s = (t - time[k]) / h, r = 1 - s;
-    return r * r * ((1 + 2 * s) * value[k] + h * s * slope[k])
-      + s * s * ((1 + 2 * r) * value[k + 1] - h * r * slope[k + 1]);
-  }
-  double rate(double t) const {
-    if (time.empty()) return 0;
-    if (t <= time.front()) return slope.front();
-    if (t >= time.back()) return slope.back();
-    const size_t k = before(t);
-    const double h = time[k + 1] - time[k], s = (t - time[k]) / h;
-    return 6 * s * (1 - s) * (value[k + 1] - value[k]) / h + (1 - s) * (1 - 3 * s) * slope[k]
-      + s * (3 * s - 2) * slope[k + 1];
-  }
+  size_t before(double t) const;   // the last knot at or before t
+  double at(double t) const;
+  double rate(double t) const;
 };
 
 // Displacement s [m] and rotation R about the pivot: the point X of the frame of an obstacle, its
@@ -60,22 +42,10 @@ struct Obstacle {
   Point pivot = Point::Zero(), axis = Point::UnitZ();   // of a driven obstacle
   TimeFunction displacement[3], angle;     // [m], [rad]
 
-  Point shift(double t) const {            // s(t)
-    if (!driven) return t * velocity;
-    Point s;
-    for (int c = 0; c < 3; c++) s[c] = displacement[c].at(t) - displacement[c].at(0);
-    return s;
-  }
-  Pose pose(double t) const {
-    const double angleNow = driven ? angle.at(t) - angle.at(0) : 0;
-    return {pivot, shift(t), Eigen::AngleAxisd(angleNow, axis).toRotationMatrix()};
-  }
+  Point shift(double t) const;   // s(t)
+  Pose pose(double t) const;
   Point spin(double t) const { return angle.rate(t) * axis; }   // angular velocity [rad/s]
-  Point velocityAt(double t, const Point &x) const {   // at the position x in the scene [m/s]
-    if (!driven) return velocity;
-    const Point v(displacement[0].rate(t), displacement[1].rate(t), displacement[2].rate(t));
-    return v + spin(t).cross(x - pivot - shift(t));
-  }
+  Point velocityAt(double t, const Point &x) const;   // at the position x in the scene [m/s]
 };
 
 // Motion of an obstacle in a step. In its frame a point that moves from x0 to x0 + d in the scene
@@ -87,22 +57,10 @@ struct StepMotion {
   Rotation Rm, change;                     // change = R1 - R0
   Point shift, centre;                     // s1 - s0, pivot + sm
 
-  StepMotion(const Obstacle &obstacle, double t, double dt) {
-    const Pose start = obstacle.pose(t), end = obstacle.pose(t + dt);
-    Rm = (start.R + end.R) / 2;
-    change = end.R - start.R;
-    shift = obstacle.driven ? Point(end.s - start.s) : Point(dt * obstacle.velocity);
-    centre = obstacle.pivot + (start.s + end.s) / 2;
-  }
-  Point increment(const Point &x0, const Point &d) const {   // w
-    return Rm.transpose() * (d - shift) + change.transpose() * (x0 + d / 2 - centre);
-  }
-  double intoScene(const Point &middle, Point &b) const {
-    // Replaces b by Rm b; returns `motion`.
-    const Point changed = change * b;
-    b = Rm * b;
-    return changed.dot(middle - centre) - b.dot(shift);
-  }
+  StepMotion(const Obstacle &obstacle, double t, double dt);
+  Point increment(const Point &x0, const Point &d) const;   // w
+  // Replaces b by Rm b; returns `motion`.
+  double intoScene(const Point &middle, Point &b) const;
 };
 
 // A candidate near its obstacle at the start of a step: position X in the frame, closest point.
@@ -120,120 +78,29 @@ class Obstacles {
   int points() const { return int(reference.size()); }
   long candidates() const { return long(obstacle.size()) * points(); }
 
-  void setPoints(const double *places, const bodies::Triplets &traces) {
-    // Reference positions of the points and the matrix (axes points x ndof) of their displacements,
-    // both stacked by component.
-    const int n = traces.n / axes;
-    reference.assign(n, Point::Zero());
-    for (int c = 0; c < axes; c++) for (int p = 0; p < n; p++)
-      reference[p][c] = places[c * n + p];
-    std::vector<Eigen::Triplet<double>> entries;
-    for (size_t e = 0; e < traces.size; e++)
-      entries.emplace_back(traces.row[e], traces.column[e], traces.value[e]);
-    place = reference;
-    trace.resize(traces.n, traces.m);
-    trace.setFromTriplets(entries.begin(), entries.end());
-    placeInFrame = Places::Zero(candidates(), 3);
-    bound = Eigen::VectorXd::Constant(candidates(), -tensors::infinity);
-  }
+  // Reference positions of the points and the matrix (axes points x ndof) of their displacements,
+  // both stacked by component.
+  void setPoints(const double *places, const bodies::Triplets &traces);
 
-  long start(const double *u0, double time, double searchDistance) {
-    // Starts a step at u0 and `time`: finds the candidates with a gap below searchDistance [m],
-    // which must exceed the motion of any point in the step. Returns their number. A gap changes by
-    // no more than its point moves; this bound tells whether it must be computed again.
-    t = time;
-    displacements(u0, place);
-    for (int p = 0; p < points(); p++) place[p] += reference[p];
-    near.clear();
-    for (size_t k = 0; k < obstacle.size(); k++) {
-      const Pose pose = obstacle[k].pose(t);
-      for (int p = 0; p < points(); p++) {
-        const long s = long(k) * points() + p;
-        const Point X = pose.frame(place[p]);
-        bound[s] -= (X.transpose() - placeInFrame.row(s)).norm();
-        placeInFrame.row(s) = X;
-        if (bound[s] >= searchDistance) continue;
-        const shapes::Nearest closest = obstacle[k].shape->nearest(X);
-        bound[s] = closest.gap;
-        if (closest.gap < searchDistance) near.push_back({int(k), p, X, closest});
-      }
-    }
-    return long(near.size());
-  }
+  // Starts a step at u0 and `time`: finds the candidates with a gap below searchDistance [m],
+  // which must exceed the motion of any point in the step. Returns their number. A gap changes by
+  // no more than its point moves; this bound tells whether it must be computed again.
+  long start(const double *u0, double time, double searchDistance);
 
-  void countCrossings(long *crossed) {
-    // At a contact search: adds to crossed[k] the number of points that passed through obstacle k
-    // since the last one. A point deeper than half the thickness is pushed out on the far side: its
-    // normal reverses, and it is behind the plane that it was in front of.
-    const std::vector<int> candidateBefore = watched;
-    const State before = watchedState;
-    watched.clear();
-    watchedState.resize(near.size(), 7);
-    for (size_t j = 0; j < near.size(); j++) {
-      const Near &now = near[j];
-      watched.push_back(now.obstacle * points() + now.point);
-      watchedState.row(j) << now.start.gap, now.X.transpose(), now.start.normal.transpose();
-      const auto found =
-        std::lower_bound(candidateBefore.begin(), candidateBefore.end(), watched.back());
-      if (found == candidateBefore.end() || *found != watched.back()) continue;
-      const auto then = before.row(found - candidateBefore.begin());
-      const Point X = then.segment<3>(1).transpose(), normal = then.tail<3>().transpose();
-      if (normal.dot(now.start.normal) < 0 && then[0] + normal.dot(now.X - X) < 0)
-        crossed[now.obstacle]++;
-    }
-  }
+  // At a contact search: adds to crossed[k] the number of points that passed through obstacle k
+  // since the last one. A point deeper than half the thickness is pushed out on the far side: its
+  // normal reverses, and it is behind the plane that it was in front of.
+  void countCrossings(long *crossed);
 
-  void rows(const double *d, double dt, Reals q0, Reals q1, Reals motion, const JacobianRows &B) {
-    // Rows, penetrations q0, q1 at both ends and motion (axes ns) of the step by d in dt from the
-    // configuration of start(). Only of the candidates of obstacles; q = -infinity for those that
-    // are not near.
-    const long ns = motion.N() / axes;
-    for (long s = 0; s < candidates(); s++) q0[s] = q1[s] = -tensors::infinity;
-    for (int c = 0; c < axes; c++) for (long s = 0; s < candidates(); s++) motion[c * ns + s] = 0;
-    long entries = 0;
-    for (const Near &now : near) for (int c = 0; c < axes; c++)
-      entries += entriesOf(c * points() + now.point);
-    B.row.resize(entries);  B.unknown.resize(entries);
-    B.normal.resize(entries);  B.slip.resize((axes - 1) * entries);
-    long e = 0;
-    std::vector<StepMotion> motionOf;
-    for (const Obstacle &o : obstacle) motionOf.emplace_back(o, t, dt);
-    for (const Near &now : near) {
-      const long s = long(now.obstacle) * points() + now.point;
-      Point direction[3];
-      double work[3], gap1;
-      directions(now, motionOf[now.obstacle], displacement(d, now.point), direction, work, gap1);
-      q0[s] = -now.start.gap;
-      q1[s] = -gap1;                       // (7): v_N = -gap <= 0, t_N >= 0, v_N t_N = 0
-      for (int c = 0; c < axes; c++) motion[c * ns + s] = work[c];
-      for (int c = 0; c < axes; c++)
-        for (Trace::InnerIterator it(trace, c * points() + now.point); it; ++it, e++) {
-          B.row[e] = s;
-          B.unknown[e] = it.col();
-          B.normal[e] = direction[0][c] * it.value();
-          for (int a = 1; a < axes; a++)
-            B.slip[(a - 1) * entries + e] = direction[a][c] * it.value();
-        }
-    }
-  }
+  // Rows, penetrations q0, q1 at both ends and motion (axes ns) of the step by d in dt from the
+  // configuration of start(). Only of the candidates of obstacles; q = -infinity for those that
+  // are not near.
+  void rows(const double *d, double dt, Reals q0, Reals q1, Reals motion, const JacobianRows &B);
 
-  double largestIncrement(const double *d, double dt) const {
-    // Largest motion [m] of a point relative to any obstacle in the step by d.
-    std::vector<Point> move;
-    double farthest = 0;
-    displacements(d, move);
-    for (const Obstacle &o : obstacle) {
-      const StepMotion motion(o, t, dt);
-      for (int p = 0; p < points(); p++)
-        farthest = std::max(farthest, motion.increment(place[p], move[p]).norm());
-    }
-    return farthest;
-  }
+  // Largest motion [m] of a point relative to any obstacle in the step by d.
+  double largestIncrement(const double *d, double dt) const;
 
-  template<class Archive> void archive(Archive &archive) {
-    archive(t);  archive(bound);  archive(placeInFrame);  archive(watched);  archive(watchedState);
-    for (Point &x : place) for (int c = 0; c < 3; c++) archive(x[c]);
-  }
+  void archive(Archive &archive);
 
  private:
   typedef Eigen::SparseMatrix<double, Eigen::RowMajor> Trace;
@@ -247,57 +114,15 @@ class Obstacles {
   Eigen::VectorXd bound;                   // lower bounds of their gaps [m]
   std::vector<int> watched;                // candidates near at the last search; gap, X and normal
   State watchedState = State(0, 7);
-
   long entriesOf(int r) const { return trace.outerIndexPtr()[r + 1] - trace.outerIndexPtr()[r]; }
-  Point displacement(const double *d, int p) const {
-    Point move = Point::Zero();
-    for (int c = 0; c < axes; c++)
-      for (Trace::InnerIterator it(trace, c * points() + p); it; ++it)
-        move[c] += it.value() * d[it.col()];
-    return move;
-  }
-  void displacements(const double *d, std::vector<Point> &move) const {
-    move.resize(points());
-    for (int p = 0; p < points(); p++) move[p] = displacement(d, p);
-  }
+  Point displacement(const double *d, int p) const;
+  void displacements(const double *d, std::vector<Point> &move) const;
 
   void directions(const Near &now, const StepMotion &motion, const Point &d, Point *direction,
-                  double *work, double &gap1) const {
-    // Directions of B and of S_a in the scene for a point that moves by d, with their motion
-    // (`work`), and the gap at the end. Normal and tangents are those in the middle of the step.
-    const shapes::Shape &shape = *obstacle[now.obstacle].shape;
-    const Point w = motion.increment(place[now.point], d);
-    const shapes::Nearest middle = shape.nearest(now.X + w / 2), end = shape.nearest(now.X + w);
-    const Point n = middle.normal;
-    direction[0] = normalDirection(shape, now, middle, end, w);
-    if (axes == 2) direction[1] << tensors::tangentsOf(tensors::Vector<2>(n.head<2>())), 0;
-    else for (int a = 0; a < 2; a++) direction[1 + a] = tensors::tangentsOf(n).col(a);
-    for (int a = 0; a < axes; a++)
-      work[a] = motion.intoScene(place[now.point] + d / 2, direction[a]);
-    gap1 = end.gap;
-  }
+                  double *work, double &gap1) const;
 
   Point normalDirection(const shapes::Shape &shape, const Near &now, const shapes::Nearest &middle,
-                        const shapes::Nearest &end, const Point &w) const {
-    // B in the frame, for gaps g0, g, g1 at start, middle (normal n) and end. It depends on the
-    // piece of the obstacle on which the point stays:
-    //   piece > 0, flat    B = -n
-    //   piece < 0, round   B = -n |r0 + r1| / (|r0| + |r1|); n is along r0 + r1: no moment about
-    //                      the centre; |r| = |g + rounding|
-    //   0, no such piece   B = -[n + (g1 - g0 - n.w) w / |w|^2] (discrete gradient, Gonzalez)
-    const bool stays = now.start.piece == middle.piece && end.piece == middle.piece;
-    const Point n = middle.normal;
-    if (stays && middle.piece > 0) return -n;
-    if (stays && middle.piece < 0) {
-      const auto radius = [&](double gap) { return std::abs(gap + shape.rounding); };
-      return -2 * radius(middle.gap) / std::max(1e-300, radius(now.start.gap) + radius(end.gap))
-        * n;
-    }
-    const double correction = end.gap - now.start.gap - n.dot(w);
-    // none if it is within the round-off of the positions
-    if (std::abs(correction) <= 4e-16 * (now.X + w / 2).norm()) return -n;
-    return -(n + correction / std::max(1e-300, w.squaredNorm()) * w);
-  }
+                        const shapes::Nearest &end, const Point &w) const;
 };
 
 }

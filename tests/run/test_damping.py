@@ -1,4 +1,4 @@
-"""Kelvin-Voigt damping and a Maxwell branch (edp/kernels/laws.hpp).
+"""Kelvin-Voigt damping and a Maxwell branch (edp/kernels/laws.cpp).
 
 Tested are exact decay, objectivity and the exact energy balance, in scripts and kernels.
 """

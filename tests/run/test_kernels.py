@@ -2,7 +2,9 @@
 
 import os
 import re
+import time
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -24,31 +26,77 @@ def cache(tmp_path, monkeypatch, program):
     return folder
 
 
-def write(folder, name: str) -> None:
-    folder.mkdir(exist_ok=True)
-    (folder / "kernels.cpp").write_text(f'#include "ff++.hpp"\nstatic void {name}() {{}}\nLOADFUNC({name})\n')
+@pytest.fixture
+def sources(tmp_path, monkeypatch):
+    """A folder of sources in place of the kernels: two units and a header that both include."""
+    folder = tmp_path / "sources"
+    folder.mkdir()
+    (folder / "part.hpp").write_text("int part();\n")
+    (folder / "part.cpp").write_text('#include "part.hpp"\nint part() { return 1; }\n')
+    (folder / "kernels.cpp").write_text('#include "ff++.hpp"\n#include "part.hpp"\nstatic void load() { part(); }\nLOADFUNC(load)\n')
+    monkeypatch.setattr(kernels, "SOURCES", folder)
+    return folder
 
 
-@pytest.mark.robustness
-def test_they_are_built_once_and_again_for_other_sources(cache, program, monkeypatch, tmp_path):
-    """They are built in the user's cache folder, which may have any name. The argument contains the
-    plugin of these sources, and FreeFEM loads it."""
-    monkeypatch.setattr(kernels, "SOURCES", tmp_path / "sources")
-    words = []
-    for name in ("one", "other"):
-        write(kernels.SOURCES, name)
-        word = kernels.build(program.command, program.version, program.environment)
-        if not word:
-            pytest.skip("no compiler here")
-        made = {path: path.stat().st_mtime_ns for path in cache.rglob("kernels.so")}
-        assert kernels.build(program.command, program.version, program.environment) == word
-        assert made == {path: path.stat().st_mtime_ns for path in cache.rglob("kernels.so")}
-        words.append(word)
-    assert len(set(words)) == len(made) == 2 and all(any(str(path)[1:-3] in word for path in made) for word in words)
-    assert {path.name for path in cache.rglob("*") if path.is_file()} == {"kernels.so"}
+def build(program, **variables: str) -> str:
+    return kernels.build(program.command, program.version, program.environment | variables)
+
+
+def files(cache) -> dict[str, list[int]]:
+    """The times of the files in the cache folder, by their names."""
+    times: dict[str, list[int]] = {}
+    for path in cache.rglob("*"):
+        if path.is_file():
+            times.setdefault(path.name, []).append(path.stat().st_mtime_ns)
+    return times
+
+
+def test_they_are_built_once_and_only_changed_units_again(cache, program, sources, tmp_path):
+    """They are built in the user's cache folder, which may have any name. A changed unit is compiled
+    alone, a changed header with all units that include it. The argument contains the plugin of these
+    sources, and FreeFEM loads it."""
+    words = [build(program)]
+    made = files(cache)
+    assert words == [build(program)] and made == files(cache)
+    assert {name: len(times) for name, times in made.items()} == {"kernels.so": 1, "unit.o": 2}
+    for name, objects in (("part.cpp", 3), ("part.hpp", 5)):
+        (sources / name).write_text((sources / name).read_text() + "// changed\n")
+        words.append(build(program))
+        assert len(files(cache)["unit.o"]) == objects
+    assert set(made["unit.o"]) < set(files(cache)["unit.o"])  # the first ones were left as they are
+    assert len(set(words)) == 3 and len(files(cache)["kernels.so"]) == 3
     script = tmp_path / "load.edp"
     script.write_text("load " + re.match(r"-D(kernels\d+)=", words[0])[1] + "\n")
-    assert replace(program, plugin=words[0]).call(script).returncode == 0
+    for word in words:
+        assert replace(program, plugin=word).call(script).returncode == 0
+
+
+def test_a_unit_that_fails_leaves_no_plugin(cache, program, sources):
+    """Whole objects of the other units stay, and nothing else."""
+    (sources / "part.cpp").write_text("int part() { return }\n")
+    assert not build(program)
+    assert set(files(cache)) <= {"unit.o"} and not list(cache.rglob("unfinished-*"))
+
+
+def test_a_build_that_takes_too_long_ends_its_compilers(cache, program, sources, monkeypatch, tmp_path):
+    """The child processes of the compiler end with it."""
+    compiler, children = tmp_path / "slow", tmp_path / "children"
+    compiler.write_text(f"#!/bin/sh\nsleep 1000 &\necho $! >> {children}\nwait\n")
+    compiler.chmod(0o755)
+    monkeypatch.setattr(kernels, "SECONDS", 2.0)
+    assert not build(program, CXX=str(compiler))
+    assert not files(cache) and not list(cache.rglob("unfinished-*"))
+    last = time.monotonic() + 5  # the signal may take a moment to be handled
+    while any(map(alive, children.read_text().split())):
+        assert time.monotonic() < last
+        time.sleep(0.02)
+
+
+def alive(number: str) -> bool:
+    try:
+        return Path(f"/proc/{number}/stat").read_text().rsplit(")", 1)[1].split()[0] != "Z"
+    except OSError:
+        return False
 
 
 def test_where_they_cannot_be_built_nothing_loads_them(cache, program, monkeypatch, tmp_path):

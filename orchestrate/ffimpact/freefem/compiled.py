@@ -4,8 +4,10 @@ kept beside them.
 
 import hashlib
 import os
+import shutil
 import subprocess
 import tempfile
+import time
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
@@ -15,6 +17,8 @@ from .. import __version__, progress
 
 __all__ = ["QUIET", "compiled"]
 
+UNFINISHED = "unfinished-"  # prefix of the temporary folders
+LONG = 3600.0  # age [s] of a temporary folder that no process uses any more
 QUIET = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.DEVNULL)
 
 
@@ -32,8 +36,9 @@ def compiled(name: str, made_of: Iterable[str], make: Callable[[Path], None]) ->
         return path
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
+        _remove_remains(path.parents[1])
         with (
-            tempfile.TemporaryDirectory(dir=path.parent) as folder,
+            tempfile.TemporaryDirectory(dir=path.parent, prefix=UNFINISHED) as folder,
             progress.work(f"compiling {name}, once for this version"),
         ):
             make(Path(folder))
@@ -41,3 +46,10 @@ def compiled(name: str, made_of: Iterable[str], make: Callable[[Path], None]) ->
         return path
     except (OSError, subprocess.SubprocessError):
         return None
+
+
+def _remove_remains(cache: Path) -> None:
+    """Removes the temporary folders of processes that were killed long ago."""
+    for folder in cache.glob(f"*/{UNFINISHED}*"):
+        if time.time() - folder.stat().st_mtime > LONG:
+            shutil.rmtree(folder, ignore_errors=True)

@@ -2,7 +2,7 @@
 
 D is positive outside the solid, smooth, and not constant on the surface. It need not be a distance.
 The expression is translated into a list of numbers, the program of a stack machine. The kernels run
-this program; edp/kernels/shapes.hpp documents the numbers and the gap that follows from D.
+this program; edp/kernels/implicit.cpp documents the numbers and the gap that follows from D.
 `gap` computes the same gap in Python.
 """
 

@@ -848,7 +848,7 @@ def _discretisation(e: Evidence) -> Iterator[Sentence]:
             f"{rounded(facts['dt_largest'] * largest / turn)}"
         )
     # At a constant strain rate steps of dt give the viscosity G dt (1/theta - 1/2) of
-    # kernels/laws.hpp in place of G tau.
+    # kernels/laws.cpp in place of G tau.
     excess = 0.0
     for body in e.bodies:
         if body["relaxation_modulus"] > 0:

@@ -1,21 +1,19 @@
-// surface.hpp: rigid obstacles given as closed triangle meshes: signed distance and outward normal.
+// triangles.cpp: obstacles given as closed triangle meshes: signed distance and outward normal.
 // The closest point is searched for in a tree of bounding boxes. It lies in a face, on an edge or
 // at a vertex. The sign is the side of the normal at that place: that of the face, the sum of the
 // normals of both faces, or the sum weighted with the angles at the vertex (Baerentzen & Aanaes
-// 2005, IEEE Trans. Vis. Comput. Graph. 11, 243). Exports Surface.
-#pragma once
+// 2005, IEEE Trans. Vis. Comput. Graph. 11, 243).
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
 #include <vector>
-#include "tensors.hpp"
+#include "shapes.hpp"
 #include <eigen3/unsupported/Eigen/BVH>
 
-namespace surface {
+namespace shapes {
 
-typedef Eigen::Vector3d Point;
 typedef Eigen::AlignedBox3d Box;
 
 class Surface {
@@ -112,5 +110,33 @@ class Surface {
     }
   };
 };
+
+// A closed triangle mesh in space.
+class Triangles : public Shape {
+ public:
+  explicit Triangles(const double *numbers) {
+    // numbers: rounding, number of vertices, number of triangles, x y z of each vertex, the three
+    // vertices of each triangle.
+    const long points = long(numbers[1]), faces = long(numbers[2]);
+    mesh.rounding = numbers[0];
+    for (long i = 0; i < points; i++)
+      mesh.vertex.emplace_back(numbers[3 + 3 * i], numbers[4 + 3 * i], numbers[5 + 3 * i]);
+    for (long i = 0, at = 3 + 3 * points; i < faces; i++, at += 3)
+      mesh.triangle.push_back({int(numbers[at]), int(numbers[at + 1]), int(numbers[at + 2])});
+    mesh.finish();
+  }
+  Nearest nearest(const Point &x) const override {
+    Nearest closest = {0, Point::Zero(), 0};
+    closest.gap = mesh.gap(x, closest.normal);
+    return closest;
+  }
+
+ private:
+  Surface mesh;
+};
+
+std::unique_ptr<Shape> triangles(const double *numbers) {
+  return std::make_unique<Triangles>(numbers);
+}
 
 }

@@ -1,0 +1,243 @@
+// contact.cpp: the active set of contact.hpp and its compliance.
+#include <algorithm>
+#include <cmath>
+#include "contact.hpp"
+
+namespace contact {
+
+void Contact::takeJacobian() {
+  const long rows = gapRows() * ns(), entries = script.row.size();
+  Indices next;
+  first.assign(rows + 1, 0);
+  column.resize(entries);
+  value.resize(entries);
+  for (long e = 0; e < entries; e++) first[script.row[e] + 1]++;
+  for (long r = 0; r < rows; r++) first[r + 1] += first[r];
+  next = first;
+  for (long e = 0; e < entries; e++) {
+    const int at = next[script.row[e]]++;
+    column[at] = int(script.column[e]);
+    value[at] = script.value[e];
+  }
+  rowsChanged = true;
+  if (lastForces.size() != rows) lastForces = Vector::Zero(rows);
+}
+
+Vector Contact::move(const Vector &increment) const {
+  Vector moved = Vector::Zero(gapRows() * ns());
+  for (long r = 0; r < moved.size(); r++)
+    for (int e = first[r]; e < first[r + 1]; e++) moved[r] += value[e] * increment[column[e]];
+  return moved;
+}
+
+void Contact::evaluate(const Vector &d) {
+  script.gapSlip.numbers() = gapSlip(d);
+  script.q1.numbers() = script.gapSlip.numbers().head(ns());
+  script.candidateForces.numbers().setZero();
+  script.force.numbers().setZero();
+  for (long s = 0; s < ns(); s++) if (script.q0[s] > 0 || script.q1[s] > 0) {
+    double x[3];
+    Forces f;
+    for (int c = 0; c < gapRows(); c++) x[c] = script.gapSlip[c * ns() + s];
+    law.at(point(s), x, nullptr, f);
+    for (int c = 0; c < gapRows(); c++) {
+      const long r = c * ns() + s;
+      script.candidateForces[r] = f.t[c];
+      for (int e = first[r]; e < first[r + 1]; e++)
+        script.force[column[e]] += value[e] * f.t[c];   // (15): sum of dv_N/du t, t = -w a
+    }
+  }
+}
+
+bool Contact::touches() const {
+  return ns() > 0 && std::max(script.q0.numbers().maxCoeff(), script.q1.numbers().maxCoeff()) > 0;
+}
+
+double Contact::dampingWork() const {
+  double work = 0, t, stiff;
+  for (long s = 0; s < ns(); s++) {
+    const double q0 = script.q0[s], q1 = script.q1[s];
+    if (q0 > 0 || q1 > 0) work += law.normal(q0, q1, script.k[s], t, stiff) * (q1 - q0);
+  }
+  return work;
+}
+
+void Contact::clearActiveSet() {
+  active.assign(ns(), 0);
+  candidates.clear();
+  setsMade++;
+}
+
+void Contact::reset() {
+  computed = 0;
+  if (jacobianFixed || diagonal.size() > 0) {
+    index.assign(ndof, -1);
+    unknowns.clear();
+  }
+  if (diagonal.size() == 0) {
+    if (jacobianFixed && !candidates.empty()) takeUnknowns();
+    orderedLast = unknowns;
+  }
+  clearActiveSet();
+}
+
+void Contact::beginStep() {
+  contactMatrices = 0;
+  solvedSet = -1;
+}
+
+void Contact::update(const Vector &q, double distance) {
+  if (active.size() != size_t(ns())) active.assign(ns(), 0);
+  const auto joins = [&](long s) { return !active[s] && q[s] > -distance; };
+  bool any = false;
+  for (long s = 0; s < ns(); s++) any = any || joins(s);
+  if (!any && !rowsChanged) return;
+  setsMade += any;
+  for (long s = 0; s < ns(); s++) if (joins(s)) {
+    active[s] = 1;
+    candidates.push_back(int(s));
+  }
+  takeUnknowns();
+  if (computed != unknowns.size()) extendCompliance();
+  fillRows();
+}
+
+bool Contact::penetrates(const Vector &q) const {
+  for (long s = 0; s < ns(); s++) if (!active[s] && q[s] > 0) return true;
+  return false;
+}
+
+Vector Contact::ofActive(const Vector &rows) const {
+  Vector values(gapRows() * candidates.size());
+  int i = 0;
+  for (int c = 0; c < gapRows(); c++) for (int s : candidates) values[i++] = rows[c * ns() + s];
+  return values;
+}
+
+Vector Contact::onUnknowns(const Vector &values) const {
+  Vector all = Vector::Zero(ndof);
+  for (size_t j = 0; j < unknowns.size(); j++) all[unknowns[j]] = values[j];
+  return all;
+}
+
+Vector Contact::comply(const Vector &f) const {
+  Vector u;
+  multiply(C, f, u);
+  return u;
+}
+
+Status Contact::solve(const Vector &freeGapSlip, const Vector &freeDisplacement,
+                   double forceTolerance, Vector &tau, Vector &force) {
+  Problem &p = problem;
+  const int n = int(candidates.size()), gapRows = this->gapRows();
+  if (solvedSet < 0) p.newton.forget();
+  else if (solvedSet != setsMade) p.newton.made = false;
+  solvedSet = setsMade;
+  p.forceTolerance = forceTolerance;
+  p.point.clear();
+  p.statusChanges.clear();
+  p.B.times(freeDisplacement, p.start);
+  p.tau = Vector::Zero(p.start.size());
+  for (int i = 0; i < n; i++) {
+    p.point.push_back(point(candidates[i]));
+    p.statusChanges.push_back(int(script.statusChanges[candidates[i]]));
+    for (int c = 0; c < gapRows; c++) {
+      p.start[gapRows * i + c] = freeGapSlip[c * ns() + candidates[i]];
+      p.tau[gapRows * i + c] = tau[c * n + i];
+    }
+  }
+  if (p.solve(mostContactMatrices, contactMatrices) != succeeded) return diverged;
+  for (int i = 0; i < n; i++) {
+    for (int c = 0; c < gapRows; c++) tau[c * n + i] = p.tau[gapRows * i + c];
+    if (law.slips == 0) continue;
+    script.sticks[candidates[i]] = p.point[i].sticks;
+    script.statusChanges[candidates[i]] = p.statusChanges[i];
+  }
+  force = p.force;
+  return succeeded;
+}
+
+void Contact::chooseStatus(const Vector &motion) {
+  const Vector moved = move(motion);
+  script.statusChanges.numbers().setZero();
+  for (long s = 0; s < ns(); s++) if (!(lastForces[s] > 0)) {
+    const double speed = law.slips == 1 ? std::abs(moved[ns() + s])
+      : std::hypot(moved[ns() + s], moved[2 * ns() + s]);
+    script.sticks[s] = speed < law.slipVelocity;
+  }
+}
+
+void Contact::remember(const Vector &tau) {
+  const int n = int(candidates.size());
+  for (int i = 0; i < tau.size(); i++) lastForces[candidates[i % n] + i / n * ns()] = tau[i];
+}
+
+void Contact::archive(Archive &archive) {
+  archive(candidates);  archive(unknowns);  archive(orderedLast);  archive(lastForces);
+}
+
+void Contact::restore() {
+  active.assign(ns(), 0);
+  for (int s : candidates) active[s] = 1;
+  index.assign(ndof, -1);
+  for (size_t j = 0; j < unknowns.size(); j++) index[unknowns[j]] = int(j);
+  computed = 0;
+  extendCompliance();
+  if (jacobianFixed && !candidates.empty()) fillRows();
+}
+
+Candidate Contact::point(long s) const {
+  return {script.q0[s], script.k[s], script.muStatic[s], script.muDynamic[s],
+          script.sticks[s] == 1};
+}
+
+void Contact::takeUnknowns() {
+  // Adds the unknowns on which the active rows and the geometric terms act.
+  if (index.size() != size_t(ndof)) index.assign(ndof, -1);
+  const auto take = [&](int j, double v) {
+    if (v == 0 || index[j] >= 0) return;
+    index[j] = int(unknowns.size());
+    unknowns.push_back(j);
+  };
+  for (int s : candidates) for (long r = s; r < gapRows() * ns(); r += ns())
+    for (int e = first[r]; e < first[r + 1]; e++) take(column[e], value[e]);
+  for (long e = 0; e < script.termUnknown.size(); e++)
+    take(int(script.termUnknown[e]), script.termValue[e]);
+}
+
+void Contact::extendCompliance() {
+  // Adds the rows and columns of new unknowns to C.
+  const size_t n = unknowns.size(), before = computed;
+  if (diagonal.size() > 0) C = diagonal(unknowns);
+  else {
+    const Vector old = C;
+    C.resize(n * n);
+    for (size_t j = 0; j < before; j++)
+      C.segment(j * n, before) = old.segment(j * before, before);
+    if (n > 0) factor.compliance(unknowns, before, C.data());
+  }
+  computed = n;
+  problem.comply(C);
+}
+
+void Contact::fillRows() {
+  // B of the problem: the rows of the active candidates, then those of the geometric terms.
+  Rows &B = problem.B;
+  B.begin(int(unknowns.size()), gapRows());
+  for (int s : candidates) {
+    for (int c = 0; c < gapRows(); c++)
+      for (int r = s + c * ns(), e = first[r]; e < first[r + 1]; e++)
+        if (value[e] != 0) B.entry(index[column[e]], c, value[e]);
+    B.endBlock();
+  }
+  for (long t = 0; t < script.termStiffness.size(); t++) {
+    for (long e = 0; e < script.termOf.size(); e++)
+      if (script.termOf[e] == t && script.termValue[e] != 0)
+        B.entry(index[script.termUnknown[e]], 0, script.termValue[e]);
+    B.endBlock();
+  }
+  B.end(script.termStiffness.numbers());
+  rowsChanged = false;
+}
+
+}

@@ -1,0 +1,81 @@
+// explicit.cpp: the substep of explicit.hpp.
+#include "explicit.hpp"
+
+using Vector = Eigen::VectorXd;
+
+void ExplicitContact::begin(const Vector &compliance, double distance) {
+  contact.diagonal = compliance;
+  contact.beginStep();
+  contact.reset();
+  if (contact.jacobianFixed) contact.update(contact.script.q0.numbers(), distance);
+}
+
+Status ExplicitContact::take(Eigen::Map<Vector> increment, const Vector &halfStepVelocity,
+                             double h, const std::function<long()> &gaps) {
+  const Vector free = increment;
+  const long ns = contact.ns();
+  double change = 1;
+  contact.law.dt = h;
+  contact.law.lawInstant = contact::stepMean;
+  Vector back = contact.diagonal.cwiseProduct(contact.script.force.numbers());
+  if (!contact.jacobianFixed) increment -= back;
+  contact.script.force.numbers().setZero();
+  for (int pass = 0; pass < 10 && change > 1e-8 * increment.lpNorm<Eigen::Infinity>(); pass++) {
+    const Vector before = increment;
+    if (!contact.jacobianFixed) { gaps();  contact.takeJacobian(); }
+    Vector start = contact.gapSlip(increment);
+    if (!contact.jacobianFixed) {
+      back = free - increment;
+      start += contact.move(back);
+      contact.clearActiveSet();
+    }
+    contact.script.q1.numbers() = start.head(ns);
+    if (!contact.touches()) return takeWithoutContact(increment, free, start);
+    if (!solve(start, halfStepVelocity, back)) return diverged;
+    increment = free - back;
+    contact.lastForces = contact.script.candidateForces.numbers();
+    change = contact.jacobianFixed ? 0 : (before - increment).lpNorm<Eigen::Infinity>();
+  }
+  contact.script.q1.numbers() = contact.script.gapSlip.numbers().head(ns);
+  return succeeded;
+}
+
+Status ExplicitContact::takeWithoutContact(Eigen::Map<Vector> &increment, const Vector &free,
+                                           const Vector &start) {
+  increment = free;
+  contact.script.gapSlip.numbers() = start;
+  contact.script.force.numbers().setZero();
+  contact.script.candidateForces.numbers().setZero();
+  contact.lastForces.setZero();
+  return succeeded;
+}
+
+bool ExplicitContact::solve(const Vector &start, const Vector &halfStepVelocity, Vector &back) {
+  // Forces with the present B, from gap and slip `start` without them; back = A^-1 force. The
+  // active set grows until no candidate outside it penetrates.
+  const long ns = contact.ns();
+  Vector q = start.head(ns);
+  bool more = true;
+  contact.script.candidateForces.numbers().setZero();
+  contact.script.force.numbers().setZero();
+  contact.update(contact.script.q0.numbers(), 0);
+  for (int pass = 0; pass < 20 && more; pass++) {
+    Vector force;
+    contact.update(q, 0);
+    if (contact.law.jumps) contact.chooseStatus(halfStepVelocity);
+    Vector tau = contact.ofActive(contact.lastForces),
+      still = Vector::Zero(long(contact.unknowns.size()));
+    contact.contactMatrices = 0;
+    if (contact.solve(start, still, 1e-8 * tau.norm(), tau, force) != succeeded) return false;
+    const int n = int(contact.candidates.size());
+    for (int i = 0; i < tau.size(); i++)
+      contact.script.candidateForces[contact.candidates[i % n] + i / n * ns] = tau[i];
+    contact.script.force.numbers() = contact.onUnknowns(force);
+    back = contact.diagonal.cwiseProduct(contact.script.force.numbers());
+    const Vector end = start - contact.move(back);
+    contact.script.gapSlip.numbers() = end;
+    q = end.head(ns);
+    more = contact.penetrates(q);
+  }
+  return !more;
+}

@@ -1,0 +1,381 @@
+// laws.cpp: the laws of laws.hpp. A new law is a struct derived from Conserving, a line in find(),
+// and one in program/law/laws.idp.
+#include <map>
+#include "laws.hpp"
+
+namespace laws {
+
+void Moduli::add(const Symmetric &A, const Symmetric &B, double l, double m) {
+  for (int a = 0; a < 6; a++) for (int b = 0; b < 6; b++) {
+    const int *I = position[rowOf[a]], *J = position[columnOf[a]], K = rowOf[b],
+      L = columnOf[b];
+    D[a][b] += l * A[a] * B[b] + m * (A[I[K]] * B[J[L]] + A[I[L]] * B[J[K]]);
+  }
+}
+
+// Adds algorithmicStress() to a law: the second-order S with S : (C1 - C0)/2 = W1 - W0. It is the
+// stress at the mean of C0 and C1 with a correction along C1 - C0 (Gonzalez 2000).
+template<class Own> struct Conserving : Law {
+  Symmetric algorithmicStress(const Material &m, const Symmetric &C0,
+                              const Symmetric &C1) const {
+    const Own &own = static_cast<const Own &>(*this);
+    const Symmetric M = 0.5 * (C0 + C1), H = 0.5 * (C1 - C0), S = own.Own::stress(m, M);
+    return m.volumeByTrace ? S
+      : S + own.Own::gradientCorrection(m, M, H) / (2 * contract(H, H) + 1e-300) * H;
+  }
+};
+
+// St. Venant-Kirchhoff: W = lambda/2 (tr E)^2 + mu E:E.
+struct Svk : Conserving<Svk> {
+  Symmetric stress(const Material &m, const Symmetric &C) const {
+    const Symmetric twiceE = C - identity;
+    return m.lambda / 2 * trace(twiceE) * identity
+      + m.mu * twiceE;   // (5): S = lambda tr(E) I + 2 mu E
+  }
+  double gradientCorrection(const Material &, const Symmetric &, const Symmetric &) const {
+    return 0;
+  }
+  void addModuli(const Material &m, const Symmetric &, Moduli &D) const {
+    D.add(identity, identity, m.lambda, m.mu);
+  }
+  double ellipticity(const Material &m, const Symmetric &C, bool spatial) const {
+    // Smallest eigenvalue e over mu of Q(N) = (N.S N) I + (lambda + mu) F N (x) F N + mu F F^T over
+    // the unit N of the plane or of the three principal planes of C. With the stretches L1 >= L2 in
+    // the plane, J = L1 L2, k = 1 + lambda/mu and 2 z = L1^2 + (1+k) L2^2 + k (L1^2 - L2^2) N1^2 it
+    // is a constant + (1 + 2/k) z - sqrt(z^2 - (1+k) J^2), convex with its minimum at
+    // 2 z = (2+k) J: e = (k+1)/(2k) [(k-2)(L1^2 + L2^2) + 4 J] - k. If L1 > (1+k) L2, no N has this
+    // z, the minimum is at N along L2: e = (k-1)/2 (L1^2 + L2^2) + (k+2) L2^2 - k. A stretch normal
+    // to the plane adds (k-1)/2 (C - 1). Where e <= 0 the solution depends on the mesh: the law is
+    // not polyconvex (in uniaxial strain at the stretch 0.586 for nu = 0, 0.706 for 0.3).
+    const double k = 1 + (m.lambda + m.bulk) / m.mu;
+    const Vector<3> L = principal(C, spatial);
+    double least = 1e300;
+    for (int n = spatial ? 0 : 2; n < 3; n++) {
+      const double a = L[(n + 1) % 3], b = L[(n + 2) % 3], J = std::sqrt(std::max(0., a * b));
+      double e = (k + 1) / (2 * k) * ((k - 2) * (a + b) + 4 * J) - k;
+      if (a + b > (1 + k + 1 / (1 + k)) * J)
+        e = (k - 1) / 2 * (a + b) - k
+          + (k + 2) * 2 * J * J / (a + b + std::sqrt(std::max(0., (a + b) * (a + b) - 4 * J * J)));
+      least = std::min(least, e + (k - 1) / 2 * (L[n] - 1));
+    }
+    return least;
+  }
+};
+
+inline double atanhRest(double x) {
+  // atanh x - x without cancellation: the series x^3/3 + x^5/5 + ... to round-off for |x| <= 0.3,
+  // the logarithm beyond.
+  static const double enough[] = {1e-18, 1e-9, 1e-6, 3.1622776601683795e-5, 2.5118864315095822e-4,
+    1e-3};   // 10^(-18/(k + 1)): below it terms 0 to k of the series suffice
+  double y = x * x, rest = 0;
+  int k = 0;
+  if (std::abs(x) > 0.3) return 0.5 * std::log((1 + x) / (1 - x)) - x;
+  if (y == 0) return 0;
+  if (y < enough[5]) while (y >= enough[k]) k++; else k = int(18 / -std::log10(y));
+  for (; k >= 0; k--) rest = rest * y + 1. / (2 * k + 3);
+  return rest * y * x;
+}
+
+// The logarithmic volume term W = -m ln J + l/2 (ln J)^2. The results are nan for det C <= 0.
+// algorithmicStress() calls stress() and gradientCorrection() with the same C. They are inlined,
+// and ln() is declared free of side effects, so that the compiler evaluates the logarithm once for
+// both.
+__attribute__((const, noinline)) inline double ln(double x) { return std::log(x); }
+#define SHARED __attribute__((always_inline)) inline
+struct Logarithm {
+  double l, m;                             // [Pa]
+  SHARED Symmetric stress(const Symmetric &C) const {   // (l ln J - m) C^-1
+    const double det = determinant(C);
+    return (l / 2 * ln(det) - m) / det * cofactor(C);
+  }
+  SHARED double gradientCorrection(const Symmetric &M, const Symmetric &H) const {
+    // det(M +- H) = det M (1 + b +- (a + c)), x = (a + c)/(1 + b), D = ln(J1/J0) - a; the
+    // correction is (2 l ln J_M - 2 m) D + l ln(J1 J0/J_M^2) (a + D).
+    const double det = determinant(M), a = contract(cofactor(M), H) / det,
+      b = contract(M, cofactor(H)) / det, c = determinant(H) / det;
+    const double x = (a + c) / (1 + b), D = atanhRest(x) - x * b + c;
+    if (l == 0) return -2 * m * D;
+    return (l * ln(det) - 2 * m) * D
+      + l / 2 * ln((1 + b) * (1 + b) - (a + c) * (a + c)) * (a + D);
+  }
+  void addModuli(const Symmetric &C, Moduli &D) const {
+    // l C^-1_IJ C^-1_KL + (m - l ln J)(C^-1_IK C^-1_JL + C^-1_IL C^-1_JK)
+    const double det = determinant(C);
+    const Symmetric inverse = 1 / det * cofactor(C);
+    D.add(inverse, inverse, l, m - l / 2 * ln(det));
+  }
+  double ellipticity(const Symmetric &C, bool spatial, double first, double mu) const {
+    // Smallest eigenvalue over mu and over all directions N of Q(N) = first I + a g (x) g,
+    // g = F^-T N, a = m + l (1 - ln J), if a < 0; else 1.
+    const double a = m + l * (1 - 0.5 * ln(determinant(C)));
+    return a < 0 ? (first + a / std::max(0., principal(C, spatial)[spatial ? 2 : 1])) / mu : 1;
+  }
+};
+
+// Neo-Hookean: W = mu/2 (tr C - 3) - mu ln J + lambda/2 (ln J)^2.
+struct NeoHookean : Conserving<NeoHookean> {
+  static Logarithm rest(const Material &m) { return {m.lambda, m.mu}; }
+  Symmetric stress(const Material &m, const Symmetric &C) const {
+    return rest(m).stress(C)
+      + m.mu * identity;                   // (6): S = mu (I - C^-1) + lambda ln J C^-1
+  }
+  double gradientCorrection(const Material &m, const Symmetric &M, const Symmetric &H) const {
+    return rest(m).gradientCorrection(M, H);
+  }
+  void addModuli(const Material &m, const Symmetric &C, Moduli &D) const {
+    rest(m).addModuli(C, D);
+  }
+  double ellipticity(const Material &m, const Symmetric &C, bool spatial) const {
+    return Logarithm{m.lambda + m.bulk, m.mu}.ellipticity(C, spatial, m.mu, m.mu);
+  }
+};
+
+// Mooney-Rivlin with b = own[0]: W = mu/2 [(1-b) (I1 - 3) + b (I2 - 3)] - mu (1+b) ln J
+// + (lambda - 2 b mu)/2 (ln J)^2.
+struct MooneyRivlin : Conserving<MooneyRivlin> {
+  static double second(const Material &m) { return m.mu * m.own[0]; }   // mu b
+  static Logarithm rest(const Material &m) {
+    return {m.lambda - 2 * second(m), m.mu + second(m)};
+  }
+  Symmetric stress(const Material &m, const Symmetric &C) const {
+    return rest(m).stress(C) + (m.mu - second(m) + second(m) * trace(C)) * identity
+      - second(m) * C;
+  }
+  double gradientCorrection(const Material &m, const Symmetric &M, const Symmetric &H) const {
+    return rest(m).gradientCorrection(M, H);
+  }
+  void addModuli(const Material &m, const Symmetric &C, Moduli &D) const {
+    D.add(identity, identity, 2 * second(m), -second(m));
+    rest(m).addModuli(C, D);
+  }
+  double ellipticity(const Material &m, const Symmetric &C, bool spatial) const {
+    Logarithm whole = rest(m);
+    whole.l += m.bulk;                     // lambda of points and of elements (volume.idp)
+    return whole.ellipticity(C, spatial, m.mu - second(m), m.mu);
+  }
+};
+
+// Ogden with up to three terms; `own` holds an exponent a and its share s of mu for each term.
+// With c = 2 s mu/a: W = sum c/a (L1^a + L2^a + L3^a - 3) - m ln J + lambda/2 (ln J)^2, m = sum c.
+struct Ogden : Conserving<Ogden> {
+  template<class Function> static void forTerms(const Material &m, Function f) {
+    // f(c, a/2) for each term
+    for (int k = 0; k < 6; k += 2)
+      if (m.own[k] != 0) f(2 * m.own[k + 1] * m.mu / m.own[k], m.own[k] / 2);
+  }
+  static Logarithm rest(const Material &m) {
+    Logarithm volumeTerm = {m.lambda, 0};
+    forTerms(m, [&](double c, double) { volumeTerm.m += c; });
+    return volumeTerm;
+  }
+  // A power of C as its interpolation polynomial in Newton's form through the eigenvalues l:
+  // f(C) = f_0 N_0 + f_1 N_1 + f_2 N_2. Eigenvalues that are equal are moved apart by 1e-7 of their
+  // value; the error is 1e-14 times the third derivative of the power. No eigenvectors are needed.
+  struct Newton {
+    Vector<3> l;
+    Symmetric N[3];                        // I, C - l1 I, (C - l1 I)(C - l2 I)
+    explicit Newton(const Symmetric &C) : l(principal(C, C[4] != 0 || C[5] != 0)) {
+      const double h = 1e-7;
+      l[1] = std::min(l[1], (1 - h) * l[0]);
+      if (std::abs(l[2] - l[0]) < h * l[0]) l[2] = (1 + h) * l[0];
+      else if (std::abs(l[2] - l[1]) < h * l[1]) l[2] = (1 - h) * l[1];
+      N[0] = identity;
+      N[1] = C - l[0] * identity;
+      N[2] = symmetric(full(N[1]) * full(C - l[1] * identity));
+    }
+    void coefficients(double *f, int stride) const {
+      // Replaces the values f(l1), f(l2), f(l3) at f[0], f[stride], f[2 stride] by f_0, f_1, f_2.
+      const double f01 = (f[stride] - f[0]) / (l[1] - l[0]),
+        f02 = (f[2 * stride] - f[0]) / (l[2] - l[0]);
+      f[stride] = f01;
+      f[2 * stride] = (f02 - f01) / (l[2] - l[1]);
+    }
+  };
+  static Symmetric powers(const Material &m, const Symmetric &C) {   // sum c C^(a/2 - 1)
+    const Newton newton(C);
+    double f[3] = {};
+    forTerms(m, [&](double c, double p) {
+      for (int i = 0; i < 3; i++) f[i] += c * std::pow(newton.l[i], p - 1);
+    });
+    newton.coefficients(f, 1);
+    return f[0] * newton.N[0] + f[1] * newton.N[1] + f[2] * newton.N[2];
+  }
+  static double energy(const Material &m, const Symmetric &C) {   // sum c/a (L1^a + L2^a + L3^a)
+    const Vector<3> l = principal(C, C[4] != 0 || C[5] != 0);
+    double W = 0;
+    forTerms(m, [&](double c, double p) {
+      W += c / (2 * p) * (std::pow(l[0], p) + std::pow(l[1], p) + std::pow(l[2], p));
+    });
+    return W;
+  }
+  static double dividedDifference(double a, double b, double p) {   // (b^p - a^p)/(b - a)
+    const double y = std::max(1e-9, std::abs(std::log(b / a) / 2));
+    return std::pow(a * b, (p - 1) / 2) * std::sinh(p * y) / std::sinh(y);
+  }
+  Symmetric stress(const Material &m, const Symmetric &C) const {
+    return rest(m).stress(C) + powers(m, C);
+  }
+  double gradientCorrection(const Material &m, const Symmetric &M, const Symmetric &H) const {
+    // The powers by Gauss' three-point rule along H, which has no cancellation; from the energies
+    // for large H (H:H > 1e-5), where the rule is not exact to round-off.
+    const Symmetric S = powers(m, M), xH = std::sqrt(0.6) * H;
+    const double e = rest(m).gradientCorrection(M, H);
+    if (contract(H, H) > 1e-5)
+      return e + 2 * (energy(m, M + H) - energy(m, M - H) - contract(S, H));
+    return e + 5. / 9 * contract(powers(m, M + xH) + powers(m, M - xH) - 2 * S, H);
+  }
+  void addModuli(const Material &m, const Symmetric &C, Moduli &D) const {
+    // dS = sum g_ij N_i dC N_j, g_ij the coefficients of the divided differences of the powers in
+    // Newton's form of both arguments.
+    const Newton newton(C);
+    double g[3][3] = {};
+    forTerms(m, [&](double c, double p) {
+      for (int i = 0; i < 3; i++) for (int j = 0; j < 3; j++)
+        g[i][j] += c * dividedDifference(newton.l[i], newton.l[j], p - 1);
+    });
+    for (int i = 0; i < 3; i++) newton.coefficients(g[i], 1);
+    for (int j = 0; j < 3; j++) newton.coefficients(&g[0][j], 3);
+    for (int i = 0; i < 3; i++) for (int j = 0; j < 3; j++)
+      D.add(newton.N[i], newton.N[j], 0, g[i][j]);
+    rest(m).addModuli(C, D);
+  }
+  double ellipticity(const Material &m, const Symmetric &C, bool spatial) const {
+    // A number with the sign of the smallest eigenvalue, over mu, in the principal planes (Knowles,
+    // Sternberg 1977): the least of W11, W22, A and
+    // sqrt(W11 W22) + A - |W12 + B|, with Kirchhoff stresses t_i and l_i = L_i^2.
+    const Vector<3> L = principal(C, spatial);
+    const double ratio = (m.lambda + m.bulk) / m.mu, volume = ratio * std::log(determinant(C)) / 2;
+    double least = 1e300;
+    for (int n = spatial ? 0 : 2; n < 3; n++) {
+      const double l1 = std::max(L[(n + 1) % 3], L[(n + 2) % 3]),
+        l2 = std::min(L[(n + 1) % 3], L[(n + 2) % 3]);
+      double t1 = volume, t2 = volume, s1 = ratio, s2 = ratio, A = 0;
+      forTerms(m, [&](double c, double p) {
+        const double x1 = c / m.mu * std::pow(l1, p), x2 = c / m.mu * std::pow(l2, p);
+        A += c / m.mu * dividedDifference(l1, l2, p);
+        t1 += x1 - c / m.mu;  s1 += 2 * p * x1;
+        t2 += x2 - c / m.mu;  s2 += 2 * p * x2;
+      });
+      const double W11 = (s1 - t1) / l1, W22 = (s2 - t2) / l2,
+        across = (ratio + l2 * A - t2) / std::sqrt(l1 * l2);
+      const double both = std::sqrt(std::max(0., W11) * std::max(0., W22)) + A - std::abs(across);
+      least = std::min({least, W11, W22, A, both});
+    }
+    return least;
+  }
+};
+
+const Law *find(const std::string &name) {
+  static const Svk svk;
+  static const NeoHookean neoHookean;
+  static const MooneyRivlin mooneyRivlin;
+  static const Ogden ogden;
+  static const std::map<std::string, const Law *> all = {
+    {"svk", &svk}, {"neohookean", &neoHookean}, {"mooney-rivlin", &mooneyRivlin},
+    {"ogden", &ogden}};
+  return all.count(name) ? all.at(name) : nullptr;
+}
+
+double energy(const Material &m, const Symmetric &C) {
+  const Symmetric M = 0.5 * (C + identity), H = 0.5 * (C - identity);
+  return m.law->gradientCorrection(m, M, H) / 2 + contract(m.law->stress(m, M), H);
+}
+
+// G (1 - theta/2) [Pa] of the Maxwell branch, dt = 1/rate.
+static double relaxedShare(const Material &m, double rate) {
+  return m.relaxing > 0 ? m.relaxing * (1 + std::exp(-1 / (rate * m.relaxTime))) / 2 : 0;
+}
+
+// S_v [Pa] of a step from C0 to C1, rate = 1/dt [1/s], with C = (C0 + C1)/2:
+// S_v = eta C^-1 (dC/dt) C^-1 + zeta/2 tr(C^-1 dC/dt) C^-1. Its work is never negative, and a
+// rigid rotation has none.
+static Symmetric viscousStress(const Material &m, const Symmetric &C0, const Symmetric &C1,
+                               double rate) {
+  const Symmetric H = 0.5 * (C1 - C0), B = inverse(0.5 * (C0 + C1));
+  return 2 * rate * m.eta * symmetric(full(B) * full(H) * full(B))
+    + rate * m.zeta * contract(B, H) * B;
+}
+
+Symmetric dampingStress(const Material &m, const Symmetric &C0, const Symmetric &C1,
+                        const Symmetric &A, double rate) {
+  const Symmetric C = 0.5 * (C0 + C1), H = 0.5 * (C1 - C0);
+  Symmetric S = Symmetric::Zero();
+  if (m.eta > 0 || m.zeta > 0) S = viscousStress(m, C0, C1, rate);
+  if (m.relaxing > 0) S += relaxedShare(m, rate) * (A - inverse(C))
+    + Logarithm{0, m.relaxing}.gradientCorrection(C, H) / (2 * contract(H, H) + 1e-300) * H;
+  return S;
+}
+
+Vector<3> invariantsBeyond(const Symmetric &C, const Symmetric &A) {
+  const Tensor X = full(C) * full(A) - Tensor::Identity();
+  const double minors = X.topLeftCorner<2, 2>().determinant()
+    + X.bottomRightCorner<2, 2>().determinant() + X(0, 0) * X(2, 2) - X(0, 2) * X(2, 0);
+  return {X.trace(), minors, X.determinant()};
+}
+
+double stored(const Material &m, const Vector<3> &I, double s) {
+  double r = s * s * (I[1] + s * I[2]), p = s * I[0] + r, z = p / (2 + p);
+  return m.relaxing / 2 * (p * z - 2 * atanhRest(z) - r);
+}
+
+double damp(const Material &m, const Symmetric &C0, const Symmetric &C1, double dt, Symmetric &A) {
+  const Symmetric K = 0.5 * (C0 + C1);
+  double taken = 0;
+  if (m.eta > 0 || m.zeta > 0)
+    taken = contract(viscousStress(m, C0, C1, 1 / dt), 0.5 * (C1 - C0));
+  if (m.relaxing > 0) {
+    const double s = std::exp(-dt / m.relaxTime);
+    const Vector<3> I = invariantsBeyond(K, A);
+    A = s * (A - inverse(K)) + inverse(K);
+    taken += std::max(0., stored(m, I, 1) - stored(m, I, s));
+  }
+  return taken;
+}
+
+double volumeEnergy(const Material &m, double theta) {
+  double e = m.volumeByTrace ? theta : std::log(theta);
+  return m.bulk / 2 * e * e;
+}
+
+double pressure(const Material &m, double theta) {
+  return m.bulk * (m.volumeByTrace ? theta : std::log(theta) / theta);
+}
+
+double pressureSlope(const Material &m, double theta) {
+  return m.bulk * (m.volumeByTrace ? 1 : (1 - std::log(theta)) / (theta * theta));
+}
+
+double pressure(const Material &m, double theta0, double theta1) {
+  if (m.volumeByTrace) return m.bulk * (theta0 + theta1) / 2;
+  double x = (theta1 - theta0) / (theta1 + theta0);
+  return m.bulk * std::log(theta0 * theta1) * (1 + (x == 0 ? 0 : atanhRest(x) / x))
+    / (theta0 + theta1);
+}
+
+Moduli moduli(const Material &m, const Symmetric &C, double p, double scale, double rate) {
+  Moduli D;
+  m.law->addModuli(m, C, D);
+  double l = 0, n = 0;
+  if (p != 0 && !m.volumeByTrace)
+    n = -(l = p * std::sqrt(determinant(C)));   // p J (C^-1 C^-1 - ...)
+  if (rate > 0) {
+    l += rate / scale * m.zeta;
+    n += rate / scale * m.eta + relaxedShare(m, rate);
+  }
+  if (l != 0 || n != 0) D.add(inverse(C), inverse(C), l, n);
+  return D;
+}
+
+double cauchy(const Material &m, const Tensor &F, double p, Symmetric &sigma) {
+  const Symmetric C = rightCauchyGreen(F);
+  const double J = F.determinant();
+  Symmetric S = m.law->stress(m, C);
+  if (m.bulk > 0) S += p * volumeDirection(m, C, J);
+  sigma = 1 / J * symmetric(F * full(S) * F.transpose());   // (3): J sigma = P F^T
+  double mises = 0;
+  for (int k = 0; k < 3; k++)
+    mises += std::pow(sigma[k] - sigma[(k + 1) % 3], 2) / 2 + 3 * sigma[3 + k] * sigma[3 + k];
+  return std::sqrt(mises);
+}
+
+}
