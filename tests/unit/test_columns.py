@@ -86,9 +86,19 @@ def test_scripts_write_the_numbers_of_the_table():
         assert re.findall(rf'\b{call}\("(\w+)"', text) == expected
 
 
+@pytest.mark.parametrize("script", ["edp/paper/record.idp", "edp/disc-block.edp"])
+def test_scripts_of_the_paper_write_names_of_the_table(script):
+    """The columns of history.csv that a script of the paper writes are columns of the program's."""
+    head = re.search(r'history << ("t,dt.*?)<< endl;', (ROOT / script).read_text(), re.S)[1]
+    written = {name for text in re.findall('"(.*?)"', head) for name in text.split(",") if len(name) > 1 or name in "txy"}
+    known = {row.name for table in FILES["history.csv"] for row in table}
+    assert len(written) > 10 and written <= known | {"", "_"}
+
+
 def test_units_are_per_metre_in_plane_strain_alone():
-    """A number of a body has the unit of its bare name; of balls the last /m is left out."""
+    """A number or column of a body has the unit of its bare name; of balls the last /m is left out."""
     plane, ball = (units(per_metre, ["mass_2", "other_1"]) for per_metre in ("/m", ""))
     assert (plane["peak_force"], ball["peak_force"]) == ("N/m", "N")
     assert (plane["mass_2"], ball["mass_2"]) == ("kg/m", "kg") and "other_1" not in plane
+    assert plane["force_x_2"] == "N/m" and "dofs_2" not in plane
     assert plane["vx"] == ball["vx"] == "m/s" and ball["angular_momentum"] == "N m s"

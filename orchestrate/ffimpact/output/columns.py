@@ -336,6 +336,7 @@ ENTRIES = (
     _whole("message", "", "empty, or why the run failed"),
     _whole("ended", "", "what ended the run: impact (it is over), rest, rolling (on, rigid, where "
         "rest was asked for) or end_time"),
+    _whole("made_by", "", "script: the run is one of the paper's scripts; else left out"),
     _whole("later_contact_possible", "", "true: the run ended before a possible contact that "
         "belongs to the impact, or that vibration may cause soon after it"),
     _whole("integrator", "", "that of the run; where it was left to the program (auto) `skipped` "
@@ -483,15 +484,15 @@ def recorded(file: str, features: Features) -> list[str]:
 
 
 def units(per_metre: str, numbered: Iterable[str] = ()) -> dict[str, str]:
-    """The unit of every name in summary.json, history.csv and contacts.csv, and of those of
-    `numbered` that end in the number of a body, support or load. `per_metre` is "/m" in plane
-    strain, else empty (dimension.per_metre).
+    """The unit of every name in summary.json, history.csv and contacts.csv, also with the numbers of
+    bodies, supports and loads that names of `numbered` end in. `per_metre` is "/m" in plane strain,
+    else empty (dimension.per_metre).
     """
-    unit_of = {
-        row.name: row.unit if per_metre else row.unit.removesuffix("/m")
+    endings = {"", *(match[0] for name in numbered if (match := re.search("_[0-9]+$", name)))}
+    return {
+        row.name + ending: row.unit if per_metre else row.unit.removesuffix("/m")
         for file in ("summary.json", "history.csv", "contacts.csv")
         for table in FILES[file]
         for row in table
+        for ending in (endings if row.part else [""])
     }
-    bare = {name: re.sub(r"_[0-9]+$", "", name) for name in numbered}
-    return unit_of | {name: unit_of[key] for name, key in bare.items() if key in unit_of}
