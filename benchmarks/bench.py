@@ -22,6 +22,7 @@ from ffimpact.output.results import read_history
 from ffimpact.places import shown
 from ffimpact.progress import in_turn
 from ffimpact.report.figures import BLACK, BLUE, GREEN, GREY, LAWS, ORANGE, PURPLE, STYLE, save
+from ffimpact.scenes.sizes import made_for
 from ffimpact.sweeps import study
 from ffimpact.sweeps.sweep_figures import distance, force
 from verification import commands
@@ -78,8 +79,8 @@ class Case:
     @property
     def finer(self) -> float:
         """The accuracy of the scene over the accuracy for which its mesh and steps are made."""
-        problem = scene.load(self.scene)
-        return problem.values["accuracy"] / problem.description()["accuracy_made"]
+        values = scene.load(self.scene).values
+        return values["accuracy"] / made_for(values["accuracy"], values["accuracy_of"])
 
     def sized(self, factor: float, dt: float, **entries) -> study.Point:
         """Sizes `factor` times those of peers.sized() and step dt [s], both multiplied by `scale`.
@@ -296,7 +297,7 @@ def _textbook(sizes: study.Point, dt: float, out: Path) -> dict:
     """The results of the textbook FreeFEM script on our mesh of these sizes, with step dt [s]."""
     problem = scene.load("disc-normal").override(sizes | {"dt": dt, "end_time": 5.2e-3})
     path = out / f"textbook-{sizes['mesh_size']:g}.msh"
-    mesh.write(mesh.disc(problem.values["radius"], sizes["mesh_size"], sizes["contact_mesh_size"], half=True), path)
+    mesh.write(mesh.disc(peers.RADIUS, sizes["mesh_size"], sizes["contact_mesh_size"], half=True), path)
     return peers.textbook(problem, path)
 
 

@@ -11,9 +11,10 @@ from pathlib import Path
 import pandas as pd
 
 from ffimpact.input.parameters import Value, whole
-from ffimpact.output import estimate
 from ffimpact.output.results import read_scene
 from ffimpact.progress import in_turn
+from ffimpact.scene import load
+from ffimpact.scenes.finer import scaled
 from ffimpact.sweeps import study
 from verification import commands
 
@@ -77,8 +78,9 @@ def compare(cases: list[study.Point], accuracies: tuple[float, ...], out: Path) 
     points = [case | {"accuracy": accuracy} for case in cases for accuracy in accuracies]
     runs = study.study(points, out, OPEN, LIMIT, "disc-block")
     last = range(len(accuracies) - 1, len(points), len(accuracies))
-    finer = [estimate.other(points[k], read_scene(study.place(out, points[k])), 1 / FINER) if runs.exit[k] == 0 else points[k]
-             for k in last]
+    block = load("disc-block")
+    finer = [points[k] | scaled(block.override(OPEN | points[k]), read_scene(study.place(out, points[k])), 1 / FINER) if runs.exit[k] == 0
+             else points[k] for k in last]
     references = study.study(finer, out / "finer", OPEN, LIMIT, "disc-block")
     rows = []
     for k, case in enumerate(cases):

@@ -74,19 +74,28 @@ def coarse(seed: int, count: int, accuracies: Sequence[float] = COARSE) -> list[
     return entries
 
 
+def _placed(point: Point, axes: int = 2) -> Point:
+    """An impact with the entries of its scene: direction instead of the angle to the plane, position
+    instead of the height above it."""
+    own = {name: value for name, value in point.items() if name not in ("angle", "height")}
+    return own | {"direction": -point.get("angle", 90.0), "position": [0.0, _round(point["radius"] + point.get("height", 0.0)), 0.0][:axes]}
+
+
 def _on_plane(chance: random.Random, point: Point) -> Point:
-    return point
+    return _placed(point)
 
 
 def _of_revolution(chance: random.Random, point: Point) -> Point:
-    return {name: value for name, value in point.items() if name not in ("angle", "spin", "symmetry")}
+    return _placed({name: value for name, value in point.items() if name not in ("angle", "spin", "symmetry")})
 
 
 def _on_block(chance: random.Random, point: Point) -> Point:
     """A disc on a free block of the same material; width and height are multiples of the radius."""
     across, deep = chance.choice([5, 10, 20]), chance.choice([2, 4])
-    kept = {name: value for name, value in point.items() if name not in ("gravity", "height")}
-    return kept | {"block_width": across * point["radius"], "block_height": deep * point["radius"]}
+    radius = point["radius"]
+    kept = _placed({name: value for name, value in point.items() if name not in ("gravity", "height")})
+    own = {f"body.1.{name}": kept.pop(name) for name in ("radius", "speed", "spin", "direction", "position") if name in kept}
+    return kept | own | {"body.2.width": across * radius, "body.2.height": deep * radius, "body.2.position": [0.0, -deep * radius / 2]}
 
 
 def _on_another(chance: random.Random, point: Point) -> Point:
@@ -124,7 +133,7 @@ def _on_corner(chance: random.Random, point: Point) -> Point:
 def _in_space(chance: random.Random, point: Point) -> Point:
     """A ball in space. Its speed is bounded, as the elements are coarse."""
     kept = {name: value for name, value in point.items() if name not in ("symmetry", "spin", "exponent")}
-    return kept | {"law": "neohookean", "speed": _round(min(point["speed"], 0.05 * bar_speed(point["young"], point["density"])))}
+    return _placed(kept, 3) | {"law": "neohookean", "speed": _round(min(point["speed"], 0.05 * bar_speed(point["young"], point["density"])))}
 
 
 SCENES = {"disc-normal": _on_plane, "disc-block": _on_block, "ball-axisymmetric": _of_revolution, "two-discs": _on_another,
@@ -136,8 +145,10 @@ def words(point: Point) -> str:
     named = {value[:2]: name for name, value in MATERIALS.items()}
     is_usual = point["nu"] == MATERIALS[named[point["young"], point["density"]]][2]
     names = {"law", "young", "density", "nu" if is_usual else "", "speed", "friction_static", "friction_dynamic", "body.1.position",
-             "body.1.velocity", "body.2.velocity"}
+             "body.1.velocity", "body.2.velocity", "position", "body.2.position"}
     point = {name.removeprefix("contact."): value for name, value in point.items()}
+    if "body.1.speed" in point:
+        point["speed"] = point.pop("body.1.speed")
     if "speed" in point:
         speed = point["speed"]
     elif "body.1.velocity" in point and isinstance(point["body.1.velocity"], list):

@@ -25,6 +25,8 @@ from ffimpact.output import estimate
 from ffimpact.output.results import read_scene
 from ffimpact.progress import in_turn
 from ffimpact.report.figures import BLACK, BLUE, DASHED, GREEN, ORANGE, STYLE, save
+from ffimpact.scene import load
+from ffimpact.scenes.finer import scaled
 from ffimpact.sweeps import study
 from verification import commands, hertz
 from verification.oblique_ball import (
@@ -44,7 +46,7 @@ from . import page
 # R^2/k^2 with the radius of gyration k. The scenes are `<body>-oblique`.
 INERTIA = {"disc": 2.0, "ball": 2.5}
 BASE = {"law": "neohookean", "nu": NU, "fields": 0}
-PAPER = {"young": YOUNG, "density": DENSITY, "radius": RADIUS}
+PAPER = {"young": YOUNG, "density": DENSITY}
 SLOW = PAPER | {"speed": 0.2, "slip_velocity": 2e-4, "penalty": "auto"}
 KINDS = {"stiff": {"disc": STIFF | {"nu": NU, "penalty": 1e10}, "ball": RIGID | {"nu": NU}},
          "paper": {"disc": PAPER | {"speed": 12, "penalty": 1e10, "accuracy": 0.005},
@@ -131,9 +133,10 @@ def impacts(body: str, kind: str, friction: float, angles: list[float], out: Pat
     The error bars come from a coarser run. The results of a failed run are nan.
     """
     place, base, name = out / f"{body}-{kind}", BASE | KINDS[kind][body], f"{body}-oblique"
-    points = [{"angle": angle, "friction_static": friction, "friction_dynamic": friction} for angle in angles]
+    points = [{"direction": -angle, "friction_static": friction, "friction_dynamic": friction} for angle in angles]
     fine = study.study(points, place, base, LIMIT, name)
-    coarser = [estimate.other(point, read_scene(study.place(place, point)), estimate.COARSER) if code == 0 else point
+    loaded = load(name)
+    coarser = [point | scaled(loaded.override(base | point), read_scene(study.place(place, point)), estimate.COARSER) if code == 0 else point
                for point, code in zip(points, fine.exit)]
     coarse = study.study(coarser, place / "coarser", base, LIMIT, name)
     rows = []

@@ -49,12 +49,13 @@ def solve(points: list[study.Point], base: study.Point, out: Path) -> list[dict]
     A row has the results, the settings used and the relative change of the total momentum. A failed
     run gives a row, too.
     """
-    rows = study.study(points, out, {"fields": 0} | base, LIMIT, "disc-block", cores=1).to_dict("records")
+    rows = study.study(points, out, {"fields": 0, "body.1.position": [0, 2 * RADIUS]} | base, LIMIT, "disc-block", cores=1).to_dict("records")
     for point, row in zip(points, rows):
         folder = study.place(out, point)
         used = read_scene(folder) if (folder / "scene.toml").exists() else {}
         momentum = read_history(folder)["momentum_y"] if (folder / "history.csv").exists() else None
-        row |= {"range": used.get("pairing_range"), "penalty": used.get("penalty"), "element": used.get("contact_mesh_size"),
+        contact, disc = used.get("contact", {}), used.get("body", [{}])[0]
+        row |= {"range": contact.get("pairing_range"), "penalty": contact.get("penalty"), "element": disc.get("contact_mesh_size"),
                 "momentum": None if momentum is None else abs(momentum - momentum[0]).max() / abs(momentum[0])}
     return rows
 

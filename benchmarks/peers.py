@@ -22,6 +22,7 @@ from ffimpact.freefem import freefem
 from ffimpact.input.parameters import Value
 from ffimpact.mesh import mesh
 from ffimpact.places import INSTALLED, ROOT, shown
+from ffimpact.report.impact import impact_of
 from ffimpact.scene import Scene
 from ffimpact.sweeps.study import Point
 
@@ -119,7 +120,10 @@ def textbook(scene: Scene, mesh_file: Path) -> dict:
     `cpu_seconds` excludes the set-up. Raises Failure if the script fails.
     """
     log = mesh_file.with_suffix(".log")
-    code, _ = freefem.run(freefem.find(), TEXTBOOK, scene.values | {"mesh": mesh_file}, log)
+    impact, values = impact_of(scene.content), scene.values | {"mesh": mesh_file}
+    entries = {name: impact[name] for name in ("radius", "speed", "young", "nu", "density", "penalty")}
+    flags = entries | {name: values[name] for name in ("mesh", "dt", "end_time", "tolerance")}
+    code, _ = freefem.run(freefem.find(), TEXTBOOK, flags, log)
     lines = log.read_text().strip().splitlines()
     words = lines[-1].split() if lines else []
     if code != 0 or words[:1] != ["textbook"]:

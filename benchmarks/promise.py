@@ -160,8 +160,7 @@ def open_scene(name: str, point: study.Point) -> scene.Scene:
     """The scene with automatic penalty. The built-in scenes prescribe a penalty."""
     own = draws.OWN / f"{name}.toml"
     open_one = scene.load(str(own) if own.exists() else name)
-    penalty = "contact.penalty" if open_one.bodies else "penalty"
-    return open_one.override({"fields": 0, penalty: "auto"} | point)
+    return open_one.override({"fields": 0, "contact.penalty": "auto"} | point)
 
 
 def _compared(problem: scene.Scene, folder: Path) -> dict:
@@ -169,7 +168,7 @@ def _compared(problem: scene.Scene, folder: Path) -> dict:
     paid = [0.0]
 
     def solve(values: dict[str, Value], where: Path) -> None:
-        settings = ",".join(f"{key}={value}" for key, value in values.items() if problem.bodies or problem.values[key] != value)
+        settings = ",".join(f"{key}={value}" for key, value in values.items())
         kept = run.run(problem, values, study.place(folder, {"run": settings}), estimate=False, progress=False)
         paid[0] += kept.summary["cpu_seconds"]
         shutil.copytree(kept.folder, where, dirs_exist_ok=True)

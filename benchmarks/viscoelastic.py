@@ -149,7 +149,7 @@ def theory(kind: str, speed: float) -> tuple[float, float]:
 def balls(out: Path) -> pd.DataFrame:
     """A row for each kind and speed."""
     bar = math.sqrt(YOUNG / DENSITY)
-    base = {"law": "neohookean", "young": YOUNG, "nu": NU, "density": DENSITY, "radius": RADIUS, "fields": 0, "accuracy": 0.002}
+    base = {"law": "neohookean", "young": YOUNG, "nu": NU, "density": DENSITY, "fields": 0, "accuracy": 0.002}
     cases = list(itertools.product(KINDS, SPEEDS))
     names = {kind: ("relaxation_modulus", "relaxation_time") if kind == "branch" else ("viscosity", "bulk_viscosity") for kind in KINDS}
     points = [{"speed": speed, "penalty": float(f"{STIFF * YOUNG * 200 / math.pi / (1.31 * RADIUS * (speed / bar) ** 0.4):.4g}")}

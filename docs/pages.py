@@ -116,10 +116,12 @@ def pages() -> dict[Path, str]:
 
 def entries() -> str:
     """Tables of all entries of a scene with unit, accepted values and meaning."""
-    text = "\n## Parameters of a run\nAt the top of a scene file, by `--set name=value`, "
-    text += "as flags of the scripts, and in Python.\n"
+    text = "\n## Parameters of a run\nAt the top of a scene file, or in `[contact]` and `[[body]]` as "
+    text += "below; by `--set name=value`, and in Python.\n"
     text += "\n| name | unit | default | accepted | meaning |\n|---|---|---|---|---|\n"
     for parameter in parameters.PARAMETERS.values():
+        if parameter.name in ("speed", "spin"):  # of bodies alone
+            continue
         default = parameter.default if isinstance(parameter.default, str) else f"{parameter.default:g}"
         accepted = cell(words(parameter.accepted))
         text += f"| `{parameter.name}` | {parameter.unit} | {default} | {accepted} | {cell(parameter.help)} |\n"

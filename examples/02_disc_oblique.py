@@ -20,7 +20,7 @@ import ffimpact as ff
 # of St. Venant-Kirchhoff, which the paper uses, this impact has no answer that is independent of
 # the mesh. The paper calls π/3 the angle of incidence. We run 60 degrees to the plane and, as the
 # text allows both readings, 60 degrees to its normal, which are 30 degrees to the plane.
-steep, flat = ff.sweep("disc-oblique", {"angle": [60, 30]}).results
+steep, flat = ff.sweep("disc-oblique", {"direction": [-60, -30]}).results
 steep
 
 # %%

@@ -87,6 +87,6 @@ numbers
 # %%
 # What to try next
 # ----------------
-# * A higher block, ``block_height=4``: when do the waves come back to the disc?
-# * A narrow block, ``block_width=2``, which vibrates less.
-# * A slower disc, ``speed=1``.
+# * A higher block, ``{"body.2.height": 4, "body.2.position": [0, -2]}``: when do the waves come back to the disc?
+# * A narrow block, ``{"body.2.width": 2}``, which vibrates less.
+# * A slower disc, ``{"body.1.speed": 1}``.

@@ -28,7 +28,8 @@ result
 # Height of the centre over time. A flight is one step of the table, so the parabola is drawn from
 # place and velocity at its start.
 history = result.history
-gravity, radius, fall = 9.81, result.scene["radius"], result.scene["height"]
+disc = result.scene["body"][0]
+gravity, radius, fall = 9.81, disc["radius"], disc["position"][1] - disc["radius"]
 fig, ax = plt.subplots(figsize=(6, 4), layout="constrained")
 times = np.linspace(0, history.t.iloc[-1], 2000)
 before = history.iloc[np.searchsorted(history.t, times, side="right") - 1]
@@ -63,7 +64,7 @@ plt.show()
 # :math:`b^2 = 4 W R / (\pi E^*)`. Half an element of the contact is taken as its error. The first
 # touch and the balance of energy are exact; their error is the length of a step and round-off.
 weight = gravity * result["mass"]
-modulus = result.scene["young"] / (1 - result.scene["nu"] ** 2)
+modulus = disc["young"] / (1 - disc["nu"] ** 2)
 hertz = np.sqrt(4 * weight * radius / (np.pi * modulus))
 first = np.sqrt(2 * fall / gravity)
 step = history.dt[history.normal_force > 0].iloc[0]
@@ -75,7 +76,7 @@ rows = [
     ("energy taken and kept", "J/m", history.viscous_work.iloc[-1] + kept, 1e-6 * fallen, fallen,
      0, "exact: weight times way", ""),
     ("half-width of the contact at rest", "m", history.contact_half_width.iloc[-1],
-     result.scene["contact_mesh_size"] / 2, hertz, 0, "Hertz, small strains", ""),
+     disc["contact_mesh_size"] / 2, hertz, 0, "Hertz, small strains", ""),
     ("bounces", "1", result["bounces"], np.nan, np.nan, np.nan, "", "no reference: a new scene"),
 ]  # fmt: skip
 columns = "quantity unit computed error reference uncertainty source note".split()

@@ -28,10 +28,10 @@ def independent(folder: Path) -> Iterator[Row]:
     Expected are the converged results of NGSolve and GetFEM (reference/converged.toml).
     """
     for peers in tomllib.loads((REFERENCE / "converged.toml").read_text())["run"]:
-        script = peers["script"]
-        body = script.partition("-")[0]
+        kind = peers["kind"]
+        body = kind.partition("-")[0]
         for accuracy in (0.02, 0.005, 0.0025, 0.00125, 0.0006):
-            summary = disc(folder, script=script, accuracy=accuracy, **peers["when"]).summary
+            summary = disc(folder, kind=kind, accuracy=accuracy, **peers["when"]).summary
             for key, words in (("contact_time", "contact time"), ("impulse", "impulse"), ("rebound_vy", "rebound")):
                 yield Row(f"{body}: {words}", accuracy, summary[key], peers["numbers"][key]["value"])
 

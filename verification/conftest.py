@@ -17,8 +17,8 @@ def measure():
 
 @pytest.fixture(scope="session")
 def disc(tmp_path_factory):
-    """disc(name=value, ...): a run of edp/program/disc-plane.edp with these flags, without Python;
-    disc(script="disc-block", ...) runs another script."""
+    """disc(name=value, ...): the impact of a disc with these entries (measure.impact());
+    disc(kind="disc-block", ...): that of another body."""
     @cache
     def go(**flags) -> runs.Outcome:
         return runs.disc(tmp_path_factory.mktemp("disc"), **flags)

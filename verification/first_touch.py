@@ -9,12 +9,13 @@ c_L.
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
 
-from ffimpact.mesh import mesh
+from ffimpact.mesh import mesh, revolution
 from ffimpact.report.figures import BLACK, BLUE, ORANGE
 
 from .case import Row
@@ -37,8 +38,10 @@ def touch(folder: Path, speed: float, share: float) -> tuple[np.ndarray, np.ndar
     width = RADIUS * speed / WAVE
     size, until = share * width, width / (2 * WAVE)
     folder.mkdir(parents=True, exist_ok=True)
-    mesh.write(mesh.disc(RADIUS, RADIUS / 3, size, half=True, contact_arc=1.5 * width / RADIUS), folder / "disc.msh")
-    disc(folder / "run", mesh=folder / "disc.msh", law="neohookean", speed=speed, young=YOUNG, nu=NU, density=DENSITY, radius=RADIUS, fields=0,
+    half = mesh.disc(RADIUS, RADIUS / 3, size, half=True, contact_arc=1.5 * width / RADIUS)
+    half = replace(half, arc_centres=np.full((len(half.edges), 2), math.nan))
+    mesh.write(revolution.whole(half), folder / "disc.msh")
+    disc(folder, file=folder / "disc.msh", law="neohookean", speed=speed, young=YOUNG, nu=NU, density=DENSITY, radius=RADIUS, fields=0,
          dt=size / WAVE / 4, penalty=20 * DENSITY * WAVE**2 / size, end_time=1.05 * until)
     return since_touch(folder)
 

@@ -16,7 +16,7 @@ from ffimpact.failure import Failure
 from ffimpact.report.figures import BLACK, BLUE, ORANGE
 
 from .case import Row
-from .measure import Outcome, disc, measure, outcome
+from .measure import Outcome, bodies, disc, impact as impact_of_ball, measure
 
 BALL = dict(law="neohookean", young=1e8, nu=0.3, density=2500, radius=0.01)
 NARROW = 0.005  # half-width b over the radius, for a small load
@@ -96,13 +96,18 @@ def impact(mass: float, radius: float, stiffness: float, speed: float) -> tuple[
 def ball(folder: Path, speed: float, **more) -> Iterator[Row]:
     """A ball on the plane, over contact radius / ball radius. Hertz' half-space is the limit; the
     difference is of first order."""
-    return _compare("ball", disc(folder, script="ball-axisymmetric", speed=speed, **(BALL | more)), speed, 1, BALL | more)
+    return _compare("ball", disc(folder, kind="ball-axisymmetric", speed=speed, **(BALL | more)), speed, 1, BALL | more)
 
 
 def balls(folder: Path, speed: float, **more) -> Iterator[Row]:
     """Central impact of two equal balls that approach each other at this speed."""
-    measure("two-balls", speed=speed, out=folder, **(BALL | more))
-    return _compare("two balls", outcome(folder), speed, 0.5, BALL | more)
+    entries = BALL | more
+    at = 1.0001 * entries["radius"]
+    pair = [{"name": name, "shape": "ball", "radius": entries["radius"], "position": side * at, "velocity": -side * speed / 2}
+            for name, side in (("upper", 1), ("lower", -1))]
+    tables = impact_of_ball("ball-axisymmetric", **{name: value for name, value in entries.items() if name != "radius"})
+    result = bodies(folder, {name: value for name, value in tables.items() if name != "obstacle"} | {"body": pair})
+    return _compare("two balls", result, speed, 0.5, entries)
 
 
 def _compare(what: str, result: Outcome, speed: float, share: float, properties: dict) -> Iterator[Row]:

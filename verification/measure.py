@@ -1,5 +1,5 @@
-"""Runs the FreeFEM scripts of this folder, which print lines "name value", and the disc scene
-without Python.
+"""Runs the FreeFEM scripts of this folder, which print lines "name value", and scenes of bodies
+without the runs that estimate errors.
 
 The tests and `make verify` use it.
 """
@@ -16,6 +16,7 @@ import numpy as np
 from ffimpact.failure import Failure, TooLong
 from ffimpact.freefem import freefem
 from ffimpact.input import dimension, parameters
+from ffimpact.input.models import CONTACT
 from ffimpact.input.parameters import ROOT, Value
 from ffimpact.output import results
 from ffimpact.output.evaluate import evaluate
@@ -52,12 +53,40 @@ def measure(script: str, **flags: Value | Path) -> dict[str, float]:
     return {name: float(value) for name, value in values.items()}
 
 
-def disc(folder: Path, script: str = "disc-plane", **flags: Value | Path) -> Outcome:
-    """A run of edp/program/<script>.edp with these flags in `folder`."""
-    for name in ("summary.json", "record.json"):  # of an earlier run in the folder
-        (folder / name).unlink(missing_ok=True)
-    _start(f"edp/program/{script}.edp", flags | {"out": folder})
-    return outcome(folder)
+# The paper's bodies by name: dimension, and the shapes with the entries of their own.
+IMPACTS = {"disc": ("plane-strain", {"shape": "disc"}), "ball": ("3d", {"shape": "ball"}),
+           "ball-axisymmetric": ("axisymmetric", {"shape": "ball"}), "disc-block": ("plane-strain", {"shape": "disc"})}
+
+
+def impact(kind: str = "disc", *, radius: float = 0.05, speed: float = 8, angle: float = 90, spin: float = 0, height: float = 0,
+           file: Path | None = None, **entries: Value) -> dict:
+    """The tables of the paper's impact of a disc or a ball on the plane y = 0, or of a disc on a free
+    block (IMPACTS).
+
+    angle: between velocity and plane [degrees]; height: of the body above the plane [m]; file: a
+    mesh of the body about its centre. Other entries are those of the contact or of the scene.
+    """
+    word, shape = IMPACTS[kind]
+    own = {"shape": "mesh", "file": str(file)} if file else shape | {"radius": radius}
+    ball = own | {"name": "ball", "position": [0.0, height + radius, 0.0][:AXES[word]], "speed": speed, "direction": -angle}
+    if spin:
+        ball["spin"] = spin
+    tables = {"dimension": word, "law": "svk", "young": 7e6, "nu": 0.45, "density": 1722, "body": [ball], "contact": {}}
+    if kind == "disc-block":
+        tables["body"].append({"name": "block", "shape": "rectangle", "width": 20 * radius, "height": 4 * radius, "position": [0, -2 * radius]})
+    else:
+        tables["obstacle"] = [{"kind": "plane"}]
+    for name, value in entries.items():
+        (tables["contact"] if name in CONTACT else tables)[name] = value
+    return tables
+
+
+AXES = {"plane-strain": 2, "axisymmetric": 2, "3d": 3}
+
+
+def disc(folder: Path, kind: str = "disc", **entries: Value | Path) -> Outcome:
+    """A run of the impact with these entries (impact()) in `folder`."""
+    return bodies(folder, impact(kind, **entries))
 
 
 def outcome(folder: Path) -> Outcome:
@@ -80,7 +109,8 @@ def solid_bodies(folder: Path, scene: solids.Scene, **flags: Value | Path) -> Ou
     in `folder`/run."""
     out = folder / "run"
     shutil.rmtree(out, ignore_errors=True)
-    _start("edp/program/bodies-3d.edp", solids.write(scene, folder) | flags | {"out": out})
+    one_friction = {"friction_dynamic": flags.get("friction_static", 0.0)}
+    _start("edp/program/bodies-3d.edp", solids.write(scene, folder) | one_friction | flags | {"out": out})
     return outcome(out)
 
 

@@ -35,7 +35,7 @@ RIGID = STIFF | dict(penalty=3e10, law="neohookean", fields=0)
 # Elastic ball. For nu near 1/2 a rigid plane acts as a plane of the same material.
 NU, FRICTION, YOUNG, DENSITY = 0.45, 0.1, 7e6, 1722
 MASS = 4 / 3 * math.pi * RADIUS**3 * DENSITY
-ELASTIC = dict(script="ball-plane", law="neohookean", nu=NU, young=YOUNG, density=DENSITY, radius=RADIUS, accuracy=0.1, fields=0)
+ELASTIC = dict(kind="ball", law="neohookean", nu=NU, young=YOUNG, density=DENSITY, radius=RADIUS, accuracy=0.1, fields=0)
 # v_n [m/s] for each psi, as small (and expensive) as the tolerance requires. Where the error is
 # largest, two speeds test that it falls with the contact radius.
 SPEEDS = {0.6: (0.2, 0.002), 1.2: (0.002,), 2.0: (0.02,), 3.0: (0.2,), 5.0: (0.2,)}
@@ -46,7 +46,7 @@ def rigid(folder: Path, angle: float, friction: float, **more) -> tuple[dict, fl
 
     Also returns the initial speeds along and across the plane, and mu (1 + e) v_n/v_t.
     """
-    summary = disc(folder, "ball-plane", **RIGID | dict(angle=angle, friction_static=friction) | more).summary
+    summary = disc(folder, "ball", **RIGID | dict(angle=angle, friction_static=friction) | more).summary
     along, across = math.cos(math.radians(angle)), math.sin(math.radians(angle))
     return summary, along, across, friction * (across + summary["rebound_vy"]) / along
 

@@ -3,6 +3,7 @@
 The bodies are bricks and balls of tetrahedra, with one region for each body.
 """
 
+import math
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from ffimpact.mesh import solid_mesh
 from ffimpact.mesh.mesh import AXIS, FREE, boundary
 from ffimpact.mesh.solid_mesh import DEPTH, right_handed
 from ffimpact.scenes.assembly import stack
+from ffimpact.scenes.sizes import Impact
 
 # A cube as six tetrahedra around its diagonal.
 CORNERS = ((0, 1, 3, 7), (0, 3, 2, 7), (0, 2, 6, 7), (0, 6, 4, 7), (0, 4, 5, 7), (0, 5, 1, 7))
@@ -98,13 +100,18 @@ def mirrored(points: np.ndarray, cells: np.ndarray, axis: int) -> tuple[np.ndarr
     return np.concatenate([points, points[off] * sign]), np.concatenate([cells, image[cells]])
 
 
-def write(scene: Scene, folder: Path) -> dict[str, Path]:
-    """Writes mesh.mesh and scene.dat to `folder`. Returns the flags -mesh and -bodies."""
+def write(scene: Scene, folder: Path) -> dict[str, Path | float]:
+    """Writes mesh.mesh and scene.dat to `folder`. Returns the flags -mesh and -bodies, and the automatic
+    values of the contact."""
     folder.mkdir(parents=True, exist_ok=True)
     meshes = [_mesh(body, scene.copies) for body in scene.bodies]
     solid_mesh.write(*stack(meshes, np.zeros((len(meshes), 3))), folder / "mesh.mesh")
     (folder / "scene.dat").write_text(data(scene))
-    return {"mesh": folder / "mesh.mesh", "bodies": folder / "scene.dat"}
+    radius, young, nu, density, speed, angle, spin = scene.ball
+    turn = math.radians(angle)
+    like = Impact(True, radius, young, nu, density, speed * math.sin(turn), 0.005, sliding=speed * math.cos(turn), spin=spin)
+    automatic = {"penalty": like.penalty, "slip_velocity": like.slip_velocity, "friction_dynamic": 0.0}
+    return {"mesh": folder / "mesh.mesh", "bodies": folder / "scene.dat"} | automatic
 
 
 def _mesh(body: Body, copies: int) -> solid_mesh.SolidMesh:
@@ -119,7 +126,7 @@ def data(scene: Scene) -> str:
     """The text of scene.dat (edp/program/input/scene-file.idp)."""
     def numbers(*groups) -> str:
         return " ".join(repr(float(x)) for group in groups for x in group)
-    lines = ["ffimpact-bodies-3d 1", f"copies {scene.copies}", "disc " + numbers((*scene.ball, 0.0, 0.0, 0.0, 0.0)), f"bodies {len(scene.bodies)}"]
+    lines = ["ffimpact-bodies-3d 1", f"copies {scene.copies}", "pressure 0.0", f"bodies {len(scene.bodies)}"]
     lines += [f"body{b} {body.material[0]} " + numbers(body.material[1:], body.centre, body.shift, body.velocity, body.spin, [1e30]) for b, body in enumerate(scene.bodies)]
     spheres = [f"{b} " + numbers(sphere) for b, body in enumerate(scene.bodies) for sphere in body.spheres]
     lines += [f"spheres {len(spheres)}", *spheres, "cylinders 0", "files 0", f"obstacles {len(scene.obstacles)}"]

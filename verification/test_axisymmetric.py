@@ -41,9 +41,9 @@ def test_two_balls_are_one_on_a_plane(disc, tmp_path):
     """Two balls, each at half the speed, agree with one ball on a plane with twice the penalty,
     since their common tangent plane is at rest."""
     sizes = dict(mesh_size=3e-3, contact_mesh_size=3e-4)
-    hertz.balls(tmp_path, 1, penalty=2e12, **sizes)
-    pair = hertz.outcome(tmp_path).summary
-    single = disc(script="ball-axisymmetric", speed=0.5, penalty=4e12, **hertz.BALL, **sizes).summary
+    list(hertz.balls(tmp_path, 1, penalty=2e12, **sizes))
+    pair = hertz.outcome(tmp_path / "run").summary
+    single = disc(kind="ball-axisymmetric", speed=0.5, penalty=4e12, **hertz.BALL, **sizes).summary
     assert pair["contact_time"] == pytest.approx(single["contact_time"], rel=5e-3)
     assert pair["thresholded_contact_time"] == pytest.approx(single["thresholded_contact_time"], rel=1e-3)
     assert pair["impulse"] == pytest.approx(single["impulse"], rel=1e-4)
@@ -60,7 +60,7 @@ def test_balance_of_energy_and_momentum(disc, flags):
 
     The impulse is the change of momentum.
     """
-    result = disc(script="ball-axisymmetric", accuracy=0.02, **flags)
+    result = disc(kind="ball-axisymmetric", accuracy=0.02, **flags)
     summary, history = result.summary, result.history
     assert summary["energy_drift"] < 1e-9 and summary["momentum_drift"] < 1e-9
     mass = 2 * summary["energy_initial"] / history["vy"][0] ** 2

@@ -170,7 +170,7 @@ def pressed(measure, folder: Path, below: tuple, above: tuple, penalty: float) -
     material = ("neohookean", 1.0, 0.3, 1.0)
     scene = Scene([brick((-0.5, 0, -0.5), (0.5, 0.5, 0.5), below, material=material), brick((-0.5, 1, -0.5), (0.5, 1.5, 0.5), above, material=material, shift=(0, -0.5, 0))],
                   [FLOOR, ("plane", (0, 1, 0, 0, -1, 0), (0, -1e-4, 0))], ball=(0.5, 1.0, 0.3, 1.0, 0.01, 90.0, 0.0))
-    return measure("pressed-3d", **write(scene, folder), penalty=penalty, integrator="backward-euler", dt=10, end_time=30, tolerance=1e-10, accuracy=0.05, out=folder)
+    return measure("pressed-3d", **write(scene, folder) | {"penalty": penalty}, integrator="backward-euler", dt=10, end_time=30, tolerance=1e-10, accuracy=0.05, out=folder)
 
 
 @pytest.mark.robustness

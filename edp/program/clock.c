@@ -3,7 +3,7 @@
    system call. Results are the same to the byte. freefem.py of orchestrate/ffimpact/freefem builds
    and preloads it; by hand:
      cc -O2 -shared -fPIC -o libclock.so edp/program/clock.c
-     LD_PRELOAD=$PWD/libclock.so FreeFem++ -nw edp/program/disc-plane.edp */
+     LD_PRELOAD=$PWD/libclock.so FreeFem++ -nw edp/program/bodies.edp */
 #include <time.h>
 
 clock_t clock(void)

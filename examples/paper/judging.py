@@ -20,6 +20,7 @@ import pandas as pd
 
 from ffimpact.output.evaluate import evaluate
 from ffimpact.output.results import read_frame, read_history, read_scene, read_summary
+from ffimpact.report.impact import impact_of
 from ffimpact.report.impacts import read_modes
 from ffimpact.sweeps import study, sweep, sweep_figures
 
@@ -60,7 +61,9 @@ class Results:
         return read_history(self.run(name))
 
     def scene(self, name: str) -> dict:
-        return read_scene(self.run(name))
+        """The scene as used, that of a disc or ball on the plane as an impact (speed, angle)."""
+        used = read_scene(self.run(name))
+        return impact_of(used) or used
 
     def sweep(self, name: str) -> Path:
         return self.folder / "sweeps" / name
@@ -72,8 +75,9 @@ class Results:
                 else self.folder / f"{name.replace('/', '/figures/')}.png" for name in names]
 
     def table(self, name: str) -> pd.DataFrame:
-        """The points of a sweep, from its runs."""
-        return sweep.table(loaded(name), self.sweep(name))
+        """The points of a sweep, from its runs, with the angle of a direction to the plane."""
+        rows = sweep.table(loaded(name), self.sweep(name))
+        return rows.assign(angle=-rows.direction) if "direction" in rows else rows
 
     def folders(self, *names: str) -> list[Path]:
         """The folders of runs, and of all runs of sweeps."""

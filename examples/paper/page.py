@@ -12,6 +12,7 @@ from ffimpact import __version__, scene
 from ffimpact.input import parameters
 from ffimpact.output.results import read_frame, read_json, read_scene
 from ffimpact.report.figures import GREEN, ORANGE, STYLE
+from ffimpact.report.impact import impact_of
 from ffimpact.running.run import code_hash
 from ffimpact.sweeps import study, sweep
 from verification import verify
@@ -113,13 +114,20 @@ def _table(frame: pd.DataFrame, formats: dict[str, str]) -> str:
                                  for tag, row in zip(["th"] + ["td"] * len(frame), rows)) + "</table>"
 
 
+def entries_of(scene: dict) -> dict:
+    """The entries of a scene as used by name: of an impact, or of the top, the contact and the first body."""
+    tables = {name: value for name, value in scene.items() if not isinstance(value, list | dict)}
+    own = {name: value for table in (scene["contact"], scene["body"][0]) for name, value in table.items() if not isinstance(value, list | dict)}
+    return {name: value for name, value in (impact_of(scene) or tables | own).items() if not isinstance(value, list | dict)}
+
+
 def provenance_of(folders: list[Path]) -> str:
     """The source of the runs, with nu and parameters that differ from their defaults, common to all
     runs and by run."""
-    scenes = [read_scene(folder) for folder in folders if (folder / "scene.toml").exists()]
+    scenes = [entries_of(read_scene(folder)) for folder in folders if (folder / "scene.toml").exists()]
     if not scenes:
         return ""
-    standard = parameters.defaults()
+    standard = {name: parameter.default for name, parameter in parameters.PARAMETERS.items()}
     common = {name: value for name, value in scenes[0].items()
               if all(used.get(name) == value for used in scenes) and (name in ("script", "nu") or standard.get(name) != value)}
     varied = {name: sorted({used[name] for used in scenes if name in used}, key=lambda value: (isinstance(value, str), value))

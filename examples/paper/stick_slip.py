@@ -26,7 +26,7 @@ from ffimpact.places import RESULTS, shown
 from ffimpact.report.figures import LAWS, ORANGE, SMALL, STYLE, save
 from ffimpact.sweeps import study
 
-AXES = {"angle": (60.0, 30.0), "slip_velocity": (0.03, 0.3, 1.0, 3.0), "penalty": (1e8, 1e9, 1e10), "nu": (0.3, 0.4, 0.45)}
+AXES = {"direction": (-60.0, -30.0), "slip_velocity": (0.03, 0.3, 1.0, 3.0), "penalty": (1e8, 1e9, 1e10), "nu": (0.3, 0.4, 0.45)}
 # Settings that the paper may have used.
 LAW = {"svk": {"degree": 1, "mesh_size": 0.01, "contact_mesh_size": 0.005, "breakdown": "continue", "accuracy": 0.0025},
        "neohookean": {"accuracy": 0.005}}
@@ -52,6 +52,7 @@ def main(argv: list[str]) -> int:
     points = grid(axes)
     rows = study.study(points, out, BASE, LIMIT, SCENE)
     rows = pd.concat([rows, pd.DataFrame([thirds(study.place(out, point)) for point in points])], axis=1)
+    rows["angle"] = -rows.direction
     rows["order"] = as_told(rows)
     rows["quiet"] = rows.work_last <= QUIET
     rows["time"] = (rows.contact_time / PAPER[0] - 1).abs() <= PAPER[1]
@@ -120,7 +121,7 @@ def draw(rows: pd.DataFrame, axes: dict[str, tuple[float, ...]], path: Path) -> 
     a common axis from 0 to 100 %. A frame marks the paper's order.
     """
     low, high = 1e3 * rows.contact_time.min(), 1e3 * rows.contact_time.max()
-    columns = list(itertools.product(LAW, axes["angle"]))
+    columns = list(itertools.product(LAW, [-direction for direction in axes["direction"]]))
     with plt.rc_context(STYLE):
         figure, grid = plt.subplots(len(axes["nu"]), len(columns), figsize=(4.1 * len(columns) + 0.4, 1.9 * len(axes["nu"]) + 1.2),
                                     squeeze=False, sharex=True, sharey=True, layout="constrained")

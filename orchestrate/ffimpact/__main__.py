@@ -91,6 +91,10 @@ def _bad_usage(parser: argparse.ArgumentParser, message: str) -> None:
     ):
         message = f"{choice[1]}: {unknown(choice[3], CHOICES.findall(choice[4]), ', ')}"
         raise BadInput(f"{message} (see {parser.prog} --help)")
+    if message.startswith("unrecognized arguments: --mesh"):
+        raise BadInput(
+            "--mesh: is no option any more (accepted: in a table [[body]], shape = 'mesh' with file)"
+        )
     raise BadInput(f"{brief(message)} (see {parser.prog} --help)")
 
 
@@ -111,17 +115,11 @@ def _parser() -> argparse.ArgumentParser:
     )
     add_set(
         command,
-        "set a parameter (see parameters); of a scene of bodies any entry: body.2.young=1e6",
+        "set an entry: accuracy=0.01, body.2.young=1e6; an entry of the only body or of [contact] "
+        "needs no table: speed=4, penalty=1e9",
     )
     command.add_argument(
         "--out", metavar="DIR", type=Path, help="the result folder (default: results/SCENE)"
-    )
-    command.add_argument(
-        "--mesh",
-        metavar="FILE",
-        type=Path,
-        help="a mesh of a body of your own, FreeFEM's or gmsh's .msh; labels 1: contact "
-        "boundary, 2: symmetry axis, others: free boundary without contact",
     )
     command.add_argument(
         "--checkpoint-every",
@@ -201,11 +199,11 @@ def _plan(options: argparse.Namespace) -> None:
         if getattr(options, name):
             raise BadInput(
                 f"--plan: makes no run, so --{name.replace('_', '-')} has no meaning "
-                "(accepted: --set, --mesh, --no-estimate)"
+                "(accepted: --set, --no-estimate)"
             )
     loaded, overrides = scene.load(options.scene), parameters.overrides(options.set)
     overrides = run.states(loaded) | overrides
-    print(run.plan(loaded, overrides, mesh_file=options.mesh, estimate=not options.no_estimate))
+    print(run.plan(loaded, overrides, estimate=not options.no_estimate))
 
 
 def _run(options: argparse.Namespace) -> None:
@@ -228,7 +226,6 @@ def _run(options: argparse.Namespace) -> None:
             loaded,
             overrides,
             options.out,
-            mesh_file=options.mesh,
             force=options.force,
             progress=False if options.quiet else None,
             estimate=not options.no_estimate,

@@ -10,8 +10,6 @@ from typing import Any
 
 from pydantic.json_schema import models_json_schema
 
-from .input import parameters
-from .input.dimension import SCRIPTS
 from .input.models import BODIES, OBSTACLES, Contact, Top
 
 __all__ = ["FILE", "schema", "text"]
@@ -40,25 +38,7 @@ def schema() -> dict[str, Any]:
         "contact": {"$ref": "#/$defs/Contact"},
     }
     of_bodies["required"] = ["body"]
-    scripts = sorted(
-        {name for parameter in parameters.PARAMETERS.values() for name in parameter.scripts}
-        - set(SCRIPTS)
-    )
-    case = {
-        "type": "object",
-        "properties": {"title": {"type": "string"}, "script": {"enum": scripts}}
-        | {
-            name: parameter.schema() | {"description": parameter.meaning}
-            for name, parameter in parameters.PARAMETERS.items()
-        },
-        "additionalProperties": False,
-    }
-    return {
-        "$schema": DRAFT,
-        "title": "ffimpact scene",
-        "oneOf": [of_bodies, case],
-        "$defs": definitions,
-    }
+    return {"$schema": DRAFT, "title": "ffimpact scene", **of_bodies, "$defs": definitions}
 
 
 def text() -> str:

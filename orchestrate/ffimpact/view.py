@@ -188,7 +188,7 @@ def _states(result: Result, revolved: bool) -> States:
             f"{result.folder}: has no states (accepted: a run with fields = 60, for example)"
         )
     script = result["provenance"]["script"]
-    of_revolution = script in (dimension.AXISYMMETRIC.script, *dimension.AXISYMMETRIC.cases)
+    of_revolution = script == dimension.AXISYMMETRIC.script
     solid = vtu.read_solid(series[0][1])
     if solid:
         kind, shown = "space", _skin(solid, str(result.scene.get("symmetry")))

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.malformed import directly, special
+from tests.support.malformed import by_python
 
 
 @pytest.fixture(autouse=True)
@@ -33,12 +33,4 @@ def test_more_snapshots_than_memory(capsys):
     bytes_there = next(int(line.split()[1]) * 1024 for line in Path("/proc/meminfo").read_text().splitlines() if line.startswith("MemAvailable"))
     if bytes_there > 60e9:
         pytest.skip("so much memory that the mesh would be too fine for a test")
-    directly(r"fields: 10000 .*accepted here: 0 to \d+\)", "-fields", "10000", "-mesh_size", "7e-4", "-out", "a/out")
-
-
-@pytest.mark.robustness
-def test_path_of_a_checkpoint():
-    """A missing or invalid checkpoint gives exit code 14, and the folders made for the run are
-    removed."""
-    for kind in ("folder", "file", "nowhere", "loop", "device"):  # a pipe is waited for
-        directly("checkpoint '", "-restart", special(kind), "-out", "a/b/out", code=14)
+    by_python(capsys, r"fields: 10000 .*accepted here: 0 to \d+\)", "run", "disc-normal", "--no-estimate", "--set", "fields=10000", "mesh_size=7e-4")

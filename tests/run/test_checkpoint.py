@@ -20,7 +20,7 @@ from tests.support.cli import call, is_alive, start, wait_for
 from verification.measure import prepared
 
 COARSE = dict(law="neohookean", nu=0.4)
-# Flags of edp/program/disc-plane.edp, steps between checkpoints, and rows of the history that the last
+# Entries of the impact of a disc, steps between checkpoints, and rows of the history that the last
 # checkpoint must have.
 SCENES = {
     "energy-momentum": (COARSE | dict(accuracy=0.1, angle=60, friction_static=0.7, friction_dynamic=0.5, fields=5), 7, 20),
@@ -83,7 +83,7 @@ DRIVEN = SOFT | {"accuracy": 0.2, "end_time": 8e-3, "checkpoint_every": 4, "grav
 @pytest.mark.few(3)
 @pytest.mark.parametrize("script, flags", [
     ("bodies", DRIVEN), ("bodies-axisymmetric", BALLS), ("disc-block", COARSE | dict(radius=0.5, speed=10, accuracy=0.02, pairing="pairwise", checkpoint_every=10)),
-    ("ball-plane", BALL), ("ball-plane", BALL | dict(angle=60, friction_static=0.5, friction_dynamic=0.4))])
+    ("ball", BALL), ("ball", BALL | dict(angle=60, friction_static=0.5, friction_dynamic=0.4))])
 def test_bodies_go_on_to_the_last_bit(tmp_path, script, flags):
     """The state of gaps and of the active set is restored for bodies of revolution, bodies that are
     rigid, held, driven or filled with air, a disc on a block in pairwise contact, and balls in

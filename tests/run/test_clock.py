@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from ffimpact.freefem import freefem
+from tests.support.direct import case
 
 
 def test_histories_are_equal_to_the_byte_with_and_without_it(tmp_path):
@@ -16,8 +17,9 @@ def test_histories_are_equal_to_the_byte_with_and_without_it(tmp_path):
     if "libclock.so" not in variables.get("LD_PRELOAD", ""):
         pytest.skip("no compiler here")
     for name, environment in (("quick", variables), ("plain", {key: value for key, value in variables.items() if key != "LD_PRELOAD"})):
+        flags = case({"accuracy": 0.05, "out": tmp_path / name})
         before = os.times()
-        freefem.find().call("edp/program/disc-plane.edp", "-accuracy", "0.05", "-out", str(tmp_path / name), env=environment, check=True)
+        freefem.find().call(*flags, env=environment, check=True)
         after = os.times()
         summary = json.loads((tmp_path / name / "record.json").read_text())
         used = after.children_user + after.children_system - before.children_user - before.children_system
@@ -36,5 +38,5 @@ def test_it_serves_on_a_path_that_cannot_be_preloaded_by_its_name(monkeypatch, t
     environment = {key: value for key, value in program.environment.items() if key != "LD_PRELOAD"}
     program = replace(program, environment=environment | freefem.quick_clock(environment))
     assert len(program.preloaded) == 1
-    program.call("edp/program/disc-plane.edp", "-accuracy", "0.2", "-out", str(tmp_path / "out"), check=True)
+    program.call(*case({"accuracy": 0.2, "out": tmp_path / "out"}), check=True)
     assert json.loads((tmp_path / "out/record.json").read_text())["quick_clock"] == 1

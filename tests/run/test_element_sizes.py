@@ -1,12 +1,10 @@
 """Element sizes follow the requested accuracy, and the part of a body in the errors of the results."""
 
 import math
-from functools import partial
 
 import pytest
 
 from ffimpact import scene
-from ffimpact.freefem.describe import describe
 from ffimpact.mesh.mesh import Sizes
 from ffimpact.running import run
 from ffimpact.scenes import approach, assembly
@@ -38,7 +36,7 @@ BLOCK = SOFT + "width = 0.2\nheight = 0.2\nposition = [0.09, -0.095]\n"
 
 
 def sizes_of(problem: scene.Scene) -> list[Sizes]:
-    ask = assembly.Asker(problem, approach.onsets_of(problem), partial(describe, script=problem.dimension.like))
+    ask = assembly.Asker(problem, approach.onsets_of(problem))
     return [assembly.element_sizes(k, ask) for k in range(len(problem.bodies))]
 
 

@@ -12,7 +12,6 @@ import pytest
 
 from ffimpact import scene
 from ffimpact.failure import BadInput
-from ffimpact.freefem.describe import describe
 from ffimpact.mesh import mesh, solid_file
 from ffimpact.report import report
 from ffimpact.running import run
@@ -184,23 +183,6 @@ def test_element_sizes_of_a_mesh_from_a_file_are_its_own(plane, key, value):
     assert getattr(both.bodies[0], key) == 0 and getattr(both.bodies[1], key) == value
     used = assembly.assemble(read(tables(body, BALL), plane, "x")).used["body"]
     assert key not in used[0] and used[1][key] > 0
-
-
-@pytest.mark.parametrize("key", ["mesh_size", "contact_mesh_size"])
-def test_element_sizes_of_a_mesh_file_on_the_plane(tmp_path, key):
-    """--mesh: the sizes are those of the mesh and may be given. Other sizes are refused."""
-    side = 0.05
-    corners = np.array([[0, 0], [side, 0], [side, side], [0, side]])
-    edges = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
-    square = mesh.Mesh(corners, np.array([[0, 1, 2], [0, 2, 3]]), edges, np.ones(4, dtype=int))
-    mesh.write(square, tmp_path / "m.msh")
-    ask = {"mesh": str(tmp_path / "m.msh"), "radius": side / 2}
-    size = describe(ask)["used"][key]
-    assert size == pytest.approx(side / 2)  # at most the radius
-    assert describe(ask | {key: size})["used"][key] == size
-    message = f"^{key}: 0.01 for a mesh from a file, .*accepted: 0, or 0.025 as in the file"
-    with pytest.raises(BadInput, match=message):
-        describe(ask | {key: 0.01})
 
 
 # ---- boundaries that may come into contact

@@ -21,6 +21,7 @@ from ffimpact.output.results import read_summary
 from ffimpact.running import run
 from ffimpact.sweeps import study
 from tests.support.cli import hear_interrupts
+from tests.support.direct import words as impact_words
 from tests.support.kills import at_work, place
 
 COARSE = {"law": "neohookean", "nu": "0.4", "accuracy": "0.2", "fields": "5"}
@@ -56,7 +57,7 @@ def command(route: str, out: Path, speed: str = "8", **changed: str) -> list[str
         file.write_text(SWEEP if speed == "8" else SWEEP.replace("0.4", "0.3"))
         return [sys.executable, "-m", "ffimpact", "sweep", str(file), "--out", str(out)]
     if route.startswith("direct"):
-        return freefem.find().words("edp/program/disc-plane.edp", *freefem.words_of(values | {"out": out}))
+        return impact_words(values | {"out": out})
     return [sys.executable, "-m", "ffimpact", "run", "disc-normal", "--quiet", "--set", *(f"{name}={value}" for name, value in values.items()), "--out", str(out)]
 
 

@@ -1,11 +1,10 @@
-"""Malformed input by all three interfaces.
+"""Malformed input by both interfaces.
 
 Each gives one line on stderr with the error and exit code 10 or 14, leaves no files and does not
 hang.
 """
 
 import os
-import re
 import signal
 import subprocess
 import sys
@@ -13,22 +12,16 @@ from pathlib import Path
 
 import pytest
 
-from ffimpact.failure import BadInput
-from ffimpact.freefem import freefem
 from ffimpact.input import parameters
 from ffimpact.input.toml_text import to_toml
 from ffimpact.scenes.entries import set_entry, toml_value
 from tests.support.malformed import (
     COMMANDS,
-    FLAGS,
     INPUTS,
     NAMES,
-    NO_NUMBERS,
     SENSELESS,
-    VALUES,
     by_python,
     check,
-    directly,
     in_a_scene,
     special,
     toml,
@@ -58,39 +51,22 @@ def by_process(words: str, *arguments: str | bytes, code: int = 10) -> None:
     check(process.returncode, process.stderr.decode(errors="replace"), words, code, before)
 
 
-@pytest.mark.few(10)
-@pytest.mark.parametrize("name, value", [value if k < len(NO_NUMBERS) or k % 3 == 0 else pytest.param(*value, marks=pytest.mark.robustness)
-                                         for k, value in enumerate(VALUES)])
-def test_value_of_a_flag(name, value):
-    """A value that FreeFem++ does not accept as a flag gives Python's message without suggestions,
-    with what is accepted."""
-    message = directly(f"{name}: ", f"-{name}", value, "-out", "a/out")
-    # The bound of nu depends on the law; the other one has a message of its own.
-    if (name, value) not in (("nu", "0.5"), ("checkpoint_every", "-1")):
-        with pytest.raises(BadInput) as error:
-            parameters.check({name: value})
-        assert message == re.sub(r"; did you mean [^?]*\?", "", str(error.value)) and message.endswith(f"(accepted: {parameters.PARAMETERS[name].accepted})")
-
-
 @pytest.mark.few(3)
 @pytest.mark.parametrize("name", NAMES)
 def test_name(capsys, name):
-    """An unknown parameter, by all three interfaces."""
+    """An unknown parameter, by both interfaces."""
     if name.strip() == name:
-        by_python(capsys, f"{name}: no such parameter", "run", "disc-normal", "--set", f"{name}=8", "--out", "a/out")
-    directly(rf"-{name}: no such parameter \(accepted: .*speed", f"-{name}", "8", "-out", "a/out")
-    in_a_scene(capsys, f"scene.toml: {name}: no such parameter", f"{toml(name)} = 8\n")
+        by_python(capsys, f"{name}: ", "run", "disc-normal", "--set", f"{name}=8", "--out", "a/out")
+    in_a_scene(capsys, f"scene.toml: {name}: no such entry", f"{toml(name)} = 8\n")
 
 
 @pytest.mark.few(4)
 @pytest.mark.parametrize("words", SENSELESS)
 def test_values_that_do_not_go_together(capsys, words):
-    """Contradictory or impossible values, by all three interfaces. The folders made for the run are
+    """Contradictory or impossible values, by both interfaces. The folders made for the run are
     removed."""
     values = SENSELESS[words]
     by_python(capsys, words, "run", "disc-normal", "--set", *(f"{name}={value}" for name, value in values.items()), "--out", "a/b/out")
-    directly(words, *freefem.words_of(values), "-out", "a/b/out")
-    in_a_scene(capsys, words, "".join(f"{name} = {toml(value)}\n" for name, value in values.items()))
 
 
 ENTRIES = ("title", "dimension", "young", "script", "body", "obstacle", "contact", "body.1.shape", "body.1.name", "body.1.radius", "body.1.position", "body.1.velocity",
@@ -118,9 +94,7 @@ def test_a_message_repeats_two_hundred_characters_of_a_value(capsys, entry):
 def test_path_of_a_mesh(capsys, kind):
     """The path of a mesh that cannot be a file, or is not a mesh."""
     path = special(kind)
-    by_python(capsys, "mesh: ", "run", "disc-normal", "--mesh", path, "--out", "a/out")
-    if kind != "pipe":  # FreeFEM waits for its other end
-        directly("mesh: the file 'nowhere' cannot be read" if kind == "nowhere" else "mesh: ", "-mesh", path, "-out", "a/out")
+    in_a_scene(capsys, r"body\.1\.file: ", f'[[body]]\nshape = "mesh"\nposition = [0, 1]\nlaw = "svk"\nyoung = 1e6\nnu = 0.3\ndensity = 1e3\nfile = "{path}"\n')
 
 
 @pytest.mark.few(4)
@@ -133,15 +107,6 @@ def test_path_of_results(capsys, kind):
         Path(path, "thesis.tex").write_text("years of work")
     if kind != "dangling":  # Python makes the target of the link
         by_python(capsys, ".*(--out|folder)", "run", "disc-normal", "--set", "accuracy=0.4", "--out", path, code=14)
-    if kind != "folder":  # a direct run leaves files of others where they are
-        directly("out: ", "-accuracy", "0.4", "-out", path, code=14)
-
-
-@pytest.mark.few(6)
-@pytest.mark.parametrize("flags", FLAGS)
-def test_flags(flags):
-    """Arguments that belong to no parameter, and values that are missing, empty or repeated."""
-    directly(re.escape(FLAGS[flags]), *flags)
 
 
 @pytest.mark.parametrize("arguments", COMMANDS)
@@ -156,7 +121,7 @@ def test_commands(capsys, arguments):
 @pytest.mark.parametrize("arguments, words, code", [
     (("run", "disc-normal", "--set", "speed=8x"), r"speed: '8x' is not a number \(accepted: 0 to 1e\+09\)", 10), (("run", "disc-normal", "--set", b"speed=\xff"), "speed: ", 10),
     (("run", b"\xff"), "no such scene", 10), (("run", "disc-normal", "--out", "/"), "/ cannot be the folder", 14), (("run", "pipe"), "pipe: is no file", 10),
-    (("run", "disc-normal", "--out", "loop"), "loop cannot be made", 14), (("run", "disc-normal", "--mesh", "pipe"), "mesh: ", 10), (("figures", "/dev/null"), "cannot be read", 14),
+    (("run", "disc-normal", "--out", "loop"), "loop cannot be made", 14), (("run", "disc-normal", "--mesh", "pipe"), "--mesh: is no option any more", 10), (("figures", "/dev/null"), "cannot be read", 14),
     (("run", "deep.toml"), "nested too deep", 10), (("run", "disc-normal", "--set", "speed=8\n9"), "speed: '8 9'", 10), (("run", "disc-normal", "--out", b"\xff/x", "--set", "nu=1"), "nu: 1", 10)])
 def test_in_a_process_of_its_own(arguments, words, code):
     """The interpreter adds nothing to the line (encoding errors, a traceback at its end)."""

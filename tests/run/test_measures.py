@@ -49,7 +49,7 @@ def answers(folder, name="disc-normal", **settings) -> np.ndarray:
                                                                                            "contact-culling"))], ids=str)
 def test_what_is_saved_changes_no_answer(tmp_path_factory, instead):
     """Without one of the savings, impulse and rebound stay within the accuracy of the run."""
-    base = {"accuracy": 0.03, "height": 0.01}
+    base = {"accuracy": 0.03, "body.1.position.2": 0.06}
     full = answers(tmp_path_factory.getbasetemp() / "all-savings", **base)
     assert answers(tmp_path_factory.mktemp("without"), **base, **instead) == pytest.approx(full, rel=base["accuracy"])
 
@@ -62,7 +62,8 @@ def test_one_impact_in_other_units_and_materials(tmp_path, world):
     paper, ratios = {"young": 7e6, "density": 1722.0, "radius": 0.05}, []
     for name, material in (("paper", paper), ("other", world)):
         c = (material["young"] / material["density"]) ** 0.5
-        impulse, rebound = answers(tmp_path / name, law="svk", nu=0.45, accuracy=0.02, penalty="auto", speed=8 / 63.757559 * c, **material)
+        impulse, rebound = answers(tmp_path / name, law="svk", nu=0.45, accuracy=0.02, penalty="auto", speed=8 / 63.757559 * c, **material,
+                                  **{"body.1.position.2": material["radius"]})
         ratios.append([impulse / (material["density"] * material["radius"] ** 2 * c), rebound / c])
     assert ratios[1] == pytest.approx(ratios[0], rel=1e-6)
 
@@ -70,7 +71,7 @@ def test_one_impact_in_other_units_and_materials(tmp_path, world):
 @pytest.mark.parametrize("without, effect", [("flight", "flight before touch"), ("friction", "friction"), ("body-force", "body force")])
 def test_what_is_left_out_is_not_called_skipped(tmp_path, without, effect):
     """`skipped` in the summary lists only effects that a run really skipped."""
-    settings = {"accuracy": 0.2, "height": 1e-3, "end_time": 5e-4}
+    settings = {"accuracy": 0.2, "body.1.position.2": 0.051, "end_time": 5e-4}
     full, left_out = (run.run(scene.load("disc-normal"), settings | {"without": word, "fields": 0}, tmp_path / word, estimate=False)
                       for word in ("none", without))
     assert effect in full.summary["skipped"] and effect not in left_out.summary["skipped"]

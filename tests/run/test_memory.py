@@ -8,6 +8,7 @@ import subprocess
 import pytest
 
 from ffimpact.freefem import freefem
+from tests.support.direct import case
 
 # New memory, and a zone behind it, hold FILL in every byte: for 127 a real is 1.4e306, for 0 it is
 # zero.
@@ -27,13 +28,13 @@ int posix_memalign(void **p, size_t a, size_t n) { return (*p = memalign(a, n)) 
 void *realloc(void *p, size_t n) { return p ? filled(__libc_realloc(p, n + zone), n) : malloc(n); }
 void *calloc(size_t k, size_t n) { char *p = malloc(k * n);  return p ? memset(p, 0, k * n) : p; }
 """
-BLOCK, FRICTION = dict(radius=0.5, end_time=0.02), dict(angle=60, friction_static=0.5, friction_dynamic=0.3)
+BLOCK, FRICTION = dict(radius=0.5, height=0.15, end_time=0.035), dict(angle=60, friction_static=0.5, friction_dynamic=0.3)
 RUNS = {
     "pairs of points": ("disc-block", BLOCK | {"pairing": "pairwise"}),
     "printed pairs": ("disc-block", BLOCK | {"pairing": "pairwise-printed"}),
     "explicit pairs": ("disc-block", BLOCK | {"pairing": "pairwise", "integrator": "central-difference"}),
     "closest points": ("disc-block", BLOCK | FRICTION),
-    "explicit friction": ("disc-plane", FRICTION | {"integrator": "central-difference", "law": "neohookean"}),
+    "explicit friction": ("disc", FRICTION | {"integrator": "central-difference", "law": "neohookean"}),
     "rubber": ("ball-axisymmetric", {"law": "neohookean", "nu": 0.4999}),
 }
 
@@ -53,12 +54,11 @@ def preloaded(tmp_path_factory):
 def test_unwritten_memory_changes_nothing(tmp_path, preloaded, name):
     """All digits of the history of a coarse run, with the block for the first half of the contact,
     are independent of uninitialised memory."""
-    script, values = RUNS[name]
+    kind, values = RUNS[name]
     program, histories = freefem.find(), []
     for fill in ("000", "127"):
         environment = program.environment | {"FILL": fill, "LD_PRELOAD": f"{preloaded}:{program.environment.get('LD_PRELOAD', '')}"}
-        flags = freefem.words_of(values | {"accuracy": 0.2, "out": tmp_path / fill})
-        done = program.call(f"edp/program/{script}.edp", *flags, env=environment)
+        done = program.call(*case(values | {"accuracy": 0.2, "out": tmp_path / fill}, kind), env=environment)
         assert done.returncode == 0, done.stderr
         histories.append((tmp_path / fill / "history.csv").read_text())
     assert histories[0] == histories[1]

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from ffimpact.freefem import freefem
-from ffimpact.freefem.describe import describe
-from ffimpact.input import parameters
 from ffimpact.mesh import mesh
+from tests.support.direct import used
 from tests.support.triangles import areas, smallest_angle
 
 CASES = [
@@ -82,75 +81,9 @@ def test_freefem_reads_it(tmp_path):
     assert length[m.labels == 2].sum() == pytest.approx(0.1, rel=1e-12)
 
 
-# Radius [m]; mesh_size and contact_mesh_size over the radius; contactArc; symmetry.
-OWN = [
-    pytest.param((0.05, 0.32, 2e-3, 0.015, "half"), id="half, slow impact"),
-    pytest.param((0.05, 0.32, 2e-3, 0.015, "full"), id="full, slow impact"),
-    pytest.param((5e-6, 0.5, 6e-5, 1e-3, "half"), id="half, tiny, finest contact"),
-    pytest.param((5e4, 0.5, 6e-5, 1e-3, "full"), id="full, huge, finest contact"),
-    pytest.param((0.05, 1, 1, 0.5, "half"), id="half, coarsest"),
-    pytest.param((0.05, 1, 1, 0.5, "full"), id="full, coarsest"),
-    pytest.param((0.05, 0.2, 0.02, np.pi, "half"), id="half, rolls once around"),
-    pytest.param((0.05, 0.2, 0.02, np.pi, "full"), id="full, rolls once around"),
-]
-
-
-@pytest.fixture(scope="module", params=OWN)
-def own(request, tmp_path_factory):
-    """The mesh that the scripts make without Python, over its radius, and its requested sizes."""
-    radius, bulk, contact, arc, symmetry = request.param
-    folder, core = tmp_path_factory.mktemp("own"), parameters.ROOT / "edp/program"
-    rooms = "".join(f'include "{core}/input/{room}.idp"\n' for room in ("flags", "mesh-file", "outline", "sizes"))
-    (folder / "own.edp").write_text(
-        f'string script = "own";\n{rooms}contactArc = {arc!r};\ninclude "{core}/input/disc.idp"\n'
-        f'ofstream out("{folder}/own.msh");\nout.precision(17);\nout << Th.nv << " " << Th.nt << " " << Th.nbe << endl;\n'
-        'for (int i = 0; i < Th.nv; i++) out << Th(i).x / radius << " " << Th(i).y / radius << " 0" << endl;\n'
-        'for (int t = 0; t < Th.nt; t++) out << Th[t][0] + 1 << " " << Th[t][1] + 1 << " " << Th[t][2] + 1 << " 0" << endl;\n'
-        'for (int e = 0; e < Th.nbe; e++) out << Th.be(e)[0] + 1 << " " << Th.be(e)[1] + 1 << " " << Th.be(e).label << endl;\n')
-    flags = dict(radius=radius, mesh_size=radius * bulk, contact_mesh_size=radius * contact, symmetry=symmetry)
-    done = freefem.find().call(folder / "own.edp", *freefem.words_of(flags))
-    assert done.returncode == 0, done.stdout
-    return mesh.read(folder / "own.msh"), bulk, contact, arc, symmetry == "half"
-
-
-def test_own_mesh_is_sound(own):
-    """The triangles of the scripts' own mesh are counter-clockwise, have no angle below 15 degrees
-    and fill the polygon of the labelled edges.
-
-    The vertices of the circle lie on it to rounding, those of the axis on x = 0, none below the
-    plane. The lowest point is a vertex at (0, 0).
-    """
-    m, *_, half = own
-    assert areas(m).min() > 0 and smallest_angle(m) > 15
-    a, b = m.points[m.edges[:, 0]], m.points[m.edges[:, 1]]
-    assert areas(m).sum() == pytest.approx(abs((a[:, 0] * b[:, 1] - b[:, 0] * a[:, 1]).sum()) / 2, rel=1e-12)
-    assert set(m.triangles.flat) == set(range(len(m.points)))
-    assert set(m.labels) == ({mesh.FREE, mesh.AXIS} if half else {mesh.FREE})
-    assert abs(np.hypot(m.points[:, 0], m.points[:, 1] - 1)[m.edges[m.labels == mesh.FREE]] - 1).max() < 1e-14
-    assert (m.points[m.edges[m.labels == mesh.AXIS], 0] == 0).all()
-    assert m.points[:, 1].min() == 0 and np.hypot(*m.points.T).min() == 0
-
-
-@pytest.mark.few(3)
-def test_own_mesh_grows_from_the_contact_everywhere(own):
-    """No edge of the scripts' own mesh is longer than twice the size field at its middle.
-
-    The size field is contact_mesh_size on the arc that may come into contact, grows by 0.3 per
-    length of distance beyond, and is at most mesh_size. There are at most 1.3 times as many
-    triangles as in gmsh's mesh of the half.
-    """
-    m, bulk, contact, arc, half = own
-    sides = np.unique(np.sort(np.vstack([m.triangles[:, [0, 1]], m.triangles[:, [1, 2]], m.triangles[:, [2, 0]]]), axis=1), axis=0)
-    middle, length = m.points[sides].mean(1), np.linalg.norm(m.points[sides[:, 1]] - m.points[sides[:, 0]], axis=1)
-    touching = np.linspace(-arc, arc, 10001)
-    distance = np.array([np.hypot(x - np.sin(touching), y - 1 + np.cos(touching)).min() for x, y in middle])
-    assert (length / np.minimum(bulk, contact + mesh.GROWTH * distance)).max() < 2
-    assert len(m.triangles) <= 1.3 * (1 if half else 2) * len(mesh.disc(1, bulk, contact, True, arc).triangles)
-
-
 def sizes(**values) -> tuple[float, float]:
-    used = describe(values)["used"]
-    return used["mesh_size"], used["contact_mesh_size"]
+    entries = used(values)
+    return entries["mesh_size"], entries["contact_mesh_size"]
 
 
 def test_sizes_follow_the_accuracy():

@@ -61,13 +61,14 @@ def test_film_is_drawn_again_only_for_another_run(fake, no_ffmpeg, tmp_path, mon
     call = lambda *more: movie.main(["disc-normal", "--frames", "3", "--out", str(tmp_path / "out"), *more])   # noqa: E731
     call()
     call()
-    # The run, and the two coarser runs for its error estimate.
-    assert len(drawn) == 1 and fake.starts() == 3
+    # The run, and the two coarser runs for its error estimate, the second maybe ended at its start.
+    first = fake.starts()
+    assert len(drawn) == 1 and first in (2, 3)
     os.utime(tmp_path / "out/disc-normal.gif", (0, 0))
     call()
-    assert len(drawn) == 2 and fake.starts() == 3
+    assert len(drawn) == 2 and fake.starts() == first
     call("--set", "speed=4")
-    assert len(drawn) == 3 and fake.starts() == 6
+    assert len(drawn) == 3 and fake.starts() > first
 
 
 def stop_at_third_frame(writer, monkeypatch) -> None:
@@ -104,7 +105,7 @@ def test_mp4_wherever_there_is_ffmpeg(fake, ffmpeg, tmp_path):
 
 @pytest.mark.parametrize("arguments, code, words", [
     (["disc-nowhere"], 10, "disc-nowhere: no such scene"), (["disc-normal", "--frames", "1"], 10, "--frames: 1 is out of range"),
-    (["disc-normal", "--set", "sped=8"], 10, "sped: no such parameter"), (["disc-normal", "--format", "avi"], 10, "--format: 'avi' is not known .accepted: mp4, gif."),
+    (["disc-normal", "--set", "sped=8"], 10, "sped: no such entry"), (["disc-normal", "--format", "avi"], 10, "--format: 'avi' is not known .accepted: mp4, gif."),
     (["disc-normal", "--format", "mp4"], 13, "ffmpeg not found.*apt-get install ffmpeg.*--format gif")])
 def test_bad_calls_are_one_line(fake, no_ffmpeg, tmp_path, capsys, arguments, code, words):
     """One line and the exit code, before anything runs."""

@@ -13,7 +13,6 @@ from ffimpact import scene
 from ffimpact.__main__ import main
 from ffimpact.failure import BadInput, Failure
 from ffimpact.freefem import freefem
-from ffimpact.freefem.describe import describe
 from ffimpact.input import parameters
 from ffimpact.input.toml_text import to_toml
 from ffimpact.mesh import mesh
@@ -55,8 +54,8 @@ def test_each_body_has_its_columns_and_numbers(block):
     """history.csv and summary.json have the described columns and numbers of two bodies. The totals
     are sums over the bodies."""
     problem, h, s = scene.load("disc-block"), block.history, block.summary
-    assert list(h) == problem.columns and {"vy_1", "vy_2", "kinetic_1"} <= set(h) and "block_width" in block.scene
-    assert set(problem.numbers) <= set(s) and s["provenance"]["script"] == "disc-block" and s["estimated_error"] is not None
+    assert list(h) == problem.columns and {"vy_1", "vy_2", "kinetic_1"} <= set(h) and block.scene["body"][1]["width"] == 10
+    assert set(problem.numbers) <= set(s) and s["provenance"]["script"] == "bodies" and s["estimated_error"] is not None
     for name in ("kinetic", "elastic", "momentum_y"):
         assert h[name] == pytest.approx(h[f"{name}_1"] + h[f"{name}_2"], rel=1e-9, abs=1e-9 * abs(h[name]).max())
     assert s["mass_1"] == pytest.approx(1722 * np.pi * 0.25, rel=1e-2) and s["mass_2"] == pytest.approx(1722 * 20, rel=1e-9)
@@ -77,7 +76,7 @@ def test_what_one_body_loses_the_other_gains(block):
 def test_lost_ellipticity_is_a_warning(block):
     """St. Venant-Kirchhoff beyond its range gives a warning for two bodies as for one. A law that
     keeps ellipticity does not."""
-    hard = run.run(scene.load("disc-block"), {"accuracy": 0.2, "speed": 18, "fields": 0, "breakdown": "continue"}, block.folder.parent / "hard", estimate=False)
+    hard = run.run(scene.load("disc-block"), {"accuracy": 0.2, "body.1.speed": 18, "fields": 0, "breakdown": "continue"}, block.folder.parent / "hard", estimate=False)
     assert hard.summary["ellipticity_lost_time"] > 0 and any(
         warning.startswith("ellipticity: lost from") for warning in hard.summary["warnings"])
     assert block.summary["ellipticity_lost_time"] is None and not any(
@@ -162,7 +161,7 @@ def test_coarser_and_finer_elements(mine):
     same contact."""
     problem = scene.load(str(mine[1]))
     used = run.read_scene(mine[0].folder)
-    built = assembly.assemble(problem.override(finer.scaled(problem, problem.values, used, 0.5)))
+    built = assembly.assemble(problem.override(finer.scaled(problem, used, 0.5)))
     assert [body["mesh_size"] for body in built.used["body"]] == [0.5 * body["mesh_size"] for body in used["body"]]
     assert built.used["contact"] == used["contact"] and built.values["accuracy"] == 0.25 * used["accuracy"]
     assert len(built.mesh.triangles) > 2 * len(assembly.assemble(problem).mesh.triangles)
@@ -170,11 +169,11 @@ def test_coarser_and_finer_elements(mine):
 
 @pytest.mark.parametrize("factor, kept", [(estimate.COARSER, False), (1 / estimate.COARSER, True)])
 def test_a_finer_run_keeps_what_a_scene_asks_for(mine, factor, kept):
-    """In scenes of bodies, as in those of the paper, only the coarser run writes no output, as it
+    """Only the coarser run writes no output, as it
     is only compared."""
     requests = {"fields": 5, "modes": 4, "checkpoint_every": 7}
     problem = scene.load(str(mine[1])).override(requests)
-    other = problem.override(finer.scaled(problem, problem.values, run.read_scene(mine[0].folder), factor))
+    other = problem.override(finer.scaled(problem, run.read_scene(mine[0].folder), factor))
     assert {name: other.values[name] for name in requests} == requests | ({} if kept else parameters.OUTPUT)
 
 
@@ -190,7 +189,7 @@ def test_figures_of_several_bodies(which, request):
     assert drawn - {"bounces.png"} == {"contact.png", "energies.png", "force.png", "shapes.png", "velocity.png"}
     assert ("bounces.png" in drawn) == (len(impacts.several(impacts.read(result.folder))) > 0)
     assert all(path.stat().st_size > 5000 for path in (result.folder / "figures").iterdir())
-    assert ("target: neo-Hookean, E = 4 MPa" if which == "mine" else "disc on block: St. Venant") in drawing.title(result.scene)
+    assert ("target: neo-Hookean, E = 4 MPa" if which == "mine" else "disc, block: St. Venant") in drawing.title(result.scene)
     assert "rebound velocity, " + ("x, target" if which == "mine" else "y, block") in report.report(result, verbose=True)
 
 
@@ -219,9 +218,11 @@ def values(folder) -> dict:
 
 
 @pytest.mark.parametrize("words, message", [
-    (("disc-normal", "--set", "block_width=3"), "block_width: disc-plane takes no such parameter (accepted: in disc-block)"),
-    (("disc-block", "--mesh", "MESH"), "mesh: disc-block takes no such parameter (accepted: in disc-plane|ball-axisymmetric|bodies|bodies-axisymmetric|bodies-3d)"),
-    (("two-discs", "--mesh", "MESH"), "mesh: is of one body"),
+    (("disc-normal", "--set", "block_width=3"), "block_width: is no entry any more (accepted: body.2.width)"),
+    (("disc-normal", "--set", "angle=60"), "angle: is no entry any more (accepted: body.1.direction, the angle from the x axis: -60 for an impact at 60 degrees)"),
+    (("disc-normal", "--set", "height=1"), "height: is no entry any more (accepted: body.1.position"),
+    (("disc-block", "--set", "speed=4"), "speed: no such entry, set to '4'; did you mean body.1.speed?"),
+    (("two-discs", "--mesh", "MESH"), "--mesh: is no option any more (accepted: in a table [[body]], shape = 'mesh' with file)"),
     (("two-discs", "--set", "body.3.young=1e6"), "body.3.young: there is no body.3 in the scene (accepted: body.1 to body.2)"),
     (("two-discs", "--set", "radius=1"), "radius: no such entry, set to '1'"),
     (("two-discs", "--set", "body.1.position=[0,0]"), "body.1.position: 'left' overlaps 'right' (body.2)"),
@@ -277,7 +278,7 @@ def test_bodies_turn_about_their_stated_centre(tmp_path):
     results = []
     for axes, angle in (([0.06, 0.03], 0), ([0.03, 0.06], 90)):
         body = {"shape": "ellipse", "semi_axes": axes, "angle": angle, "position": [0, 0.031], "velocity": [0, -1], "mesh_size": 0.015}
-        results.append(run.run(read_scene(FALLING | {"body": [body], "end_time": 1.1e-3}, tmp_path, "ellipse"), {}, tmp_path / str(angle), estimate=False))
+        results.append(run.run(read_scene(FALLING | {"symmetry": "full", "body": [body], "end_time": 1.1e-3}, tmp_path, "ellipse"), {}, tmp_path / str(angle), estimate=False))
     first, second = results
     assert first.summary["contact_start"] == pytest.approx(second.summary["contact_start"], rel=1e-9)
     assert second.history["y"] == pytest.approx(first.history["y"], abs=1e-12) and abs(second.history["x"]).max() < 1e-12
@@ -390,20 +391,13 @@ def _other_triangles(text: str, what: str, new) -> str:
 @pytest.mark.few(2)
 @pytest.mark.parametrize("script, flags, message", [
     ("bodies", ("-accuracy", "0.4"), "bodies: -bodies FILE is missing"),
-    ("bodies", ("-radius", "1"), "radius: bodies takes no such parameter (accepted: in disc-plane|disc-block|ball-plane|ball-axisymmetric)"),
-    ("disc-block", ("-bodies", "x"), "bodies: disc-block takes no such parameter (accepted: in bodies|bodies-axisymmetric|bodies-3d)"),
-    ("disc-plane", ("-block_height", "1"), "block_height: disc-plane takes no such parameter (accepted: in disc-block)"),
+    ("bodies", ("-radius", "1"), "-radius: no such parameter (accepted: "),
+    ("bodies-3d", ("-pairing", "pairwise"), "pairing: bodies-3d takes no such parameter (accepted: in bodies)"),
 ])
 def test_flags_of_another_script_are_refused(script, flags, message):
     """A direct run refuses parameters that its script does not use, with exit code 10."""
     done = freefem_run(*flags, script=script)
     assert done.returncode == 10 and message in done.stderr and done.stderr.count("\n") == 1
-
-
-def test_scripts_describe_themselves():
-    """The list of scripts, and the columns of each of two bodies."""
-    assert describe()["scripts"] == "disc-plane|disc-block|ball-axisymmetric|ball-plane|bodies|bodies-axisymmetric|bodies-3d" and describe(script="disc-block")["bodies"] == 2
-    assert {name for name in scene.built_in() if scene.load(name).bodies} == {"two-discs", "three-in-a-row", "disc-bowl", "disc-corner", "block-corner", "disc-step", "two-balls", "ball-cylinder", "ball-block", "balls-3d", "disc-beam", "ball-beam", "hollow-ball", "drop-weight", "roller"} < set(scene.built_in())
 
 
 # ---- dependent entries
@@ -415,9 +409,8 @@ def test_scripts_describe_themselves():
     ("disc-oblique", {"speed": 4, "nu": 0.3, "law": "svk", "accuracy": 0.1}, {}, {"penalty": 1e10, "friction_dynamic": 0.5, "slip_velocity": 0.1}),
     ("disc-normal", {"young": 5e6, "density": 1100}, {"penalty": "auto"}, {}), ("disc-normal", {"exponent": 1.5}, {"penalty": "auto"}, {}),
     ("disc-normal", {"young": 5e6, "penalty": 3e9}, {"penalty": 3e9}, {}), ("ball", {"young": 5e6}, {"penalty": "auto"}, {}),
-    ("disc-rolling", {"radius": 0.5}, {"mesh_size": "open", "contact_mesh_size": "open", "penalty": "auto"}, {"end_time": 0.2}),
-    ("disc-normal", {"height": 0.01}, {}, {"penalty": 1e10}),  # height of the fall, not of a body
-    ("disc-block", {"radius": 0.1}, {"block_width": 2.0, "block_height": 0.4}, {})])
+    ("disc-rolling", {"radius": 0.5, "position": [0, 0.5]}, {"mesh_size": 0, "contact_mesh_size": 0, "penalty": "auto"}, {"end_time": 0.2}),
+    ("disc-normal", {"position": [0, 0.06]}, {}, {"penalty": 1e10})])
 def test_what_a_scene_fixed_for_its_own_follows(name, entries, opened, kept):
     """If material, size or static friction of a built-in scene is set alone, its dependent entries
     become automatic, and a sentence reports it.
@@ -426,13 +419,12 @@ def test_what_a_scene_fixed_for_its_own_follows(name, entries, opened, kept):
     """
     before = scene.load(name)
     after = before.override(entries)
-    used, alone = after.description()["used"], before.override(dict.fromkeys(set(opened) - set(entries), "auto") | entries
-                                                               if "open" not in opened.values() else {"mesh_size": 0, "contact_mesh_size": 0, "penalty": "auto"} | entries)
-    assert all(used[entry] == alone.description()["used"][entry] for entry in opened)
-    assert all(used[entry] == value for entry, value in opened.items() if not isinstance(value, str))
-    assert all(used[entry] == value == before.description()["used"][entry] for entry, value in kept.items())
+    used = assembly.assemble(after).used
+    values = used | used["contact"] | after.values | after.sizes | {name: value for name, value in after.contact.items() if value == "auto"}
+    assert all((after.contact[entry] == "auto" if value == "auto" else values[entry] == value) or used["contact"].get(entry) == value for entry, value in opened.items())
+    assert all(used["contact"].get(entry, after.values.get(entry)) == value for entry, value in kept.items())
     freed = set(opened) - set(entries)
-    assert len(after.released) == len(freed) and all(any(message.startswith(f"{entry} is reset to automatic") for message in after.released) for entry in freed)
+    assert len(after.released) == len(freed) and all(any(f"{entry} is reset to automatic" in message for message in after.released) for entry in freed)
 
 
 def test_the_parameters_of_a_law_belong_to_it(tmp_path):
@@ -472,4 +464,4 @@ def test_a_sweep_over_friction_sets_both(tmp_path):
     for more, expected in (("", [0.7, 0.3]), ("[set]\nfriction_dynamic = 0.2\n", [0.2, 0.2])):
         (tmp_path / "friction.toml").write_text(f'scene = "disc-oblique"\n{more}[product]\nfriction_static = [0.7, 0.3]\n')
         plan = sweep.load(str(tmp_path / "friction.toml"))
-        assert [scene.load(plan.scene).override(plan.base | point).description()["used"]["friction_dynamic"] for point in plan.points] == expected
+        assert [assembly.assemble(scene.load(plan.scene).override(plan.base | point)).values["friction_dynamic"] for point in plan.points] == expected

@@ -11,6 +11,7 @@ from ffimpact.failure import Failure
 from ffimpact.freefem import freefem
 from ffimpact.output import estimate
 from ffimpact.running import run, solver
+from ffimpact.scenes import finer
 from tests.support.checkpoint import EFFORT
 from tests.support.kills import at_work
 from tests.support.solver import ANSWERS, SCENES, go
@@ -68,10 +69,10 @@ def test_sizes_that_are_used_otherwise_are_run_again(order, monkeypatch, tmp_pat
     monkeypatch.setattr(freefem, "CORES", 2)
     problem, guesses = scene.load("disc-normal"), []
 
-    def other(values, used, factor, own_mesh=True):
-        guesses.append(estimate.other(values, used, factor, own_mesh))
-        return guesses[-1] | ({"mesh_size": 0.02} if len(guesses) == 1 else {})
-    monkeypatch.setattr(solver, "scaled", lambda scene, *arguments: other(*arguments))
+    def other(scene, used, factor):
+        guesses.append(finer.scaled(scene, used, factor))
+        return guesses[-1] | ({"body.1.mesh_size": 0.02} if len(guesses) == 1 else {})
+    monkeypatch.setattr(solver, "scaled", other)
     result = run.run(problem, SCENES["disc-normal"], tmp_path / "out", progress=False)
     assert order.count("coarser starts") == 2 and result.summary["estimated_error"] and not list(tmp_path.glob("out.*"))
 
@@ -91,6 +92,6 @@ def test_a_run_beside_that_fails_is_said_where_it_was(monkeypatch, tmp_path):
     why the error is unknown."""
     monkeypatch.setattr(freefem, "CORES", 2)
     problem = scene.load("disc-normal")
-    monkeypatch.setattr(solver, "scaled", lambda scene, *arguments: estimate.other(*arguments) | {"speed": 60, "law": "svk"})
+    monkeypatch.setattr(solver, "scaled", lambda *arguments: finer.scaled(*arguments) | {"body.1.speed": 60, "law": "svk"})
     result = run.run(problem, SCENES["disc-normal"] | {"law": "neohookean"}, tmp_path / "out", progress=False)
     assert result.summary["estimated_error"] is None and "the error is not estimated: the run with 1.4 times larger" in " ".join(result.summary["warnings"])

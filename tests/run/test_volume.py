@@ -3,14 +3,15 @@
 import pytest
 
 from ffimpact.failure import BadInput
-from ffimpact.freefem.describe import describe
 from ffimpact.output import vtu
-from verification.measure import bodies, disc
+from ffimpact.places import ROOT
+from ffimpact.scene import read
+from verification.measure import bodies, disc, impact
 
 IMPACT = {"law": "neohookean", "nu": 0.4999, "speed": 4, "accuracy": 0.1, "tolerance": 1e-15}
 RUBBED = {"angle": 60, "friction_static": 0.3}
-SCENES = {"disc": ("disc-plane", RUBBED), "svk": ("disc-plane", {"law": "svk", "speed": 2}), "ball": ("ball-axisymmetric", {}),
-          "space": ("ball-plane", RUBBED | {"end_time": 5e-4}), "two bodies": ("disc-block", RUBBED | {"end_time": 1e-3})}
+SCENES = {"disc": ("disc", RUBBED), "svk": ("disc", {"law": "svk", "speed": 2}), "ball": ("ball-axisymmetric", {}),
+          "space": ("ball", RUBBED | {"end_time": 5e-4}), "two bodies": ("disc-block", RUBBED | {"end_time": 1e-3})}
 
 
 @pytest.mark.few(1)
@@ -29,7 +30,7 @@ def test_up_to_nu_045_nothing_changes(tmp_path):
     for volume in ("auto", "plain"):
         run = disc(tmp_path / volume, law="neohookean", nu=0.45, accuracy=0.3, volume=volume)
         assert run.summary["volume"] == "plain"
-    assert (tmp_path / "auto/history.csv").read_bytes() == (tmp_path / "plain/history.csv").read_bytes()
+    assert (tmp_path / "auto/run/history.csv").read_bytes() == (tmp_path / "plain/run/history.csv").read_bytes()
 
 
 def test_bodies_of_a_scene_each_have_theirs(tmp_path):
@@ -53,7 +54,7 @@ def test_linear_elements_are_refused(tmp_path):
     """An element of degree 1 has one volume: its projection, if requested, is an error, as is an
     unknown name."""
     with pytest.raises(BadInput, match="volume: 'mean' is not known"):
-        describe({"volume": "mean"})
+        read(impact(volume="mean"), ROOT, "scene")
     with pytest.raises(Exception, match="volume: projected is of degree=2"):
         disc(tmp_path, volume="projected", degree=1)
 
@@ -77,7 +78,7 @@ def test_snapshots_have_their_own_pressures(tmp_path):
     """The pressure of a body with J = 1 is zero before contact, positive near contact under load,
     and -tr/3 of the stress."""
     disc(tmp_path, **HELD | {"fields": 5})
-    shots = [vtu.read(path).fields for _, path in vtu.series(tmp_path / "fields.pvd")]
+    shots = [vtu.read(path).fields for _, path in vtu.series(tmp_path / "run/fields.pvd")]
     assert all(shot["pressure"] == pytest.approx(-shot["cauchy_stress"][:, :3].sum(axis=1) / 3, rel=1e-6, abs=1e-3) for shot in shots)
     largest = [abs(shot["pressure"]).max() for shot in shots]
     assert largest[0] < 1e-6 * max(largest) and max(shot["pressure"].max() for shot in shots[1:]) > 1e5
@@ -93,7 +94,7 @@ def test_it_is_the_limit_of_nu(tmp_path):
     assert near["volume_change"] > 1e-6 > held["volume_change"]
 
 
-@pytest.mark.parametrize("law, own, script", [("neohookean", "none", "disc-plane"), ("mooney-rivlin", "0.3", "disc-plane"),
+@pytest.mark.parametrize("law, own, script", [("neohookean", "none", "disc"), ("mooney-rivlin", "0.3", "disc"),
                                               ("ogden", "1.3,0.6,5,0.4", "ball-axisymmetric")])
 def test_laws_with_j_1(tmp_path, law, own, script):
     """nu = 0.5 means J = 1 for any law of J: volume and energy are constant.
@@ -102,7 +103,7 @@ def test_laws_with_j_1(tmp_path, law, own, script):
     """
     summary = disc(tmp_path / "one", script, **HELD | {"law": law, "law_parameters": own}).summary
     assert summary["volume_change"] < 1e-6 and summary["energy_drift"] < 1e-9 and summary["volume"] == "projected"
-    if script == "disc-plane":
+    if script == "disc":
         named = disc(tmp_path / "named", script, **HELD).summary
         assert summary["impulse"] == pytest.approx(named["impulse"], rel=1e-5) and summary["contact_time"] == pytest.approx(named["contact_time"], rel=1e-4)
 
@@ -112,5 +113,5 @@ def test_laws_with_j_1(tmp_path, law, own, script):
 def test_what_cannot_be_incompressible_is_refused(tmp_path, flags):
     """One line with what is accepted: nu = 0.5, a law of J, quadratic elements with projected
     volume, the energy-momentum step."""
-    with pytest.raises(Exception, match="exit code 10.* 0.[45] .J = 1. of law = .*accepted: up to 0.4999, or 0.5 with any law but svk, degree = 2"):
+    with pytest.raises(Exception, match="nu: 0.[45] (.J = 1. )?of law = .*accepted: (0.5|up to 0.4999, or 0.5 with any law but svk, degree = 2)"):
         disc(tmp_path, **HELD | flags)

@@ -16,6 +16,7 @@ from ffimpact.output.errors import errors
 from ffimpact.report import drawing, report
 from ffimpact.running import run
 from ffimpact.sweeps import sweep
+from tests.support.direct import case
 from verification import measure
 
 COARSE = dict(accuracy=0.1, mesh_size=0.02, contact_mesh_size=0.006, dt=5e-5)
@@ -225,7 +226,7 @@ def test_no_contact_no_contact_time(disc):
 
 def test_evaluation_of_a_direct_run_prints_its_warnings(tmp_path, capsys):
     """The script prints none. `ffimpact evaluate` prints the warnings of summary.json on stderr."""
-    process = freefem.find().call("edp/program/disc-plane.edp", "-accuracy", "0.1", "-penalty", "1e8", "-out", str(tmp_path / "out"), timeout=120)
+    process = freefem.find().call(*case({"accuracy": 0.1, "penalty": 1e8, "out": tmp_path / "out"}), timeout=120)
     assert "warning" not in process.stdout and main(["evaluate", str(tmp_path / "out")]) == 0
     sentences = results.read_summary(tmp_path / "out")["warnings"]
     assert len(sentences) > 1 and capsys.readouterr().err.splitlines() == [f"ffimpact: warning: {sentence}" for sentence in sentences]

@@ -14,14 +14,16 @@ from ffimpact.freefem import freefem
 from ffimpact.input import parameters
 from ffimpact.output import results
 from ffimpact.output.evaluate import evaluate
+from tests.support.direct import words as impact_words
 
 EFFORT = ("start_seconds", "wall_seconds", "total_seconds", "cpu_seconds", "estimate_cpu_seconds", "peak_memory", "phase_seconds", "resumed_at", "provenance")
 
 
-def direct(flags: dict, out: Path, script: str = "disc-plane") -> subprocess.Popen:
-    """Starts FreeFem++ without Python."""
+def direct(flags: dict, out: Path, script: str = "disc") -> subprocess.Popen:
+    """Starts FreeFem++ on an impact with these entries, or a script of bodies with these flags."""
     program = freefem.find()
-    return subprocess.Popen(program.words(f"edp/program/{script}.edp", *freefem.words_of(flags | {"out": out})), cwd=parameters.ROOT, text=True,
+    words = program.words(f"edp/program/{script}.edp", *freefem.words_of(flags | {"out": out})) if "bodies" in flags else impact_words(flags | {"out": out}, script)
+    return subprocess.Popen(words, cwd=parameters.ROOT, text=True,
                             env=program.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
 

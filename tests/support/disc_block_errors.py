@@ -15,6 +15,6 @@ def tables(monkeypatch, tmp_path, *changes: dict) -> pd.DataFrame:
     """The table of one case: runs at two accuracies and a reference, with these changes in turn."""
     runs = [RUN | change for change in (*changes, *[{}] * (3 - len(changes)))]
     monkeypatch.setattr(study, "study", lambda points, folder, *_: pd.DataFrame(runs[2:] if folder.name == "finer" else runs[:2]))
-    monkeypatch.setattr(block, "read_scene", lambda _: {"radius": 0.5, "mesh_size": 0.1, "contact_mesh_size": 0.02, "dt": 0.0, "penalty": 1e9, "slip_velocity": 0.05,
-                                                         "friction_dynamic": 0.0, "accuracy": 0.005})
+    monkeypatch.setattr(block, "read_scene", lambda _: {"body": [{"mesh_size": 0.1, "contact_mesh_size": 0.02}] * 2, "dt": 0.0, "accuracy": 0.005,
+                                                         "contact": {"penalty": 1e9, "slip_velocity": 0.05, "friction_dynamic": 0.0}})
     return block.compare([CASE], block.ACCURACIES, tmp_path)

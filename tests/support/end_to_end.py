@@ -5,15 +5,16 @@ import subprocess
 import sys
 from pathlib import Path
 
-from ffimpact.freefem import freefem
 from ffimpact.input import parameters
 from ffimpact.output.evaluate import evaluate
+from tests.support.direct import start
 
 
 def direct(*flags: str) -> subprocess.CompletedProcess:
-    process = freefem.find().call("edp/program/disc-plane.edp", *flags, timeout=120)
+    process = start(*flags, cwd=parameters.ROOT)
+    out, error = process.communicate(timeout=120)
     evaluate(Path(flags[flags.index("-out") + 1]))
-    return process
+    return subprocess.CompletedProcess(process.args, process.returncode, out, error)
 
 
 # ---- failures of real runs, through the command line

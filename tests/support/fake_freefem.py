@@ -9,7 +9,6 @@ import json
 import math
 import os
 import shutil
-import subprocess
 import sys
 import time
 from pathlib import Path
@@ -89,13 +88,51 @@ def _write_vtu(path: Path, points, cells, displacement, stress) -> None:
         + "</PointData>\n</Piece></UnstructuredGrid></VTKFile>\n")
 
 
-def write_scene(folder: Path, values: dict[str, str]) -> None:
-    """Writes scene.toml as the scripts do, with the used value of every parameter. The snapshots
-    show half a disc."""
-    flags = [word for name, text in values.items() for word in (f"-{name}", text)]
-    answer = subprocess.run([REAL, "-nw", "-ne", "-v", "0", "edp/program/describe.edp", *flags], capture_output=True, text=True)
-    used = json.loads(answer.stdout)["used"] | {"symmetry": "half"}
-    (folder / "scene.toml").write_text('script = "disc-plane"\n' + "".join(f"{name} = {json.dumps(value)}\n" for name, value in used.items()))
+SCENE = """title = "A disc falls normally on a rigid plane"
+script = "bodies"
+dimension = "plane-strain"
+symmetry = "half"
+gravity = 0.0
+degree = 2
+integrator = "energy-momentum"
+accuracy = 0.005
+end_time = 0.0
+until = "impact"
+fields = 9
+
+[[body]]
+name = "disc"
+shape = "disc"
+radius = 0.05
+position = [0, 0.05]
+speed = 8
+direction = -90
+law = "svk"
+young = 7e6
+nu = 0.45
+density = 1722.0
+mesh_size = 0.016
+contact_mesh_size = 0.005
+
+[[obstacle]]
+name = "plane"
+kind = "plane"
+point = [0.0, 0.0]
+normal = [0.0, 1.0]
+
+[contact]
+penalty = 1e10
+friction_static = 0.0
+friction_dynamic = 0.0
+exponent = 1.0
+slip_velocity = 0.02
+regularization = "linear"
+"""
+
+
+def write_scene(folder: Path) -> None:
+    """Writes a scene.toml. The snapshots show half a disc."""
+    (folder / "scene.toml").write_text(SCENE)
 
 
 def summary(status: str = "ok", message: str = "") -> dict:
@@ -111,7 +148,7 @@ def summary(status: str = "ok", message: str = "") -> dict:
 
 def main(arguments: list[str]) -> int:
     mode = os.environ.get("FAKE", "ok")
-    if any("/describe" in word for word in arguments):
+    if any("/describe" in word or "/outline" in word for word in arguments):
         if mode == "noplugin":
             print("Load error: Element_QF")
             return 2
@@ -123,11 +160,11 @@ def main(arguments: list[str]) -> int:
         with open(count, "a") as file:
             print(os.getpid(), file=file)
     script = next(i for i, word in enumerate(arguments) if word.endswith(".edp"))
-    flags = [word for word in arguments[script + 1:] if not word.startswith("-D")]   # -D: the kernels
+    flags = [word for word in arguments[script + 1:] if not word.startswith("-D")]
     values = {name[1:]: text for name, text in zip(flags[::2], flags[1::2])}
     folder = Path(values.pop("out"))
     Path(values.pop("mesh")).read_text()
-    write_scene(folder, values)
+    write_scene(folder)
     for k in range(1, 4):
         print(f"progress {k / 4} t={k * 1e-3} steps={k * 50}", flush=True)
     if mode in ("slow", "brief"):
@@ -159,4 +196,4 @@ def main(arguments: list[str]) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(0 if "try.edp" in sys.argv else main(sys.argv[1:]))   # kernels.build() tries the plugin

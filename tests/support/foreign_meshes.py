@@ -7,20 +7,31 @@ from ffimpact import scene
 from ffimpact.mesh import gmsh_file, mesh
 from ffimpact.output import results
 from ffimpact.running import run
+from verification.measure import impact
 
 RADIUS, DENSITY = 0.05, 1722.0
 # ---- bodies
 
 # Element size of other shapes [m].
 SIZE = 0.008
-SETTINGS = {"law": "neohookean", "penalty": 1e9, "speed": 4, "fields": 0, "dt": 4e-5}
+SETTINGS = {"law": "neohookean", "penalty": 1e9, "fields": 0, "dt": 4e-5}
+NEAR = 1e-5  # height of the lowest vertex above the plane at the start [m]
+
+
+def falling(file: Path, low: float, height: float = 0.0, **values) -> dict:
+    """The tables of a body of this mesh file, whose lowest vertex is at y = `low` in the file, above the plane y = 0."""
+    spin = {"spin": values.pop("spin")} if "spin" in values else {}
+    tables = impact(file=file, speed=4, **SETTINGS | values)
+    tables["body"] = [tables["body"][0] | {"placement": "as-drawn", "position": [0.0, height + NEAR - low]} | spin]
+    return tables
 
 
 def go(out: Path, m: mesh.Mesh, **values) -> results.Record:
-    """A run of disc-normal with these values on this mesh. The mesh file is beside the result
+    """A run of a body of this mesh that falls on the plane. The mesh file is beside the result
     folder."""
     mesh.write(m, out.with_suffix(".msh"))
-    return run.run(scene.load("disc-normal"), SETTINGS | values, out, mesh_file=out.with_suffix(".msh"), estimate=False)
+    low = float(m.points[:, 1].min())
+    return run.run(scene.read(falling(out.with_suffix(".msh"), low, **values), out.parent, "mesh"), {}, out, estimate=False)
 
 
 def shaped(draw, size: float = SIZE) -> mesh.Mesh:

@@ -2,8 +2,18 @@
 
 import numpy as np
 
-SCENE = dict(script="disc-plane", law="svk", young=7e6, nu=0.45, density=1722, radius=0.05, speed=8, angle=90, spin=0, gravity=0, body_force_x=0,
-             body_force_y=0, friction_static=0, penalty=1e10, touched=(0.0, 3.93e-3))
+MATERIAL = dict(law="svk", young=7e6, nu=0.45, density=1722)
+
+
+def disc(**entries) -> dict:
+    """A scene as used: a disc that falls on the plane. Entries of the disc replace its own."""
+    body = MATERIAL | dict(name="disc", shape="disc", radius=0.05, position=[0.0, 0.05], speed=8, direction=-90) | entries
+    return dict(script="bodies", dimension="plane-strain", title="disc", gravity=0, body_force_x=0, body_force_y=0, touched=(0.0, 3.93e-3), body=[body],
+                obstacle=[dict(name="plane", kind="plane", point=[0.0, 0.0], normal=[0.0, 1.0])],
+                contact=dict(friction_static=0, penalty=1e10, exponent=1))
+
+
+SCENE = disc()
 
 
 def history(**columns) -> dict[str, np.ndarray]:
@@ -14,7 +24,7 @@ def history(**columns) -> dict[str, np.ndarray]:
     force = np.where(t < 4e-3, 1e4 * np.sin(np.pi * t / 4e-3), 0)
     return dict(t=t, dt=np.full_like(t, 5e-5), normal_force=force, friction_force=none, kinetic=400 - 100 * np.sin(np.pi * t / 5e-3), elastic=100 * np.sin(np.pi * t / 5e-3),
                 contact=none + 1e-3, friction_work=none, external_work=none, balance=none + 1e-9, vx=none, vy=np.linspace(-8, 8, 100), spin=none,
-                sliding_fraction=none + 1, reverse_fraction=none) | columns
+                sliding_fraction=none + 1) | columns
 
 
 def labels(axes) -> list[str]:

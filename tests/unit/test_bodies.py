@@ -16,6 +16,7 @@ from ffimpact.scene import load, read as read_scene
 from ffimpact.scenes import assembly
 from ffimpact.scenes.entries import set_entry
 from ffimpact.scenes.mirror import symmetric_along
+from ffimpact.scenes.sizes import Impact
 from tests.support.bodies import FLOOR, SCENE, SQUARE, changed, read, with_body
 
 
@@ -98,22 +99,18 @@ def test_mesh_files_that_cannot_be_used_are_named(tmp_path):
             read(with_body(shape="mesh", file=name), tmp_path)
 
 
-def test_open_values_follow_the_scripts_rule():
+def test_open_values_are_those_of_the_softest_body():
     """The automatic penalty is that of a disc with the material of the softest body and the
     smallest radius at the largest closing speed.
 
     `friction_dynamic` follows `friction_static`. Prescribed values do not change.
     """
-    requests = []
-
-    def rule(values):
-        requests.append(values)
-        return {"used": {"penalty": 123.0, "slip_velocity": 0.5, "mesh_size": 0.3, "contact_mesh_size": 0.2}, "touch_arc": 0.5}
     tables = changed(("body.1.young", 1e9), ("contact.friction_static", 0.4), ("body.2.position", [0, 0]))
-    values = assembly.assemble(read(tables), rule).values
-    assert (values["penalty"], values["slip_velocity"], values["friction_dynamic"]) == (123.0, 0.5, 0.4)
-    assert requests[0]["young"] == 7e6 and requests[0]["radius"] == pytest.approx(0.5, rel=1e-5) and requests[0]["speed"] == pytest.approx(10, rel=1e-4)
-    assert assembly.assemble(read(set_entry(tables, "contact.penalty", 5e8)), rule).values["penalty"] == 5e8
+    values = assembly.assemble(read(tables)).values
+    like = Impact(False, 0.5, 7e6, 0.45, 1722, 10, 0.005)
+    assert values["penalty"] == pytest.approx(like.penalty, rel=1e-4) and values["friction_dynamic"] == 0.4
+    assert values["slip_velocity"] == pytest.approx(like.slip_velocity, rel=1e-4)
+    assert assembly.assemble(read(set_entry(tables, "contact.penalty", 5e8))).values["penalty"] == 5e8
 
 
 def test_a_file_is_named_with_what_is_wrong_in_it(tmp_path):

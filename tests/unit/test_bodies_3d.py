@@ -9,7 +9,6 @@ import pytest
 from ffimpact.failure import BadInput
 from ffimpact.geometry import tumbling
 from ffimpact.mesh import mesh, solid_mesh, solids
-from ffimpact.scene import SCENES, read as read_scene
 from ffimpact.scenes import approach, mirror
 from tests.support.bodies_3d import BALL, BLOCK, FLOOR, read
 
@@ -136,7 +135,7 @@ BAD = [
     ({"turn": [0, 0, 1], "angle": 3}, {}, "body.1.angle: '3' stands beside turn"),
     ({"shape": "disc"}, {}, "body.1.shape: 'disc' is not known (accepted: ball|shell|box|cylinder|tube|mesh)"),
     ({"width": 3}, {}, "body.1.width: no such entry, set to '3'"),
-    ({"speed": 3}, {}, "body.1.speed: no such entry, set to '3'"),
+    ({"speed": 3}, {}, "body.1.velocity: '[0, -8, 0]' stands beside speed or direction"),
     ({"radius": 0.3}, {}, "body.1.position: 'ball' overlaps 'block' (body.2)"),
     ({}, {"symmetry": "third"}, "symmetry: 'third' is not known (accepted: auto|full|half|quarter)"),
     ({"velocity": [0, -8, 1]}, {"symmetry": "half"}, "symmetry: half, but 'ball' moves along z (accepted: auto|full)"),
@@ -152,9 +151,3 @@ def test_what_is_wrong_is_named(entries, top, words):
     with pytest.raises(BadInput) as caught:
         read(BALL | entries, BLOCK, **top)
     assert words in str(caught.value) and caught.value.code == 10 and "\n" not in str(caught.value)
-
-
-def test_symmetry_is_an_entry_of_three_dimensions():
-    """Tables of plane scenes do not have the entry symmetry."""
-    with pytest.raises(BadInput, match="^symmetry: no such entry, set to 'half'"):
-        read_scene({"symmetry": "half", "body": [{"shape": "disc", "radius": 1, "position": [0, 0]}]}, SCENES, "scene")

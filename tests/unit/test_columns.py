@@ -15,8 +15,8 @@ STORED = json.loads((Path(__file__).parents[1] / "support/recorded.json").read_t
 UNITS = {*("", "1", "s", "m", "m2", "m/s", "rad/s", "degrees", "kg/m", "byte"),
          *("N/m", "N s/m", "N m/m", "N m s/m", "J/m", "Pa")}
 # Conditions in the scripts of what some columns need.
-CONDITIONS = {"directed": "directed", "penaltyDamping > 0": "penalty_damped", "damped": "damped",
-              "projected": "projected", "solid": "solid", "spatial": "spatial"}
+CONDITIONS = {"penaltyDamping > 0": "penalty_damped", "damped": "damped",
+              "projected": "projected", "solid": "solid"}
 
 
 @pytest.mark.parametrize("file", FILES)
@@ -40,7 +40,7 @@ def test_a_scene_has_the_columns_that_its_run_has_recorded(stored):
     written = stored["summary.json"].split(",")
     assert used.columns == stored["history.csv"].split(",")
     assert [name for name in written if name in used.numbers] == used.numbers
-    others = {row.name for row in ENTRIES} | {"kernels"}   # runs of older versions have `kernels`
+    others = {row.name for row in ENTRIES} | {"kernels", "reverse_slip_time"}   # of older versions
     assert set(written) - set(used.numbers) <= others
 
 
@@ -65,9 +65,7 @@ def test_scripts_write_the_columns_of_the_table(table, kind, name):
     """columns.idp lists the names of the table in its order, under the same conditions."""
     text = (SCRIPTS / "columns.idp").read_text()
     listed = re.search(rf"macro {name}\(act\)(.*?)//\n", text, re.S)[1]
-    expected = [(row.name, row.needs) for row in FILES["history.csv"][table] if getattr(row, kind)]
-    if kind == "part" and name == "columnsOfBody":   # several bodies in space turn about any axis
-        expected = [(column, "spatial" if needs == "solid" else needs) for column, needs in expected]
+    expected = [(row.name, row.needs) for row in FILES["history.csv"][table] if getattr(row, kind) and row.needs != "directed"]
     assert names_of(listed, "act") == [row for row in expected if row[0] != "t"]
 
 

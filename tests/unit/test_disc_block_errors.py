@@ -35,7 +35,7 @@ def test_reference_has_smaller_elements_and_steps(monkeypatch, tmp_path):
     monkeypatch.setattr(study, "study", lambda points, *more: requests.extend(points) or simulated(points, *more))
     block.compare([CASE], block.ACCURACIES, tmp_path)
     fine = requests[-1]
-    assert (fine["contact_mesh_size"], fine["accuracy"]) == pytest.approx((0.02 / block.FINER, 0.005 / block.FINER**2))
+    assert (fine["body.1.contact_mesh_size"], fine["accuracy"]) == pytest.approx((0.02 / block.FINER, 0.005 / block.FINER**2))
     assert all(fine[name] == value for name, value in CASE.items())
 
 

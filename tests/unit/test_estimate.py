@@ -4,6 +4,7 @@ until the estimate is small enough."""
 import json
 import math
 import re
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -167,7 +168,7 @@ class Disc:
 
     def __init__(self, stage: Path, error: float, fails=(), code: int = 11, lost: float | None = None, **values):
         self.error, self.fails, self.code, self.lost, self.asked = error, fails, code, lost, []
-        self.values = parameters.defaults() | REQUESTS | {"accuracy": 0.01} | values
+        self.values = {**dict.fromkeys(START, 0.0), "accuracy": 0.01, "accuracy_of": "promised", **REQUESTS, **values}
         self.stage = stage
         self.solve(self.values, stage)
         (stage / "checkpoint.json").write_text("what the run was asked for")
@@ -185,7 +186,12 @@ class Disc:
         (folder / f"of {factor:.2f}").touch()
 
     def settle(self, own_mesh: bool = True) -> dict:
-        return estimate.settle(self.stage, self.values, own_mesh, self.solve, answers_of)
+        return estimate.settle(self.stage, self.values, own_mesh, self.solve, answers_of, partial(self.scaled, own_mesh))
+
+    def scaled(self, own_mesh: bool, used: dict, factor: float) -> dict:
+        """The entries of the disc with `factor` times its elements, unless they are of a file, and steps."""
+        sizes = {name: factor * used[name] for name in START if used[name] > 0 and (own_mesh or name == "dt")}
+        return self.values | sizes | {"accuracy": estimate.loosened(used["accuracy"], factor)} | estimate.output(factor)
 
     def factors(self) -> list[float]:
         """The sizes of the runs over START."""
@@ -289,20 +295,10 @@ def test_a_finer_run_that_fails_leaves_the_run(tmp_path):
     assert {path.name for path in tmp_path.iterdir()} == {"result.json", "of 0.71", "checkpoint.json"}
 
 
-def test_another_run_is_the_same_body_on_the_same_plane():
-    """Sizes and steps change, and the accuracy with their square. Contact parameters keep their
-    used values.
-
-    With a mesh file only the step changes. No element is larger than the radius.
-    """
-    values = parameters.defaults() | {"dt": 1e-5}
-    used = values | {"mesh_size": 0.04, "contact_mesh_size": 0.003, "penalty": 1e10, "slip_velocity": 0.1, "friction_dynamic": 0.3}
-    twice = estimate.other(values, used, 2.0)
-    assert twice == values | {"mesh_size": 0.05, "contact_mesh_size": 0.006, "dt": 2e-5, "accuracy": 4 * values["accuracy"], "penalty": 1e10,
-                              "slip_velocity": 0.1, "friction_dynamic": 0.3, "fields": 0}
-    assert estimate.other(values, used, 2.0, own_mesh=False) == twice | {"mesh_size": 0, "contact_mesh_size": 0}
-    assert estimate.other(values | {"dt": 0.0}, used | {"dt": 0.0}, 2.0)["dt"] == 0
-    assert estimate.other(values, used, 100.0)["accuracy"] == estimate.LARGEST
+def test_the_accuracy_goes_with_the_square_of_the_sizes():
+    """It stays below the largest one."""
+    assert estimate.loosened(0.01, 2.0) == 0.04 and estimate.loosened(0.01, 0.5) == 0.0025
+    assert estimate.loosened(0.01, 100.0) == estimate.LARGEST
 
 
 def test_the_same_steps_are_no_estimate(tmp_path):
@@ -311,7 +307,7 @@ def test_the_same_steps_are_no_estimate(tmp_path):
     disc = Disc(tmp_path, 0.03)
     def read(folder):
         return answers_of(folder)._replace(summary=answers_of(folder).summary | {"dofs": 260, "steps": 4})
-    summary = estimate.settle(tmp_path, disc.values, True, disc.solve, read)
+    summary = estimate.settle(tmp_path, disc.values, True, disc.solve, read, partial(disc.scaled, True))
     assert summary["estimated_error"] is None and "a coarser run has the same elements and steps" in summary["warnings"][0]
 
 

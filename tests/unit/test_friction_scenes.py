@@ -6,6 +6,7 @@ import pytest
 from ffimpact import scene
 from ffimpact.input import parameters
 from ffimpact.report import figures
+from ffimpact.report.impact import impact_of
 from ffimpact.scenes.scene import RUN
 
 
@@ -13,25 +14,23 @@ from ffimpact.scenes.scene import RUN
 def test_built_in_scenes_load(name):
     """Every built-in scene has a title, a script of its kind and every parameter."""
     loaded = scene.load(name)
-    names = parameters.names(loaded.script)
-    expected = set(RUN) & set(names) if loaded.bodies else names
-    assert loaded.title != name and set(loaded.values) == set(expected)
+    assert loaded.title != name and set(loaded.values) == set(RUN) & set(parameters.names(loaded.script))
 
 
 def test_scenes_of_the_paper():
     """Both oblique scenes are section 3.1: 12 m/s at 60 degrees, 0.7 static, 0.5 dynamic. Only the
     law and the mesh differ."""
-    stated = dict(speed=12, angle=60, friction_static=0.7, friction_dynamic=0.5, density=1722, young=7e6, radius=0.05)
-    converged, printed = scene.load("disc-oblique").values, scene.load("disc-oblique-svk").values
+    stated = dict(kind="disc", speed=12, angle=60, friction_static=0.7, friction_dynamic=0.5, density=1722, young=7e6, radius=0.05)
+    converged, printed = (impact_of(scene.load(name).content) for name in ("disc-oblique", "disc-oblique-svk"))
     assert stated.items() <= converged.items() and stated.items() <= printed.items()
-    assert {name for name in converged if converged[name] != printed[name]} == {
-        "law", "breakdown", "degree", "mesh_size", "contact_mesh_size", "accuracy"}
+    assert {name for name in {*converged, *printed} if converged.get(name) != printed.get(name)} == {
+        "title", "law", "breakdown", "degree", "mesh_size", "contact_mesh_size", "accuracy"}
 
 
 def test_rigid_rolling_is_the_closed_form():
     """A rigid disc slides with v0 - mu_d g t, gains rim speed twice as fast, and rolls with 2/3 v0
     from v0/(3 mu_d g) on."""
-    used = scene.load("disc-rolling").values
+    used = impact_of(scene.load("disc-rolling").content)
     v0, pull = used["speed"], used["friction_dynamic"] * used["gravity"]
     t = np.array([0.0, 0.5, 1.0, 2.0]) * v0 / (3 * pull)
     centre, rim = figures.rigid_rolling(t, used)

@@ -63,10 +63,13 @@ def test_no_statement_says_how_the_paper_ran_it():
 def test_the_block_is_the_papers_with_either_law():
     """Section 3.2: radius 0.5 m, 10 m x 2 m, 10 m/s vertically, E = 7 MPa, 1722 kg/m3, no friction,
     no gravity. Only the law differs."""
-    svk, other = (scene.load(name).values for name in paper_bodies.BLOCK.values())
-    assert {name for name in svk if svk[name] != other[name]} == {"law"} and (svk["law"], other["law"]) == ("svk", "neohookean")
-    assert [svk[name] for name in ("radius", "block_width", "block_height", "speed", "angle", "young", "density", "friction_static", "gravity")] == [
-        0.5, 10, 2, 10, 90, 7e6, 1722, 0, 0]
+    svk, other = (scene.load(name) for name in paper_bodies.BLOCK.values())
+    assert {name for name in svk.content if svk.content[name] != other.content[name]} == {"law", "title"}
+    assert [body.law for body in (*svk.bodies, *other.bodies)] == ["svk", "svk", "neohookean", "neohookean"]
+    (disc, block), values = svk.content["body"], svk.values
+    assert (disc["radius"], disc["speed"], disc["direction"], disc["position"]) == (0.5, 10, -90, [0, 0.5])
+    assert (block["width"], block["height"], block["position"]) == (10, 2, [0, -1]) and svk.bodies[0].young == 7e6 and svk.bodies[1].density == 1722
+    assert svk.contact["friction_static"] == 0 and values["gravity"] == 0
 
 
 def test_every_statement_of_the_paper_is_there():

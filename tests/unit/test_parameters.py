@@ -60,17 +60,17 @@ def test_scene_file(tmp_path):
     """A TOML file sets entries that differ from the defaults. Overriding does not change the
     original."""
     path = tmp_path / "fast.toml"
-    path.write_text('title = "fast"\nscript = "disc-plane"\nspeed = 11\n')
+    path.write_text((scene.SCENES / "disc-normal.toml").read_text().replace("speed = 8", "speed = 11").replace("A disc falls", "Fast"))
     loaded = scene.load(str(path))
-    assert (loaded.name, loaded.title, loaded.values["speed"], loaded.values["nu"]) == ("fast", "fast", 11.0, 0.45)
-    assert loaded.override({"speed": "2"}).values["speed"] == 2.0 and loaded.values["speed"] == 11.0
+    assert (loaded.name, loaded.title[:4], loaded.values["degree"]) == ("fast", "Fast", 2) and loaded.bodies[0].velocity[1] == -11
+    assert loaded.override({"speed": "2"}).bodies[0].velocity[1] == -2 and loaded.bodies[0].velocity[1] == -11
 
 
 @pytest.mark.parametrize("text, words", [
     ("speed = = 3", "bad.toml: cannot be read"),
-    ("[speed]\nvalue = 3", "bad.toml: speed: .* is not a number"),
-    ("script = 'nothing'", "bad.toml: script: 'nothing' is not known"),
-    ("script = ['nothing']", "bad.toml: script: .* is not known"),
+    ("[accuracy]\nvalue = 3", "bad.toml: accuracy: .* is not a number"),
+    ("script = 'disc-plane'\nspeed = 4", r"bad.toml: script: 'disc-plane' is no kind of scene any more .accepted: tables"),
+    ("script = ['nothing']", "bad.toml: script: "),
 ])
 def test_bad_scene_files_are_named(tmp_path, text, words):
     """A broken scene file raises BadInput with the file and the key."""

@@ -14,10 +14,10 @@ from ffimpact.running import forecast
 def told_of(name: str, monkeypatch, seen: list[tuple[float, freefem.At]]) -> list[str]:
     """The sentences about a run with these reports (seconds since its start, state)."""
     sentences = []
-    monkeypatch.setattr(forecast, "cure", lambda scene, foreign, seconds, estimate: f"cure of {seconds:.0f} s")
+    monkeypatch.setattr(forecast, "cure", lambda scene, seconds, estimate: f"cure of {seconds:.0f} s")
     line = progress.Line(name, {"main run": 1.0}, watched=False)
     line.quiet, line.say = False, sentences.append
-    run = forecast.Display(line, scene.load(name), None, "main run", 1)
+    run = forecast.Display(line, scene.load(name), "main run", 1)
     for seconds, at in seen:
         run.show(at._replace(wall=seconds))
     return sentences
@@ -52,7 +52,7 @@ def test_reports_of_the_time_of_the_search_are_out_of_date(monkeypatch):
     line, shown = progress.Line("run", {"main run": 1.0}, watched=False), []
     line.quiet, line.say = False, lambda sentence: None
     line.at = lambda part, share, words, cost: shown.append(words)
-    run = forecast.Display(line, scene.load("disc-normal"), None, "main run", 1)
+    run = forecast.Display(line, scene.load("disc-normal"), "main run", 1)
     for wall in (0, 5, 6, 19, 21):
         run.show(freefem.At(0.001 * (wall + 1), 1e-3 * wall, wall, 400, wall=float(wall)))
     assert [int(words.split()[-2]) for words in shown] == [0, 5, 21]
@@ -78,21 +78,21 @@ MODEL = {
 def test_the_entry_that_makes_a_run_short(monkeypatch, values, words):
     """What a scene sets becomes automatic; otherwise a larger accuracy is proposed; otherwise an earlier
     end_time. The time is that of the plan of the changed scene."""
-    def measure(changed, foreign, estimate):
-        return planned(4.0 * float(np.prod([part(changed.values) for part in MODEL.values()])))
+    def measure(changed, estimate):
+        return planned(4.0 * float(np.prod([part(changed.values | changed.sizes) for part in MODEL.values()])))
 
     monkeypatch.setattr(forecast, "measure", measure)
     asked = scene.load("disc-oblique").override(values)
-    seconds = measure(asked, None, True).total_seconds
-    assert re.match(words, forecast.cure(asked, None, seconds, True)), (seconds, forecast.cure(asked, None, seconds, True))
+    seconds = measure(asked, True).total_seconds
+    assert re.match(words, forecast.cure(asked, seconds, True)), (seconds, forecast.cure(asked, seconds, True))
 
 
 def test_no_entry_makes_it_short(monkeypatch):
     """If no entry halves the time, the line says so. Without estimates of the errors it takes two thirds."""
     monkeypatch.setattr(forecast, "measure", lambda *_: planned(600.0))
     coarse = scene.load("disc-oblique")
-    assert forecast.cure(coarse, None, 600.0, False) == "no entry makes it short"
-    assert forecast.cure(coarse, None, 600.0, True) == "no entry makes it short: --no-estimate takes about 6.8 min, without error estimates"
+    assert forecast.cure(coarse, 600.0, False) == "no entry makes it short"
+    assert forecast.cure(coarse, 600.0, True) == "no entry makes it short: --no-estimate takes about 6.8 min, without error estimates"
 
 
 def reports(shares: list[float], steps: list[int]) -> list[tuple[float, freefem.At]]:

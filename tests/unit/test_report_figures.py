@@ -11,7 +11,8 @@ import pytest
 from ffimpact.output import results, vtu
 from ffimpact.report import bodies, figures, impacts
 from ffimpact.report.figures import plt
-from tests.support.report_figures import SCENE, history, labels
+from ffimpact.report.impact import impact_of
+from tests.support.report_figures import SCENE, disc, history, labels
 from tests.support.triangles import areas
 
 
@@ -38,7 +39,7 @@ def test_a_body_that_goes_on_bouncing_has_no_last_touch():
     axis.
     """
     h = history(normal_force=np.where(np.arange(100) % 20 < 10, 1e3, 0.0))
-    assert bodies.forces(h, SCENE | {"speed": 3, "touched": (0.0, 4.5e-3)}).axes[0].get_legend() is None
+    assert bodies.forces(h, disc(speed=3) | {"touched": (0.0, 4.5e-3)}).axes[0].get_legend() is None
     figure = bodies.forces(history(t=np.linspace(2e-3, 7e-3, 100)), SCENE)
     assert figure.axes[0].get_xlim()[0] == pytest.approx(2 - 0.02 * 5)
 
@@ -48,11 +49,11 @@ def test_the_papers_contact_time_is_drawn_beside_ours():
     paper's law; another speed has no number."""
     axes = bodies.forces(history(), SCENE).axes[0]
     assert "paper, section 3.3: 4.8 ms" in labels(axes)
-    other = bodies.forces(history(), SCENE | {"law": "neohookean"}).axes[0]
+    other = bodies.forces(history(), disc(law="neohookean")).axes[0]
     assert "paper, section 3.3, St. Venant–Kirchhoff: 4.8 ms" in labels(other)
-    assert figures.numbers_of_the_paper(SCENE | {"speed": 7}, "contact_time") == []
-    assert figures.numbers_of_the_paper(SCENE | {"mesh": "mine.msh"}, "contact_time") == []
-    assert figures.numbers_of_the_paper(SCENE | {"speed": 7}, "contact_time", over="speed") == [(8, 0.0048, "paper, section 3.3")]
+    assert figures.numbers_of_the_paper(disc(speed=7), "contact_time") == []
+    assert figures.numbers_of_the_paper(disc(shape="mesh", file="mine.msh"), "contact_time") == []
+    assert figures.numbers_of_the_paper(disc(speed=7), "contact_time", over="speed") == [(8, 0.0048, "paper, section 3.3")]
     late = bodies.forces(history(t=np.linspace(5e-5, 4.1e-3, 100)), SCENE).axes[0]
     assert late.get_xlim()[1] > 4.8
 
@@ -68,14 +69,14 @@ def test_no_curve_hides_another():
 
 def test_no_contact_is_in_the_legend_of_rolling():
     h = history(friction_force=np.full(100, -1.0))
-    assert "no contact" in labels(figures.rolling(h, SCENE).axes[1])
+    assert "no contact" in labels(figures.rolling(h, impact_of(SCENE)).axes[1])
 
 
 def test_a_normal_impact_has_no_flight():
     """The path of a body that neither moves along the plane nor rotates is a vertical line and is
     not drawn."""
-    assert not figures.goes_along(history(), SCENE)
-    assert figures.goes_along(history(spin=np.full(100, 5.0)), SCENE) and figures.goes_along(history(vx=np.full(100, 1.0)), SCENE)
+    assert not figures.goes_along(history(), impact_of(SCENE))
+    assert figures.goes_along(history(spin=np.full(100, 5.0)), impact_of(SCENE)) and figures.goes_along(history(vx=np.full(100, 1.0)), impact_of(SCENE))
 
 
 @pytest.mark.parametrize("width, words", [(0.12, "20 mm"), (11.0, "2 m"), (4e-4, "100 μm"), (0.4, "100 mm")])

@@ -60,7 +60,7 @@ def test_pairs_are_held_against_closest_points_of_the_same_penalty(monkeypatch, 
         return pd.DataFrame([{"exit": 0, "message": "", "warnings": "", "rebound_vy_1": 5 + (point["pairing"] == "pairwise") * 0.05, "energy_drift": 1e-12,
                               "rebound_vy_2": -0.5, "impulse_y_1": 2e4, "thresholded_contact_time": 0.05} | point for point in points])
     monkeypatch.setattr(study, "study", runs)
-    monkeypatch.setattr(pairing_comparison, "read_scene", lambda folder: {"pairing_range": 0.1, "penalty": 1e9, "contact_mesh_size": 0.1})
+    monkeypatch.setattr(pairing_comparison, "read_scene", lambda folder: {"contact": {"pairing_range": 0.1, "penalty": 1e9}, "body": [{"contact_mesh_size": 0.1}]})
     monkeypatch.setattr(pairing_comparison, "read_history", lambda folder: {"momentum_y": pd.Series([-1.0, -1.0])})
     monkeypatch.setattr(study, "place", lambda *_: tmp_path)
     for name in ("scene.toml", "history.csv"):

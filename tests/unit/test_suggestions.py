@@ -18,17 +18,17 @@ MESSAGES = [
     (("sweep", "calibrat"), "calibrat", "no such sweep", "did you mean calibrate?"),
     (("movie", "disc-normal", "--format", "gfi"), "--format", "'gfi'", "did you mean gif?"),
     (("run", "disc-normal", "--set", "law=neo-hookean"), "law", "'neo-hookean'", "did you mean neohookean?"),
-    (("run", "disc-normal", "--set", "penalty=auot"), "penalty", "'auot'", "did you mean auto?"),
-    (("run", "disc-normal", "--set", "spede=8"), "spede", "no such parameter", "did you mean speed?"),
+    (("run", "disc-normal", "--set", "penalty=auot"), "contact.penalty", "'auot'", "did you mean auto?"),
+    (("run", "disc-normal", "--set", "spede=8"), "spede", "no such entry", "did you mean body.1.speed?"),
     (("run", "two-discs", "--set", "body.1.shape=dics"), "body.1.shape", "'dics'", "did you mean disc?"),
     (("run", "disc-bowl", "--set", "obstacle.1.kind=bowel"), "obstacle.1.kind", "'bowel'", "did you mean bowl?"),
     (("run", "two-discs", "--set", "body.1.shap=disc"), "body.1.shap", "'disc'", "did you mean shape?"),
     (("run", "two-discs", "--set", "contact.self_contact=true"), "contact.self_contact", "'true'", "did you mean on?"),
-    (("run", "disc-normal", "--set", "speed=4m/s"), "speed", "'4m/s'", "in m/s: 4 (accepted: 0 to "),
+    (("run", "disc-normal", "--set", "speed=4m/s"), "body.1.speed", "'4m/s'", "in m/s: 4 (accepted: 0 to "),
     (("run", "disc-normal", "--set", "young=7MPa"), "young", "'7MPa'", "in Pa: 7000000 (accepted: "),
     (("run", "disc-normal", "--set", "young=7 GPa"), "young", "'7 GPa'", "in Pa: 7000000000 (accepted: "),
     (("run", "disc-normal", "--set", "density=1.7g/cm^3"), "density", "'1.7g/cm^3'", "in kg/m3: 1700 (accepted: "),
-    (("run", "disc-normal", "--set", "penalty=1e10N/m"), "penalty", "'1e10N/m'", "in Pa/m^m (accepted: auto, "),
+    (("run", "disc-normal", "--set", "penalty=1e10N/m"), "contact.penalty", "'1e10N/m'", "in Pa/m^m (accepted: auto, "),
     (("run", "disc-normal", "--set", "accuracy=1%"), "accuracy", "'1%'", "alone: 0.01 (accepted: "),
     (("run", "two-discs", "--set", "body.2.radius=50mm"), "body.2.radius", "'50mm'", "in m: 0.05 (accepted: "),
 ]
@@ -67,7 +67,7 @@ def test_other_text_has_no_unit(text):
 def test_a_unit_in_a_scene_file_is_named(tmp_path, line, message):
     """TOML does not accept such a line. The message mentions the unit if it is the reason."""
     path = tmp_path / "own.toml"
-    path.write_text(f'script = "disc-plane"\n{line}\n')
+    path.write_text(f'[[body]]\nshape = "disc"\n{line}\n')
     with pytest.raises(BadInput, match=re.escape(f"{path}: {message}")) as error:
         scene.load(path)
     assert error.value.code == 10

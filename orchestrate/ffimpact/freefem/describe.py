@@ -1,37 +1,29 @@
-"""Queries the FreeFEM script edp/program/describe.edp, which describes the scripts and a scene. The
-source of the scripts is never parsed.
+"""Queries the FreeFEM script edp/program/outline.edp, which checks mesh files and finds their
+circles.
 """
 
-import copy
 import json
 import subprocess
-from functools import cache
+from pathlib import Path
 
 from ..failure import BadInput, NotInstalled
 from . import freefem
 
-__all__ = ["describe"]
+__all__ = ["outline_of"]
 
 LIMIT = 60  # time limit of a query [s]
 
 
-def describe(values: dict | None = None, script: str = "disc-plane") -> dict:
-    """Returns the answer of edp/program/describe.edp for a scene of edp/program/<script>.edp with the parameters
-    `values`: scripts, parameters (rows of the table), bodies (number of bodies), `used` (every
-    parameter with the value that is used, SI units), half (whether half the body is sufficient),
-    touch_arc [rad] and accuracy_made.
+def outline_of(mesh: Path) -> dict:
+    """Returns the circles of a mesh file (x, y, radius) [m] and the number of the circle of each of
+    its boundary edges, -1 for a straight one: circles, circle_of.
 
-    Raises BadInput if the script refuses the values, and NotInstalled without FreeFem++.
+    Raises BadInput if edp/program/outline.edp refuses the mesh, and NotInstalled without FreeFem++.
     """
-    if not values and script == "disc-plane":
-        return copy.deepcopy(freefem.find().description)
-    return json.loads(
-        _ask(freefem.DESCRIBE, *freefem.words_of({"script": script} | (values or {})))
-    )
+    return json.loads(_answer("edp/program/outline.edp", "-mesh", str(mesh)))
 
 
-@cache
-def _ask(script: str, *flags: str) -> str:
+def _answer(script: str, *flags: str) -> str:
     program = freefem.find()
     try:
         answer = program.call(script, *flags, timeout=LIMIT)

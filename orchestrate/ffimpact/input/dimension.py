@@ -24,22 +24,17 @@ class Dimension:
     """A dimension and its FreeFEM scripts.
 
     `script` is the file edp/program/<script>.edp for scenes of bodies. `axes` is the number of components
-    of a point. `like` is the script whose element sizes, step and penalty apply to contact pairs:
-    that of a disc or of a ball that hits a plane. `cases` are the scripts of the paper's cases.
+    of a point.
     """
 
     name: str
     script: str
     axes: int
-    like: str
-    cases: tuple[str, ...]
 
 
-PLANE_STRAIN = Dimension("plane-strain", "bodies", 2, "disc-plane", ("disc-plane", "disc-block"))
-AXISYMMETRIC = Dimension(
-    "axisymmetric", "bodies-axisymmetric", 2, "ball-plane", ("ball-axisymmetric",)
-)
-SOLID = Dimension("3d", "bodies-3d", 3, "ball-plane", ("ball-plane",))
+PLANE_STRAIN = Dimension("plane-strain", "bodies", 2)
+AXISYMMETRIC = Dimension("axisymmetric", "bodies-axisymmetric", 2)
+SOLID = Dimension("3d", "bodies-3d", 3)
 DIMENSIONS = {dimension.name: dimension for dimension in (PLANE_STRAIN, AXISYMMETRIC, SOLID)}
 SCRIPTS = tuple(dimension.script for dimension in DIMENSIONS.values())
 
@@ -55,10 +50,4 @@ def per_metre(script: str) -> str:
 
     In plane strain they are per metre of thickness ("/m"); in other dimensions the suffix is empty.
     """
-    return (
-        ""
-        if any(
-            script in (dimension.script, *dimension.cases) for dimension in (AXISYMMETRIC, SOLID)
-        )
-        else "/m"
-    )
+    return "" if script in (AXISYMMETRIC.script, SOLID.script) else "/m"

@@ -22,9 +22,13 @@ TYPES = {"real": "real", "int": "int", "word": "string", "numbers": "string"}
 
 
 def flags() -> str:
-    """The FreeFEM lines that read the flags; each script reads the flags that it takes."""
+    """The FreeFEM lines that read the flags; each script reads the flags that it takes. Entries of
+    bodies are no flags.
+    """
     text = f"{BEGIN}, written by python -m ffimpact.input.flags from orchestrate/ffimpact/input/table.py\n"
     for scripts, rows in groupby(PARAMETERS.values(), lambda parameter: parameter.scripts):
+        if not scripts:
+            continue
         text += f'takers = "{"|".join(scripts)}";\n'
         text += "".join(
             f"{TYPES[parameter.kind]} {variable(parameter.name)} = {_call(parameter)};\n"

@@ -7,6 +7,7 @@ The program chooses an entry that is None. Units are SI.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import partial
 from inspect import Parameter as Keyword, Signature
 from typing import Annotated, Any, ClassVar, Self
@@ -56,6 +57,7 @@ __all__ = [
     "Ellipse",
     "Ellipsoid",
     "Entries",
+    "FORMER",
     "Gas",
     "Implicit",
     "Incompressible",
@@ -87,6 +89,7 @@ __all__ = [
     "Top",
     "Torus",
     "Tube",
+    "full_name",
     "listed",
     "of_table",
     "read",
@@ -485,8 +488,7 @@ class Body(Entries):
     nested = {"support": Support, "load": Load}
     only = {
         "mesh_stretch": (PLANE_STRAIN, AXISYMMETRIC),
-        "angle": (PLANE_STRAIN, SOLID), "turn": (SOLID,), "spin": (PLANE_STRAIN, SOLID), "speed": (PLANE_STRAIN,),
-        "direction": (PLANE_STRAIN,),
+        "angle": (PLANE_STRAIN, SOLID), "turn": (SOLID,), "spin": (PLANE_STRAIN, SOLID),
     }  # fmt: skip
 
     name: Annotated[str | None, Name("of its own")] = None
@@ -535,11 +537,12 @@ class Body(Entries):
         list[float] | None,
         Vector("turned about a vector of this length [degrees]", -MOST_TURN, MOST_TURN, 3),
     ] = None
-    speed: Annotated[
-        float | None, number(0.0, LONGEST, "m/s", "in place of velocity, with direction")
-    ] = None
+    speed: Annotated[float | None, shared("speed")] = None
     direction: Annotated[
-        float | None, number(-MOST_TURN, MOST_TURN, "deg", "of the speed, from the x axis")
+        float | None,
+        number(
+            -MOST_TURN, MOST_TURN, "deg", "of the speed, in the plane of x and y, from the x axis"
+        ),
     ] = None
     spin: Annotated[Any, InSpace(shared("spin"), "angular velocity [rad/s]; in space a vector")] = (
         None
@@ -924,6 +927,14 @@ def _of_all(name: str, value: Any) -> str:
 
 # ---- the top of a scene
 
+# Former entries and what has taken their place.
+FORMER = {
+    "angle": "body.1.direction, the angle from the x axis: -60 for an impact at 60 degrees",
+    "height": "body.1.position, that of the centre of mass",
+    "block_width": "body.2.width",
+    "block_height": "body.2.height",
+}
+
 
 class Top(Entries):
     """The entries at the top of a scene.
@@ -944,11 +955,12 @@ class Top(Entries):
             "word",
             None,
             "-",
-            "in space: the part that is computed",
+            "the part that is computed: in the plane the half x >= 0, in space the half z >= 0, or of "
+            "that the half x >= 0; auto = the least that represents the scene",
             words=("auto", "full", "half", "quarter"),
         ),
     ] = None
-    only = {"symmetry": (SOLID,)}
+    only = {"symmetry": (PLANE_STRAIN, SOLID)}
     law: Annotated[str | None, shared("law")] = None
     young: Annotated[float | None, shared("young")] = None
     nu: Annotated[float | None, shared("nu")] = None
@@ -964,6 +976,7 @@ class Top(Entries):
     gravity: Annotated[float | None, shared("gravity")] = None
     body_force_x: Annotated[float | None, shared("body_force_x")] = None
     body_force_y: Annotated[float | None, shared("body_force_y")] = None
+    volume: Annotated[str | None, shared("volume")] = None
     degree: Annotated[int | None, shared("degree")] = None
     integrator: Annotated[str | None, shared("integrator")] = None
     dt: Annotated[float | None, shared("dt")] = None
@@ -983,11 +996,24 @@ class Top(Entries):
     @classmethod
     def refused(cls, name: str, value: Any, dimension: Dimension | None) -> str:
         """The message about an unknown entry, with the table that has this entry, if any."""
+        if name in FORMER:
+            return f": '{brief(value)}' is no entry any more (accepted: {FORMER[name]})"
         of_bodies = {entry for model in BODIES.values() for entry in model.names(dimension)}
         meant = (
             f"body.1.{name}" if name in of_bodies else f"contact.{name}" if name in CONTACT else ""
         )
-        return _no_such(name, value, [*cls.names(dimension), "body", "obstacle", "contact"], meant)
+        accepted = [*cls.names(dimension), "body", "obstacle", "contact"]
+        if not meant and not suggestion(name, accepted):
+            meant = _nearest(name, of_bodies, CONTACT)
+        return _no_such(name, value, accepted, meant)
+
+
+def _nearest(name: str, of_bodies: Iterable[str], of_contact: Iterable[str]) -> str:
+    """The dotted name of the entry of a body or of the contact that a misspelt name may mean."""
+    places = {f"body.1.{entry}": entry for entry in sorted(of_bodies)}
+    places |= {f"contact.{entry}": entry for entry in of_contact}
+    near = suggestion(name, list(dict.fromkeys(places.values())))
+    return next((place for place, entry in places.items() if f" {entry}?" in near), "")
 
 
 # ---- whole scenes
@@ -1045,6 +1071,24 @@ def of_table(
         raise BadInput(f"{entry}.{word}: {unknown(name, accepted)}")
     own = {key: value for key, value in table.items() if key != word}
     return models[name].read(entry, own, dimension)
+
+
+def full_name(content: dict[str, Any], name: str, dimension: Dimension) -> str:
+    """The dotted name of an entry. A name without a table is that of the top of the scene, of
+    [contact], or of the only body: penalty is contact.penalty, speed is body.1.speed.
+
+    Raises BadInput for a former entry.
+    """
+    if name in FORMER:
+        raise BadInput(f"{name}: is no entry any more (accepted: {FORMER[name]})")
+    if "." in name or name in (*Top.names(dimension), *KINDS, "contact"):
+        return name
+    if name in Contact.names(dimension):
+        return f"contact.{name}"
+    bodies = listed(content, "body")
+    shape = BODIES.get(bodies[0].get("shape", "")) if len(bodies) == 1 else None
+    own = (*shape.heading, *shape.names(dimension)) if shape else ()
+    return f"body.1.{name}" if name in own else name
 
 
 def listed(content: dict[str, Any], key: str) -> list[dict[str, Any]]:

@@ -18,7 +18,6 @@ __all__ = [
     "Value",
     "add_set",
     "check",
-    "defaults",
     "names",
     "overrides",
     "taken",
@@ -38,7 +37,7 @@ FOLLOWS = {
     "law_parameters": ("law",),
     "penalty": ("young", "density", "radius", "exponent"),
     "dt": ("young", "density", "radius"),
-    **dict.fromkeys(("mesh_size", "contact_mesh_size", "block_width", "block_height"), ("radius",)),
+    **dict.fromkeys(("mesh_size", "contact_mesh_size"), ("radius",)),
 }
 
 NOT_DECISIVE = ("checkpoint_every",)  # parameters that do not change the results
@@ -76,11 +75,6 @@ def check(values: dict[str, Value], script: str = "") -> dict[str, Value]:
                 f"{brief(name)}: no such parameter{suggestion(name, names())} (accepted: {', '.join(names(script))})"
             )
     return {name: PARAMETERS[name].check(value) for name, value in values.items()}
-
-
-def defaults(script: str = "disc-plane") -> dict[str, Value]:
-    """The default values of all parameters of a script."""
-    return {name: PARAMETERS[name].default for name in names(script)}
 
 
 def whole(text: str) -> int:

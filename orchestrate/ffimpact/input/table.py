@@ -10,27 +10,10 @@ from dataclasses import replace
 
 from .parameter import Parameter, integer, numbers, real, word
 
-__all__ = ["FALLING", "LAWS", "MESHED", "PARAMETERS", "SCRIPTS", "SIDEWAYS"]
+__all__ = ["LAWS", "PARAMETERS", "SCRIPTS"]
 
-SIDEWAYS = ("disc-plane", "disc-block", "ball-plane")  # scripts with oblique impact
-FALLING = (*SIDEWAYS, "ball-axisymmetric")  # the paper's cases; the flags set their only material
-SCRIPTS = (
-    "disc-plane",
-    "disc-block",
-    "ball-axisymmetric",
-    "ball-plane",
-    "bodies",
-    "bodies-axisymmetric",
-    "bodies-3d",
-)
-# Scripts that read a mesh.
-MESHED = (
-    "disc-plane",
-    "ball-axisymmetric",
-    "bodies",
-    "bodies-axisymmetric",
-    "bodies-3d",
-)
+SCRIPTS = ("bodies", "bodies-axisymmetric", "bodies-3d")
+OF_BODIES = ("",)  # of no script: entries of bodies, which scripts read from scene.dat
 LAWS = ("svk", "neohookean", "mooney-rivlin", "ogden", "incompressible")  # edp/program/law/laws.idp
 
 # A row without scripts behind the meaning is a parameter of all scripts.
@@ -41,9 +24,9 @@ ROWS = (
         LAWS,
         "constitutive law: St. Venant-Kirchhoff (5), compressible neo-Hookean (6), or another of "
         "program/law/laws.idp",
-        FALLING,
+        OF_BODIES,
     ),
-    real("young", 7e6, 1e-6, 1e18, "Pa", "Young's modulus E", FALLING),
+    real("young", 7e6, 1e-6, 1e18, "Pa", "Young's modulus E", OF_BODIES),
     real(
         "nu",
         0.45,
@@ -51,13 +34,13 @@ ROWS = (
         0.5,
         "-",
         "Poisson's ratio; the paper says only nu -> 0.5; 0.5: J = 1, of all laws but svk",
-        FALLING,
+        OF_BODIES,
     ),
-    real("density", 1722, 1e-15, 1e12, "kg/m3", "reference density", FALLING),
+    real("density", 1722, 1e-15, 1e12, "kg/m3", "reference density", OF_BODIES),
     numbers(
         "law_parameters",
         "what the law takes beyond young and nu, separated by commas: program/law/laws.idp",
-        FALLING,
+        OF_BODIES,
     ),
     real(
         "viscosity",
@@ -66,7 +49,7 @@ ROWS = (
         1e18,
         "Pa s",
         "viscosity eta of the material: beside the law's stress 2 eta D, D the rate of deformation",
-        FALLING,
+        OF_BODIES,
     ),
     real(
         "bulk_viscosity",
@@ -75,7 +58,7 @@ ROWS = (
         1e18,
         "Pa s",
         "viscosity zeta of volume: beside it zeta tr(D) I",
-        FALLING,
+        OF_BODIES,
     ),
     real(
         "relaxation_modulus",
@@ -85,7 +68,7 @@ ROWS = (
         "Pa",
         "shear modulus G of a Maxwell branch beside the law, which relaxes in relaxation_time; 0 "
         "= none",
-        FALLING,
+        OF_BODIES,
     ),
     real(
         "relaxation_time",
@@ -94,7 +77,7 @@ ROWS = (
         1e9,
         "s",
         "its time tau: G exp(-t/tau) is left of G after t",
-        FALLING,
+        OF_BODIES,
     ),
     real(
         "loss",
@@ -104,39 +87,10 @@ ROWS = (
         "-",
         "loss factor tan delta of shear at the first mode of the disc or ball: sets viscosity; 0 "
         "= by viscosity",
-        FALLING,
+        OF_BODIES,
     ),
-    real("radius", 0.05, 1e-9, 1e9, "m", "radius of the disc or ball", FALLING),
-    real(
-        "block_width",
-        "auto",
-        1e-9,
-        1e9,
-        "m",
-        "width of the block; auto: 20 radius, as in the paper",
-        ("disc-block",),
-    ),
-    real(
-        "block_height",
-        "auto",
-        1e-9,
-        1e9,
-        "m",
-        "height of the block; auto: 4 radius, as in the paper",
-        ("disc-block",),
-    ),
-    real("speed", 8, 0, 1e9, "m/s", "speed of the centre of mass at the start", FALLING),
-    real(
-        "angle",
-        90,
-        0,
-        90,
-        "deg",
-        "direction of the speed, measured from the plane; 90 = normal",
-        SIDEWAYS,
-    ),
-    real("spin", 0, -1e12, 1e12, "rad/s", "spin at the start, counter-clockwise", SIDEWAYS),
-    real("height", 0, 0, 1e9, "m", "gap between the body and the plane at the start", FALLING),
+    real("speed", 0, 0, 1e9, "m/s", "in place of velocity, with direction", OF_BODIES),
+    real("spin", 0, -1e12, 1e12, "rad/s", "spin at the start, counter-clockwise", OF_BODIES),
     real(
         "gravity",
         0,
@@ -152,7 +106,7 @@ ROWS = (
         1e12,
         "m/s2",
         "constant body force b of (1), along the plane",
-        (*SIDEWAYS, "bodies", "bodies-3d"),
+        ("bodies", "bodies-3d"),
     ),
     real(
         "body_force_y",
@@ -187,7 +141,7 @@ ROWS = (
         ("closest-point", "pairwise", "pairwise-printed"),
         "what two bodies see of each other: the closest point (9), or all points nearer than "
         "pairing_range, (14) and (15): with a repulsion that vanishes there, or as printed",
-        ("disc-block", "bodies"),
+        ("bodies",),
     ),
     real(
         "pairing_range",
@@ -197,7 +151,7 @@ ROWS = (
         "m",
         "epsilon of (14), the range of the repulsion between pairs of points; auto = an element at "
         "the contact, or four times the penetration that the penalty allows",
-        ("disc-block", "bodies"),
+        ("bodies",),
     ),
     real(
         "friction_static",
@@ -245,22 +199,14 @@ ROWS = (
         " what is beyond that of nu = 0.45 in the mean of each element; auto = projected, where "
         "degree=1 plain",
     ),
-    word(
-        "symmetry",
-        "auto",
-        ("auto", "full", "half", "quarter"),
-        "part of the body that is computed; auto = half where nothing breaks the symmetry",
-        SIDEWAYS,
-    ),
     real(
         "mesh_size",
         0,
         0,
         1e9,
         "m",
-        "element size in the bulk (of a block higher than the disc times half its height over the"
-        " radius, at most 2); 0 = from accuracy",
-        FALLING,
+        "element size in the bulk; 0 = from accuracy",
+        OF_BODIES,
     ),
     real(
         "contact_mesh_size",
@@ -269,7 +215,7 @@ ROWS = (
         1e9,
         "m",
         "element size at the contact boundary; 0 = from accuracy",
-        FALLING,
+        OF_BODIES,
     ),
     integer("degree", 2, 1, 2, "-", "polynomial degree of the displacement"),
     word(
@@ -343,7 +289,6 @@ ROWS = (
         ("given", "equilibrium"),
         "the bodies at t = 0: as given, or at rest in equilibrium under body force, loads, gas and "
         "contact, reached from the given shape and place by slow loading",
-        ("bodies", "bodies-axisymmetric", "bodies-3d"),
     ),
     word(
         "until",
@@ -386,5 +331,5 @@ ROWS = (
     ),
 )
 PARAMETERS: dict[str, Parameter] = {
-    row.name: replace(row, scripts=row.scripts or SCRIPTS) for row in ROWS
+    row.name: replace(row, scripts=tuple(filter(None, row.scripts or SCRIPTS))) for row in ROWS
 }

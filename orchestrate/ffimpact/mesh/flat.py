@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ..failure import BadInput, brief
-from ..freefem.describe import describe
+from ..freefem.describe import outline_of
 from ..geometry.outlines import (
     Loop,
     Outline,
@@ -21,10 +21,9 @@ from ..geometry.outlines import (
     self_crossing,
 )
 from ..input.models import Body, Mesh, Polygon, Ring
-from ..input.rules import LONGEST, SHORTEST
 from . import gmsh_file, mesh
 
-__all__ = ["check_simple", "mesh_file", "mesh_outline", "motion", "shape"]
+__all__ = ["check_simple", "mesh_file", "mesh_outline", "motion", "shape", "velocity"]
 
 LOOPS = {
     "disc": lambda radius: (circle_loop(radius),),
@@ -39,7 +38,7 @@ def shape(body: Body, folder: Path) -> tuple[Outline, mesh.Mesh | None, np.ndarr
 
     Outline and mesh are about the centroid, which is in the coordinates of the drawing.
     """
-    body_mesh = mesh_file(body, folder, "disc-plane") if isinstance(body, Mesh) else None
+    body_mesh = mesh_file(body, folder) if isinstance(body, Mesh) else None
     outline = mesh_outline(body_mesh) if body_mesh else _outline(body)
     centre = outline.area_centre
     return outline.placed(-centre, 0.0), body_mesh and body_mesh.moved(-centre), centre
@@ -53,12 +52,16 @@ def motion(body: Body) -> dict:
     return {
         "position": np.array(body.position or [0.0, 0.0]),
         "angle": math.radians(body.angle or 0.0),
-        "velocity": _velocity(body),
+        "velocity": velocity(body, 2),
         "spin": body.spin or 0.0,
     }
 
 
-def _velocity(body: Body) -> np.ndarray:
+def velocity(body: Body, axes: int) -> np.ndarray:
+    """The initial velocity (axes,) [m/s] of a body, by velocity or by speed and direction.
+
+    Raises BadInput if it is over- or underdetermined.
+    """
     speed, degrees = body.speed, body.direction
     if body.velocity is not None and (speed is not None or degrees is not None):
         raise BadInput(
@@ -71,8 +74,8 @@ def _velocity(body: Body) -> np.ndarray:
             f"{body.at(missing)}: is missing (accepted: speed [m/s] with direction [deg], counter-clockwise from x)"
         )
     if speed is None or degrees is None:
-        return np.array(body.velocity or [0.0, 0.0])
-    return speed * np.array([_sin(degrees + 90), _sin(degrees)])
+        return np.array(body.velocity or [0.0] * axes)
+    return speed * np.array([_sin(degrees + 90), _sin(degrees), 0.0][:axes])
 
 
 def _sin(degrees: float) -> float:
@@ -146,12 +149,12 @@ def check_simple(path: str, corners: np.ndarray) -> None:
 # ---- mesh files
 
 
-def mesh_file(body: Mesh, folder: Path, script: str) -> mesh.Mesh:
+def mesh_file(body: Mesh, folder: Path, of_revolution: bool = False) -> mesh.Mesh:
     """The mesh of a body's file in m, with the centres of the circles on which its edges lie.
 
-    FreeFEM checks the mesh as edp/program/<script>.edp checks each mesh file, and finds the circles. The
-    mesh is a whole body in the plane, half a meridian section with edges on the axis, or a section
-    to the right of an axis that it does not reach. Raises BadInput if the mesh is not accepted.
+    FreeFEM checks the mesh and finds the circles. The mesh is a whole body in the plane, half a
+    meridian section with edges on the axis, or a section to the right of an axis that it does not
+    reach. Raises BadInput if the mesh is not accepted.
     """
     name, file = body.file or "", None
     if "\0" in name or not _may_be_read(folder / name):
@@ -164,33 +167,17 @@ def mesh_file(body: Mesh, folder: Path, script: str) -> mesh.Mesh:
             file.write(text)
             file.flush()
             body_mesh = mesh.read(Path(file.name))
-            if script == "ball-axisymmetric" and not (body_mesh.labels == mesh.AXIS).any():
-                script = "disc-plane"  # the section of a tube is a closed outline
-            elif script == "disc-plane" and (body_mesh.labels == mesh.AXIS).any():
+            if not of_revolution and (body_mesh.labels == mesh.AXIS).any():
                 raise BadInput(
                     f"mesh: '{brief(name)}' has edges with the label {mesh.AXIS} of a symmetry axis (accepted: whole bodies, "
                     f"labels {mesh.FREE}: contact boundary, 3 and more: free boundary without contact)"
                 )
-            size = float(np.ptp(body_mesh.points, axis=0).max()) if len(body_mesh.points) else 0.0
-            if size and not (body_mesh.labels == mesh.FREE).any():
-                raise BadInput(
-                    f"mesh: {file.name}: no boundary edge has the label {mesh.FREE} of the "
-                    f"contact boundary, but labels from {body_mesh.labels.min()} to "
-                    f"{body_mesh.labels.max()}"
-                )
-            # For the check the whole boundary may come into contact: the script has a plane below
-            # the body, which this scene need not have.
-            labels = np.where(body_mesh.labels > mesh.AXIS, mesh.FREE, body_mesh.labels)
-            mesh.write(replace(body_mesh, labels=labels), Path(file.name))
-            description = describe(
-                {"mesh": file.name, "radius": size / 2 if SHORTEST < size < LONGEST else 1.0},
-                script,
-            )
+            outline = outline_of(Path(file.name))
     except BadInput as error:
         raise BadInput(
             f"{body.at('file')}: {str(error).removeprefix('mesh: ').replace(file.name if file else name, name)}"
         ) from None
-    arc_centres = np.array([*description["circles"], [math.nan] * 3])[description["circle_of"], :2]
+    arc_centres = np.array([*outline["circles"], [math.nan] * 3])[outline["circle_of"], :2]
     return replace(body_mesh, arc_centres=arc_centres).scaled(body.scale or 1.0)
 
 

@@ -21,12 +21,11 @@ OTHER = mesh.Mesh.NEVER  # label of edges that are neither contact boundary nor 
 LABELS = {"contact": mesh.FREE, "symmetry": mesh.AXIS}
 
 
-def load(path: Path, alone: bool = False) -> bytes:
+def load(path: Path) -> bytes:
     """Returns the mesh of a file as the bytes of a FreeFEM .msh file.
 
     A gmsh file is converted. A FreeFEM file is returned unchanged; edp/program/input/mesh-file.idp
-    checks its content. If the body is `alone` on a plane, the outlines of its holes never come into
-    contact. Raises BadInput if the file cannot be read or a gmsh mesh is not accepted.
+    checks its content. Raises BadInput if the file cannot be read or a gmsh mesh is not accepted.
     """
     try:
         text = path.read_bytes()
@@ -40,7 +39,7 @@ def load(path: Path, alone: bool = False) -> bytes:
         copy.write_bytes(text)
         try:
             converted = mesh.in_own_process(read, copy)
-            mesh.write(mesh.without_inner(converted) if alone else converted, made)
+            mesh.write(converted, made)
         except BadInput as error:
             raise BadInput(f"mesh: {path}: {str(error).replace(copy.name, path.name)}") from None
         return made.read_bytes()

@@ -28,6 +28,7 @@ __all__ = [
     "boundary",
     "check_radii",
     "closed_over_axis",
+    "crossing_axis",
     "image",
     "mirrored",
     "motion",
@@ -52,7 +53,7 @@ def shape(body: Body, folder: Path) -> tuple[Outline, mesh.Mesh | None, np.ndarr
     Raises BadInput if the body is not accepted.
     """
     if isinstance(body, Mesh):
-        half = flat.mesh_file(body, folder, "ball-axisymmetric")
+        half = flat.mesh_file(body, folder, of_revolution=True)
         centre = np.array([0.0, _centre_of_volume(half.points[half.triangles])])
         if not (half.labels == mesh.AXIS).any():
             return *_tube_mesh(body, half.moved(-centre)), centre
@@ -73,11 +74,19 @@ def shape(body: Body, folder: Path) -> tuple[Outline, mesh.Mesh | None, np.ndarr
 
 
 def motion(body: Body) -> dict:
-    """The initial position (2,) [m] and velocity (2,) [m/s] of a body; angle and spin are 0."""
+    """The initial position (2,) [m] and velocity (2,) [m/s] of a body; angle and spin are 0.
+
+    Raises BadInput if the velocity is not along the axis.
+    """
+    velocity = flat.velocity(body, 2)
+    if velocity[0]:
+        raise BadInput(
+            f"{body.at('direction')}: {body.direction:g} leads off the axis of revolution (accepted: 90 or -90)"
+        )
     return {
         "position": np.array(body.position or [0.0, 0.0]),
         "angle": 0.0,
-        "velocity": np.array(body.velocity or [0.0, 0.0]),
+        "velocity": velocity,
         "spin": 0.0,
     }
 
@@ -168,6 +177,37 @@ def closed_over_axis(path: str, right: np.ndarray) -> np.ndarray:
     corners = np.vstack([right, right[-2:0:-1] * [-1, 1]])
     flat.check_simple(path, corners)
     return corners if right[-1, 1] > right[0, 1] else np.roll(corners[::-1], 1, axis=0)
+
+
+def crossing_axis(outline: Outline) -> Outline | None:
+    """The outline of a body in the plane that is its own mirror image in x = 0, with corners where
+    its loops cross this axis, from top to bottom. None if a loop does not cross the axis twice.
+    """
+    near, loops = 1e-9 * outline.reach, []
+    for loop in outline.loops:
+        if loop.semi_axes is None:
+            if loop.arc_centres is not None:
+                return None
+            loop = Loop(_with_crossings(loop.corners, near))
+        if (loop.corners[:, 0] == 0).sum() != 2:
+            return None
+        loops.append(loop)
+    outer, *holes = loops
+    return Outline((outer, *sorted(holes, key=lambda hole: -hole.corners[:, 1].max())))
+
+
+def _with_crossings(corners: np.ndarray, near: float) -> np.ndarray:
+    """The corners (n, 2) of a polygon with those where its sides cross x = 0. Corners within `near`
+    [m] of this axis move onto it.
+    """
+    corners, listed = corners.copy(), []
+    corners[abs(corners[:, 0]) <= near, 0] = 0.0
+    for first, second in zip(corners, np.roll(corners, -1, axis=0)):
+        listed.append(first)
+        if first[0] * second[0] < 0:
+            share = first[0] / (first[0] - second[0])
+            listed.append(np.array([0.0, first[1] + share * (second[1] - first[1])]))
+    return np.array(listed)
 
 
 def right_half(loop: Loop) -> list[int]:

@@ -17,7 +17,7 @@ from scipy.spatial import cKDTree
 from ..failure import BadInput
 from ..geometry import outlines, tumbling
 from ..input.models import Body, Mesh, Shell, Tube
-from . import curved, solid_file
+from . import curved, flat, solid_file
 from .revolution import check_radii
 from .solid_mesh import MOST_CELLS, Sizes, SolidMesh, expected_cells, mesh_shape
 
@@ -529,7 +529,7 @@ def _of_file(body: Mesh, folder: Path) -> tuple[Solid, SolidMesh | None, np.ndar
 def motion(body: Body) -> dict:
     """The initial position [m], rotation vector [rad], velocity [m/s] and spin [rad/s], each (3,).
 
-    Raises BadInput if the table contains both `angle` and `turn`.
+    Raises BadInput if the table contains both `angle` and `turn`, or a velocity twice.
     """
     if body.angle is not None and body.turn is not None:
         raise BadInput(
@@ -541,6 +541,6 @@ def motion(body: Body) -> dict:
     return {
         "position": np.array(body.position or none),
         "angle": np.radians(turn),
-        "velocity": np.array(body.velocity or none),
+        "velocity": flat.velocity(body, 3),
         "spin": np.array(body.spin or none),
     }

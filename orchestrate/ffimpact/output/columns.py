@@ -56,12 +56,11 @@ def _both(name: str, unit: str = "", meaning: str = "", needs: str = "") -> Colu
 
 # Words for what some columns need, and in which scenes it is.
 NEEDS = {
-    "directed": "in the paper's cases, where the first slip has one direction",
+    "directed": "in runs of the paper's scripts",
     "penalty_damped": "with penalty_damping",
     "damped": "with damped bodies",
     "projected": "with projected volume",
     "solid": "in three dimensions",
-    "spatial": "in three dimensions, not of ball-plane",
 }
 
 
@@ -137,10 +136,10 @@ HISTORY = (
     _both("momentum_z", "N s/m", "along z", needs="solid"),
     _both("z", "m", "centre of mass", needs="solid"),
     _both("vz", "m/s", "its velocity", needs="solid"),
-    _both("angular_momentum_x", "N m s/m", "about x", needs="spatial"),
-    _both("angular_momentum_y", "N m s/m", "about y", needs="spatial"),
-    _both("spin_x", "rad/s", "about x", needs="spatial"),
-    _both("spin_y", "rad/s", "about y", needs="spatial"),
+    _both("angular_momentum_x", "N m s/m", "about x", needs="solid"),
+    _both("angular_momentum_y", "N m s/m", "about y", needs="solid"),
+    _both("spin_x", "rad/s", "about x", needs="solid"),
+    _both("spin_y", "rad/s", "about y", needs="solid"),
 )
 
 HISTORY_OF_SUPPORTS = (
@@ -273,8 +272,6 @@ SUMMARY = (
         "answers converge more slowly"),
     _whole("sliding_time", "s", "sliding_fraction integrated over the contact"),
     _whole("sticking_time", "s", "the rest of it"),
-    _whole("reverse_slip_time", "s", "reverse_fraction integrated; null where the first slip has "
-        "no one direction"),
     _whole("unsolved_jumps", "", "points and steps that sit in a jump of the friction law"),
     _whole("resumed_at", "s", "where a killed run went on, null if it was not"),
     _whole("steps", "", "accepted steps"),
@@ -304,16 +301,16 @@ SUMMARY = (
     _both("viscous_work", needs="damped"),
     _whole("ellipticity_lost_z", "m", "where", needs="solid"),
     _whole("breakdown_z", "m", "where", needs="solid"),
-    _part("impulse_z", "N s/m", "as impulse_x, along z", needs="spatial"),
-    _both("rebound_vz", "m/s", "as rebound_vx, along z", needs="spatial"),
+    _part("impulse_z", "N s/m", "as impulse_x, along z", needs="solid"),
+    _both("rebound_vz", "m/s", "as rebound_vx, along z", needs="solid"),
     _both("final_vz", "m/s", "as rebound_vz, at end_time; null unless the run goes on after the "
-        "contact", needs="spatial"),
-    _both("rebound_spin_x", "rad/s", "as rebound_spin, about x", needs="spatial"),
+        "contact", needs="solid"),
+    _both("rebound_spin_x", "rad/s", "as rebound_spin, about x", needs="solid"),
     _both("final_spin_x", "rad/s", "as rebound_spin_x, at end_time; null unless the run goes on "
-        "after the contact", needs="spatial"),
-    _both("rebound_spin_y", "rad/s", "as rebound_spin, about y", needs="spatial"),
+        "after the contact", needs="solid"),
+    _both("rebound_spin_y", "rad/s", "as rebound_spin, about y", needs="solid"),
     _both("final_spin_y", "rad/s", "as rebound_spin_y, at end_time; null unless the run goes on "
-        "after the contact", needs="spatial"),
+        "after the contact", needs="solid"),
 )
 
 SUMMARY_OF_SUPPORTS = (

@@ -60,7 +60,6 @@ __all__ = [
     "history_differences",
     "largest",
     "loosened",
-    "other",
     "output",
     "settle",
     "touches",
@@ -110,7 +109,7 @@ HIGH = 0.75  # share of a largest value above which histories are compared
 # Shares of the impulse at which times are compared. They are dense at the end of contact.
 SHARES = 1 - np.geomspace(1 - EARLY, 1e-4, 16)
 
-Scaled = Callable[[Mapping, Mapping, float, bool], dict[str, Value]]
+Scaled = Callable[[Mapping, float], dict[str, Value]]
 # Runs the scene with these values in a folder, and raises Failure if the run fails.
 Solve = Callable[[dict[str, Value], Path], None]
 # Runs the scene with a factor on elements and steps in a folder; returns the failure or None.
@@ -123,14 +122,14 @@ def settle(
     own_mesh: bool,
     solve: Solve,
     read: Callable[[Path], Answers],
-    scaled: Scaled | None = None,
+    scaled: Scaled,
 ) -> dict:
     """Estimates the error of the run in `stage`, made from the scene `values`, and computes finer
     runs.
 
     If sizes and steps follow from the accuracy and the estimate is above it, finer runs replace the
-    run in `stage`. `read` returns the Answers of a folder, `scaled` the entries of the scene with
-    larger or smaller elements and steps (default: other()).
+    run in `stage`. `read` returns the Answers of a folder, `scaled` the entries of the scene with a
+    factor on elements and steps.
 
     Returns entries of the summary: estimated_error (by result, see differences(); None if it could
     not be estimated), estimated_error_excludes (what all runs have in common),
@@ -146,7 +145,7 @@ def settle(
 
     def failed(factor: float, where: Path) -> Failure | None:
         """Runs the scene with `factor` times the sizes of the finest run."""
-        entries = (scaled or other)(values, runs[0].used, factor, own_mesh)
+        entries = scaled(runs[0].used, factor)
         return _ended(solve, entries | chosen, where)
 
     sentences = _add_levels(runs, stage, failed, read)
@@ -278,30 +277,6 @@ def _swap(stage: Path) -> None:
         for entry in [entry for entry in source.iterdir() if entry.name not in kept]:
             os.rename(entry, target / entry.name)
     shutil.rmtree(finer)
-
-
-def other(
-    values: Mapping[str, Value], used: Mapping[str, Value], factor: float, own_mesh: bool = True
-) -> dict[str, Value]:
-    """Returns the scene `values` with `factor` times the elements and steps of `used`; on a mesh
-    file with other steps only.
-
-    The accuracy then sets the adaptive step alone, because the sizes are given. The contact
-    parameters keep their values.
-    """
-    sizes = {
-        name: factor * used[name] for name in SIZES if used[name] > 0 and (own_mesh or name == "dt")
-    }
-    if own_mesh:
-        sizes["mesh_size"] = min(sizes["mesh_size"], used["radius"])
-    kept = {name: used[name] for name in ("penalty", "slip_velocity", "friction_dynamic")}
-    return (
-        dict(values)
-        | kept
-        | sizes
-        | {"accuracy": loosened(used["accuracy"], factor)}
-        | output(factor)
-    )
 
 
 def output(factor: float) -> dict[str, Value]:

@@ -176,9 +176,8 @@ def _points_under_load(surface: Arrays, state: Arrays, along: "_Along") -> Array
 class _Along:
     """The distance of every contact point from the first contact.
 
-    In the plane it is measured along the outline, with the body to the left. For a ball above the
-    plane y = 0 it is measured along its sphere from its lowest point, negative where X is negative.
-    Otherwise it is the straight distance in the reference configuration.
+    In the plane it is measured along the outline, with the body to the left. In space it is the
+    straight distance in the reference configuration.
     """
 
     def __init__(self, surface: Arrays):
@@ -186,23 +185,14 @@ class _Along:
         self.positions = _columns(surface["points"], len(surface["pointBody"]))
         self.piece = surface["pointBody"].astype(int)
         self.along: np.ndarray | None = None
-        if "sphere" in surface:
-            radius, height = surface["sphere"]
-            x, y, z = self.positions.T
-            self.fixed = np.where(x < 0, -radius, radius) * np.arctan2(np.hypot(x, z), height - y)
-        elif "along" in surface:
-            self.fixed = None
+        if "along" in surface:
             self.along, self.piece, self.length, self.closed = _chains(surface)
-        else:
-            self.fixed = None
         self.first = np.full(self.piece.max() + 1, -1)
 
     def distances(self, pressure: np.ndarray) -> np.ndarray:
         """Returns the distances (np,) [m]. A body or chain of edges that comes under load for the
         first time is measured from its most loaded point.
         """
-        if self.fixed is not None:
-            return self.fixed
         for piece in np.unique(self.piece[pressure > 0]):
             if self.first[piece] < 0:
                 self.first[piece] = np.where(self.piece == piece, pressure, 0.0).argmax()

@@ -20,6 +20,7 @@ import numpy as np
 
 from ..failure import Unreadable, brief, unknown
 from ..input.parameters import Value
+from . import former
 
 if TYPE_CHECKING:
     from pandas import DataFrame  # slow to load, so it is imported only where a table is needed
@@ -237,11 +238,11 @@ def columns_of(text: str) -> dict[str, np.ndarray]:
 
 
 def read_scene(folder: Path) -> dict[str, Value]:
-    """Returns scene.toml: every parameter as used."""
+    """Returns scene.toml: every parameter as used, as tables."""
     path = folder / "scene.toml"
     text = content(path)
     with reading(path):
-        return Contents(tomllib.loads(text), path)
+        return Contents(former.tables(tomllib.loads(text)), path)
 
 
 class Answers(NamedTuple):
@@ -358,7 +359,15 @@ def read_summary(folder: Path) -> dict:
                 raise ValueError(f"{name} is no {kind}")
         if summary.get("provenance", {}).get("summary", digest(summary)) != digest(summary):
             raise ValueError("it is not as the run has written it")
+        _renew_script(summary.get("provenance", {}))
         return Contents(summary, path)
+
+
+def _renew_script(provenance: dict) -> None:
+    """Replaces a script of former versions by the one that has taken its place."""
+    script = provenance.get("script")
+    if script in former.SCRIPTS:
+        provenance["script"] = former.SCRIPTS[script][0]
 
 
 def digest(summary: Mapping) -> str:

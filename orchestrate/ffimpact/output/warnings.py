@@ -183,8 +183,6 @@ class Evidence:
         """What the bodies come into contact with."""
         if len(self.bodies) > 1:
             return "the others"
-        if not self.facts["named"]:
-            return "the plane"
         return self.obstacle(0) if len(self.facts["obstacles"]) == 1 else "the obstacles"
 
     def near(self, extreme: Sequence[float]) -> str:
@@ -194,25 +192,19 @@ class Evidence:
 
     def obstacle(self, number: int) -> str:
         """The name of an obstacle."""
-        return (
-            self.facts["obstacles"][number]["name"]
-            if self.facts["named"]
-            else f"obstacle {number + 1}"
-        )
+        return str(self.facts["obstacles"][number]["name"])
 
     def hit_obstacle(self, fact: str) -> str:
         """The obstacle with the number in this fact, as a message names it."""
-        return self.obstacle(self.facts[fact]) if self.facts["named"] else "the plane"
+        return self.obstacle(self.facts[fact])
 
     def pair(self, pair: Mapping[str, Any]) -> str:
         """The names of a contact pair."""
         body, other = pair["body"], pair["counter_body"]
         if other == body:
             return f"{self.bodies[body]['name']} and itself"
-        if self.facts["named"]:
-            second = self.bodies[other]["name"] if other >= 0 else self.obstacle(-1 - other)
-            return f"{self.bodies[body]['name']} and {second}"
-        return "the bodies" if len(self.bodies) > 1 else "the body and the plane"
+        second = self.bodies[other]["name"] if other >= 0 else self.obstacle(-1 - other)
+        return f"{self.bodies[body]['name']} and {second}"
 
     def radius(self, pair: Mapping[str, Any]) -> float:
         """Half the smaller thickness of a pair, or the radius of the obstacle if it is smaller
@@ -351,7 +343,7 @@ def _overlap(e: Evidence) -> Iterator[Sentence]:
     if first[1] < 0:
         return
     another = other >= 0 and other != body
-    instead = "set self_contact of the body, " if other == body and e.facts["named"] else ""
+    instead = "set self_contact of the body, " if other == body else ""
     if another or (other >= 0 and e.bodies[body]["self_contact"]):
         instead = "take a file in which this part is contact boundary, "
     who = (

@@ -13,7 +13,7 @@ from ..input.parameters import Value
 from ..output import vtu
 from ..output.results import Contents, body_names, mechanical_energy, suffixes
 from ..scenes import obstacles
-from ..scenes.obstacles import Obstacle, Plane
+from ..scenes.obstacles import Obstacle
 from .figures import (
     BAND,
     BLACK,
@@ -46,9 +46,9 @@ from .figures import (
     rolling,
     side_by_side,
 )
+from .impact import impact_of
 
 __all__ = [
-    "are_several",
     "columns_of",
     "down_the_slope",
     "draw",
@@ -65,14 +65,10 @@ __all__ = [
     "width",
 ]
 
-# Scripts of a single body on the plane y = 0.
-ALONE = ("disc-plane", "ball-axisymmetric", "ball-plane")
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, "#56b4e9", "#e69f00")  # of the bodies
 ACROSS = 3  # largest number of panels side by side
 # Of many bodies, titles and legends list this number of the first and of the last ones.
 NAMED = 6
-# The plane y = 0 of a scene with a single body.
-PLANE = Plane("plane", (0.0, 0.0, 0.0, 0.0, 1.0, 0.0), np.zeros(3))
 GRID = 200  # grid points along each side of a picture, at which the gap to obstacles is computed
 DOTS = (0, (1, 1.5))
 ABOVE = {
@@ -83,17 +79,8 @@ ABOVE = {
 }
 
 
-def are_several(scene: dict[str, Value]) -> bool:
-    """Returns whether a scene, as used, defines its own bodies and obstacles. Otherwise it has a
-    single body on the plane y = 0.
-    """
-    return "script" in scene and scene["script"] not in ALONE
-
-
 def title(scene: dict[str, Value]) -> str:
-    """Returns the material of each body. For a disc on a block it adds the speed."""
-    if "body" not in scene:
-        return f"disc on block: {material(scene)}, {scene['speed']:g} m/s"
+    """Returns the title of the scene and the material of each body."""
     materials = {}
     for body in scene["body"]:
         materials.setdefault(material(body), []).append(body["name"])
@@ -124,10 +111,11 @@ def draw(
     """Draws the figures of a run and returns them by name. `contact` is the part of the history
     from the onset of contact on.
     """
-    rubs = not are_several(scene) and history["friction_force"].any()
+    impact = impact_of(scene)
+    rubs = impact and history["friction_force"].any()
     drawn = {"energies": energies(contact, scene), "velocity": velocities(contact, scene)}
     drawn |= (
-        {"force": friction_force(contact, scene), "rolling": rolling(contact, scene)}
+        {"force": friction_force(contact, impact), "rolling": rolling(contact, impact)}
         if rubs
         else {"force": forces(contact, scene)}
     )
@@ -138,13 +126,8 @@ def draw(
             for name, field in COLOURED.items()
             if name == "shapes" or "hydrostatic_pressure" in history
         }
-    if (
-        len(snapshots) > 2
-        and not are_several(scene)
-        and not is_half(scene)
-        and goes_along(history, scene)
-    ):
-        drawn |= {"flight": flight(history, scene, snapshots)}
+    if len(snapshots) > 2 and impact and not is_half(scene) and goes_along(history, impact):
+        drawn |= {"flight": flight(history, impact, snapshots)}
     return drawn
 
 
@@ -349,11 +332,7 @@ def shapes(
     x_min, x_max, y_min, y_max = view = down_the_slope(limits(bodies), rigid)
     columns = 3 if x_max - x_min < 3 * (y_max - y_min) else 2
     moves = any(obstacle.moves for obstacle in rigid)
-    label += (
-        " in the plane z = 0"
-        if scene["script"] in (dimension.SOLID.script, *dimension.SOLID.cases)
-        else ""
-    )
+    label += " in the plane z = 0" if scene["script"] == dimension.SOLID.script else ""
 
     def behind(axes: plt.Axes, times: list[float], places: list[np.ndarray]) -> None:
         for t, at in zip(times, [[shift] for shift in places]) if moves else [(0.0, places)]:
@@ -366,8 +345,6 @@ def shapes(
 
 def obstacles_of(scene: dict[str, Value]) -> list[Obstacle]:
     """Returns the rigid obstacles of a scene as used. Their files are sought beside its scene.toml."""
-    if not are_several(scene):
-        return [PLANE]
     scene_dimension = dimension.of_scene(scene)
     return obstacles.read(
         models.tables(scene, "obstacle", scene_dimension),

@@ -218,12 +218,12 @@ def mass_of(result: Record) -> float:
 
 
 def _material(used: dict) -> str:
-    """Returns law, nu and penalty if the scene has a single law, else an empty text."""
-    return (
-        f"{LAWS.get(used['law'], used['law'])}, ν = {used['nu']:g}, k = {report.stiffness(used)}, "
-        if "law" in used
-        else ""
-    )
+    """Returns law, nu and penalty if all bodies have the same, else an empty text."""
+    materials = {(body.get("law"), body.get("nu")) for body in used["body"]}
+    law, nu = materials.pop()
+    if materials or not law:
+        return ""
+    return f"{LAWS.get(law, law)}, ν = {nu:g}, k = {report.stiffness(used['contact'])}, "
 
 
 def _key(axes: plt.Axes, lines: dict[str, str]) -> None:

@@ -7,13 +7,13 @@ from textwrap import wrap
 import numpy as np
 
 from ..failure import Unreadable
-from ..input import dimension
 from ..input.parameters import Value
 from ..output import vtu
 from ..output.folder import FIGURES
 from ..output.results import Contents, body_names, check_files, read_history, read_json, read_scene
 from . import bodies, contact as contacts, impacts, solid
 from .figures import BODY, as_written, is_half, material, per_metre, save, styled, touched
+from .impact import impact_of
 
 __all__ = ["LETTERS", "MOST_LINES", "draw", "title", "wrapped"]
 
@@ -27,21 +27,20 @@ def draw(folder: Path) -> list[Path]:
     check_files(folder)
     history, scene = impacts.with_flights(read_history(folder)), read_scene(folder)
     scene["touched"] = touched(read_json(folder / "summary.json"))
-    if scene["script"] in dimension.SCRIPTS and "body" not in scene:
+    if "body" not in scene:
         raise Unreadable(f"{folder}: of a run without Python, which keeps neither names of bodies nor obstacles (accepted: a folder of "
                          "ffimpact run)")
     snapshots = vtu.series(folder / "fields.pvd")
     target = folder / "figures"
     target.mkdir(exist_ok=True)
-    touches, several = history["normal_force"] > 0, bodies.are_several(scene)
-    names = body_names(scene) if several else ["body"]
+    touches, names, impact = history["normal_force"] > 0, body_names(scene), impact_of(scene)
     # without free flight
     contact = Contents({name: column[max(0, int(np.argmax(touches)) - 1):] for name, column in history.items()}, history.path)
     with styled():
         drawn = bodies.draw(history, contact, scene, snapshots)
         if (folder / "fields/contact.csv").exists():
             table = contacts.read(folder)
-            ball, free = scene if scene.get("script") in BODY and is_half(scene) else None, history["t"][~touches]
+            ball, free = impact if impact and impact["kind"] in BODY and is_half(scene) else None, history["t"][~touches]
             drawn["contact"] = contacts.draw(table, names, is_half(scene), free, ball, scene.get("symmetry", "full"), history)
             if snapshots and "Z" in table.dtype.names:
                 drawn["solid"] = solid.draw(snapshots, table, scene)
@@ -62,20 +61,21 @@ def draw(folder: Path) -> list[Path]:
 
 
 def title(scene: dict[str, Value]) -> str:
-    """Returns the title of a run: body, law, nu and speed, the angle of an oblique impact, linear
-    elements, and the friction law if there is friction; with several bodies those of each.
+    """Returns the title of a run: that of its scene, and the material of each body; of the impact of
+    a disc or ball its speed and angle, linear elements, and the friction law if there is friction.
     """
-    if bodies.are_several(scene):
+    impact = impact_of(scene)
+    if not impact:
         return bodies.title(scene)
-    angle = "" if scene.get("angle", 90) == 90 else f" at {scene['angle']:g}°"
-    body = BODY.get(scene.get("script"), "")
-    above = f" from a height of {scene['height']:g} m" if scene.get("height", 0) > 0 else ""
-    text = f"{body}{material(scene)}, {scene['speed']:g} m/s{angle}{above}"
+    angle = "" if impact["angle"] == 90 else f" at {impact['angle']:g}°"
+    body = BODY.get(impact["kind"], "")
+    above = f" from a height of {impact['height']:g} m" if impact["height"] > 0 else ""
+    text = f"{body}{material(impact)}, {impact['speed']:g} m/s{angle}{above}"
     if scene.get("degree") == 1:
         text += ", linear elements"
-    if scene.get("friction_static", 0) > 0:
-        text += (f"\nfriction {scene['friction_static']:g} static, {scene['friction_dynamic']:g} dynamic, "
-                 f"{scene['regularization']}, ε = {scene['slip_velocity']:g} m/s")
+    if impact.get("friction_static", 0) > 0:
+        text += (f"\nfriction {impact['friction_static']:g} static, {impact['friction_dynamic']:g} dynamic, "
+                 f"{impact['regularization']}, ε = {impact['slip_velocity']:g} m/s")
     return text
 
 

@@ -22,6 +22,7 @@ from ..input.parameters import Value
 from ..mesh import mesh
 from ..output import vtu
 from . import literature
+from .impact import impact_of
 
 __all__ = [
     "ABOVE",
@@ -116,7 +117,7 @@ STYLE = {
     "axes.titley": 1.0,
 }
 NUMBERS = 6  # largest number of intervals between the ticks of an axis
-BODY = {"ball-plane": "ball: ", "ball-axisymmetric": "ball as a body of revolution: "}
+BODY = {"ball": "ball: ", "ball-axisymmetric": "ball as a body of revolution: "}
 STRESS = "von Mises stress [MPa]"
 # For each picture of deformed shapes: the field that colours the shapes, and its label.
 COLOURED = {"shapes": ("von_mises", STRESS), "pressure": ("pressure", "pressure −tr(σ)/3 [MPa]")}
@@ -263,19 +264,16 @@ def numbers_of_the_paper(
     """Returns all numbers `key` (as in summary.json, SI) that the paper prints for this scene, or
     for this scene with another value of the parameter `over`: (value of `over`, number, words).
 
-    With `any_law` it includes numbers for other laws, which are then part of the words. Returns
-    nothing for a mesh of the user.
+    With `any_law` it includes numbers for other laws, which are then part of the words.
     """
     numbers = []
     free = ("law", over) if any_law else (over,)
-    for run in (
-        literature.published(scene.get("script"), scene, free) if not scene.get("mesh") else []
-    ):
+    law_of_scene = (impact_of(scene) or {}).get("law")
+    for run in literature.published(scene, free):
         when = run["when"]
         if run["source"].startswith("paper") and key in run["numbers"]:
-            law = (
-                "" if over == "law" or when["law"] == scene.get("law") else f", {LAWS[when['law']]}"
-            )
+            same = over == "law" or when["law"] == law_of_scene
+            law = "" if same else f", {LAWS[when['law']]}"
             numbers.append((when.get(over), run["numbers"][key]["value"], run["source"] + law))
     return numbers
 
@@ -443,8 +441,8 @@ def _liveliest(history: dict[str, np.ndarray]) -> tuple[int, int] | None:
 
 def rolling(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
     """Draws the velocities of the centre and of the rim [m/s], which are equal in rolling, and the
-    fractions of the load that stick, slide and slide back. For a disc that starts on the plane it
-    adds the velocities of a rigid disc.
+    fractions of the load that stick and slide. For a disc that starts on the plane it adds the
+    velocities of a rigid disc.
     """
     t = 1e3 * history["t"]
     figure, (top, bottom) = plt.subplots(2, sharex=True, figsize=(5.6, 4.6), height_ratios=[1.6, 1])
@@ -456,14 +454,10 @@ def rolling(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figu
     top.plot(t, -scene["radius"] * history["spin"], color=ORANGE, label="rim, −ωR")
     top.set_ylabel("velocity [m/s]")
     touches = history["normal_force"] > 0
-    back = np.minimum(history["reverse_fraction"], history["sliding_fraction"])
     shares = {
         "sticks": (1 - history["sliding_fraction"], STICKS),
-        "slides": (history["sliding_fraction"] - back, ORANGE),
-        "slides back": (back, BLUE),
+        "slides": (history["sliding_fraction"], ORANGE),
     }
-    if not back.any():
-        del shares["slides back"]
     floor = np.zeros(len(t))
     for label, (values, colour) in shares.items():
         values = np.where(touches, 100 * values, 0)
@@ -788,9 +782,8 @@ def is_half(scene: dict[str, Value]) -> bool:
     its meridian plane, or a quarter of a body in three dimensions.
     """
     script = scene.get("script", "")
-    return scene.get("symmetry") == (
-        "quarter" if script in ("ball-plane", "bodies-3d") else "half"
-    ) or script.endswith("axisymmetric")
+    part = "quarter" if script == dimension.SOLID.script else "half"
+    return scene.get("symmetry") == part or script == dimension.AXISYMMETRIC.script
 
 
 def deformed(snapshot: vtu.Snapshot, half: bool, field: str = "von_mises") -> Body:

@@ -5,6 +5,7 @@ from collections.abc import Container
 from pathlib import Path
 
 from ..input.parameters import Value
+from .impact import impact_of
 
 __all__ = ["REFERENCE", "published", "references"]
 
@@ -13,12 +14,12 @@ REFERENCE = Path(__file__).resolve().parent / "reference"
 UNDAMPED = dict.fromkeys(("viscosity", "bulk_viscosity", "relaxation_modulus", "loss"), 0)
 
 
-def references(script: str, scene: dict[str, Value]) -> dict[str, list[dict]]:
+def references(scene: dict[str, Value]) -> dict[str, list[dict]]:
     """Returns the published numbers whose conditions this scene fulfils: for each key of
     summary.json a list of {value, [error], source, [note]}.
     """
     numbers: dict[str, list[dict]] = {}
-    for run in published(script, scene):
+    for run in published(scene):
         for key, number in run["numbers"].items():
             numbers.setdefault(key, []).append(
                 number | {k: run[k] for k in ("source", "note") if k in run}
@@ -26,11 +27,14 @@ def references(script: str, scene: dict[str, Value]) -> dict[str, list[dict]]:
     return numbers
 
 
-def published(script: str, scene: dict[str, Value], whatever: Container[str] = ()) -> list[dict]:
-    """Returns the runs with published numbers whose conditions this scene fulfils. The parameters
-    in `whatever` may have any value. Each run has script, when (its parameters), numbers by key of
-    summary.json, source and [note].
+def published(scene: dict[str, Value], whatever: Container[str] = ()) -> list[dict]:
+    """Returns the runs with published numbers whose conditions this scene fulfils as an impact. The
+    entries in `whatever` may have any value. Each run has kind (impact.KINDS), when (its entries),
+    numbers by key of summary.json, source and [note].
     """
+    impact = impact_of(scene)
+    if not impact:
+        return []
     every = (
         run
         for path in sorted(REFERENCE.glob("*.toml"))
@@ -39,9 +43,9 @@ def published(script: str, scene: dict[str, Value], whatever: Container[str] = (
     return [
         run
         for run in every
-        if run["script"] == script
+        if run["kind"] == impact["kind"]
         and all(
-            scene.get(name, UNDAMPED.get(name)) == value
+            impact.get(name, 0) == value
             for name, value in (UNDAMPED | run["when"]).items()
             if name not in whatever
         )

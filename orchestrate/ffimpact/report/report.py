@@ -119,7 +119,6 @@ def rows(per: str) -> list[Quantity]:
         Quantity("external_work", "external work", f"J{per}", when=_nonzero),
         Quantity("contact_intervals", "contact intervals", digits=".0f", main=_single),
         Quantity("sliding_time", "load slides for", "ms", 1e3, when=_nonzero),
-        Quantity("reverse_slip_time", "  of it backwards", "ms", 1e3, when=_nonzero),
         Quantity("sticking_time", "load sticks for", "ms", 1e3, when=_nonzero),
         Quantity(
             "energy_drift",
@@ -209,18 +208,13 @@ def _partners(pair: dict[str, Value]) -> str:
 
 def _scene(scene: dict[str, Value], summary: dict) -> list[str]:
     """Returns lines that describe the scene: bodies, speed and contact."""
-    contact = scene.get("contact", scene)
+    contact = scene["contact"]
     pull = f"gravity {scene['gravity']:g} m/s2, " if scene.get("gravity") else ""
     words = f"{pull}penalty {stiffness(contact)}{_friction(contact)}"
     own = [
         f"{_partners(pair)}: penalty {stiffness(contact | pair)}{_friction(contact | pair) or ', no friction'}"
         for pair in contact.get("pair", [])
     ]
-    if "body" not in scene:
-        return [
-            f"radius {scene['radius']:g} m, {_material(scene)}, {scene['speed']:g} m/s, angle {scene.get('angle', 90):g} degrees",
-            words,
-        ]
     return [
         *(
             f"{body['name']}: {', '.join([body['shape'], *_size(summary, k, len(scene['body'])), _material(body)])}"
@@ -349,7 +343,7 @@ def _numbers(result: Record, printed: list[Quantity], marks: dict[str, str]) -> 
     published numbers of the same scene.
     """
     summary, scene = result.summary, result.scene
-    bars, published = errors(result), _published(summary, scene)
+    bars, published = errors(result), literature.references(scene)
     width, lines = max(24, *(len(quantity.label) + 1 for quantity in printed)), []
     for quantity in printed:
         text = quantity.text(summary[quantity.key], bars.get(quantity.key))
@@ -358,13 +352,3 @@ def _numbers(result: Record, printed: list[Quantity], marks: dict[str, str]) -> 
         lines.append(f"  {quantity.label:<{width}}{marked:<26}{beside[0]}".rstrip())
         lines += [f"  {'':<{width + 26}}{more}" for more in beside[1:]]
     return lines
-
-
-def _published(summary: dict, scene: dict[str, Value]) -> dict[str, list[dict]]:
-    """Returns the published numbers of the same scene by key. A scene with a mesh of the user has
-    none, because it is another body.
-    """
-    provenance = summary["provenance"]
-    if provenance.get("mesh") and not provenance.get("gmsh"):
-        return {}
-    return literature.references(provenance["script"], scene)

@@ -43,12 +43,10 @@ def runs(estimate: bool) -> dict[str, float]:
 
 
 class Display:
-    """Shows the progress of a run, the `number`th run of the progress line. `foreign` is the content
-    of the mesh file.
-    """
+    """Shows the progress of a run, the `number`th run of the progress line."""
 
-    def __init__(self, line: Line, scene: Scene, foreign: bytes | None, kind: str, number: int):
-        self.line, self.scene, self.foreign, self.number = line, scene, foreign, number
+    def __init__(self, line: Line, scene: Scene, kind: str, number: int):
+        self.line, self.scene, self.number = line, scene, number
         self.words = f"{kind} {number} of {max(number, len(line.costs))}"
         self.part = kind if kind in line.costs else self.words
         self.seen: list[freefem.At] = []
@@ -81,7 +79,7 @@ class Display:
             self.foretold = AGAIN * (high if high < math.inf else low)
             if self.cure is None:
                 began = time.monotonic()
-                self.cure = cure(self.scene, self.foreign, low, len(self.line.costs) > 1)
+                self.cure = cure(self.scene, low, len(self.line.costs) > 1)
                 self.sought_until = at.wall + time.monotonic() - began
             self.line.say(
                 f"{self.scene.name}: {between(low / 60, high / 60)} min, for {between(*steps)} steps of {at.unknowns} unknowns: "
@@ -125,7 +123,7 @@ def between(low: float, high: float) -> str:
 # ---- the entry that makes a run short
 
 
-def cure(scene: Scene, foreign: bytes | None, seconds: float, estimate: bool) -> str:
+def cure(scene: Scene, seconds: float, estimate: bool) -> str:
     """Returns the entry and the value that make a run of `seconds` short, the time that it then
     takes, and what that costs. This time is measured (plan.py), not extrapolated.
 
@@ -138,7 +136,7 @@ def cure(scene: Scene, foreign: bytes | None, seconds: float, estimate: bool) ->
         """Returns the plan with these entries, None if they are refused."""
         try:
             with muted():
-                return measure(scene.override(entries), foreign, estimate)
+                return measure(scene.override(entries), estimate)
         except Failure:
             return None
 

@@ -154,9 +154,9 @@ class _Enough(Exception):
     """Ends the waiting for a process whose steps have been timed."""
 
 
-def measure(scene: Scene, foreign: bytes | None = None, estimate: bool = True) -> Plan:
-    """Returns the plan of a scene, with the mesh `foreign` of a file. `estimate`: with the coarser
-    runs. Raises the Failure that the run would meet until then.
+def measure(scene: Scene, estimate: bool = True) -> Plan:
+    """Returns the plan of a scene. `estimate`: with the coarser runs. Raises the Failure that the
+    run would meet until then.
     """
     seen: list[freefem.At] = []
 
@@ -167,7 +167,7 @@ def measure(scene: Scene, foreign: bytes | None = None, estimate: bool = True) -
 
     with tempfile.TemporaryDirectory() as name:
         folder, began = Path(name), time.process_time()
-        flags, *_ = prepare(scene, folder, foreign)
+        flags, *_ = prepare(scene, folder)
         prepared = time.process_time() - began
         process = freefem.start(
             freefem.find(),
@@ -184,12 +184,10 @@ def measure(scene: Scene, foreign: bytes | None = None, estimate: bool = True) -
     cost = (last.seconds - first.seconds) / max(1, last.steps - first.steps)
     expected = last.expected or math.inf
     values = scene.values | scene.sizes
-    fixed = foreign is not None or scene.of_files or any(values[name] for name in estimates.SIZES)
+    fixed = scene.of_files or any(values[name] for name in estimates.SIZES)
     finer = 0 if fixed or not estimate else sum(COST**-k for k in range(1, estimates.MOST + 1))
     main = prepared + last.seconds + cost * (expected - last.steps)
     names = [body[2] for body in bodies]
-    if len(set(names)) < len(names):  # those of a case of the paper have no names
-        names = [f"body {k}" for k in range(1, len(names) + 1)]
     return Plan(
         scene.name,
         elements=dict(zip(names, (int(body[0]) for body in bodies))),

@@ -22,7 +22,7 @@ from ..failure import BadInput, Failure, TooLong, Unreadable
 from ..freefem import freefem
 from ..input.parameters import Value
 from ..input.toml_text import to_toml
-from ..mesh import gmsh_file, mesh
+from ..mesh import mesh
 from ..output import estimate as estimates, notes
 from ..output.folder import (
     checkpoints,
@@ -48,7 +48,6 @@ from ..output.results import (
 from ..places import INSTALLED, PACKAGE, RESULTS, ROOT, shown
 from ..progress import Line, work
 from ..scene import Scene
-from ..scenes.bodies import SIZES
 from ..scenes.mirror import symmetric_along
 from .forecast import cure, runs
 from .outcome import FAILURES
@@ -81,7 +80,6 @@ def run(
     overrides: dict[str, Value] | None = None,
     out: Path | str | None = None,
     *,
-    mesh_file: Path | str | None = None,
     force: bool = False,
     progress: bool | None = None,
     estimate: bool = True,
@@ -96,39 +94,36 @@ def run(
     Failure with the exit code of the run contract.
     """
     started = time.monotonic()
-    scene = scene.override(_sizes_left_to(mesh_file, scene) | (overrides or {}))
+    scene = scene.override(overrides or {})
     folder = result_folder(Path(out or RESULTS / scene.name))
-    mesh_file, foreign = _mesh_of_file(mesh_file)
     finished = finished_in(folder, force)
-    if not force and (there := reusable(scene, folder, mesh_file, estimate)):
+    if not force and (there := reusable(scene, folder, estimate)):
         return there
-    scene.description(foreign, mesh_file)
 
     program = freefem.find()
-    if scene.meshed and not foreign:
-        mesh.start_gmsh()
+    mesh.start_gmsh()
     with Line(scene.name, runs(estimate), progress) as line, staging(folder) as (stage, lock):
         # Another process may have finished the run in the meantime.
-        if not force and (there := reusable(scene, folder, mesh_file, estimate)):
+        if not force and (there := reusable(scene, folder, estimate)):
             return there
         provenance = {
             "script": scene.script,
             "version": __version__,
             "code": code_hash(),
             "freefem": program.version,
-            "gmsh": _gmsh(scene, mesh_file),
+            "gmsh": mesh.start_gmsh().__version__,
         }
         request_entries = {
             "asked": scene.decisive_entries,
             "estimate": estimate and _hash(ESTIMATING),
         }
-        request = request_entries | provenance | {"mesh": mesh_file and _sha256(mesh_file)}
+        request = request_entries | provenance
         if force or unfinished(stage) != request:
             clear(stage)
             write_json(stage / "checkpoint.json", request)
 
         try:
-            with Solver(program, scene, foreign, stage, lock, line, pair=estimate) as solve:
+            with Solver(program, scene, stage, lock, line, pair=estimate) as solve:
                 solve({}, stage)
                 settled = (
                     stage,
@@ -147,15 +142,15 @@ def run(
             elif failure.code not in (TooLong.code, BadInput.code, Unreadable.code):
                 failure.folder = failed_beside(folder) if finished else folder
                 _keep_failed(stage, failure, scene, provenance | request_entries)
-                _put(stage, failure.folder, scene, mesh_file)
+                _put(stage, failure.folder, scene)
             raise
         provenance |= request_entries | {
             "git": commit(),
-            "mesh": _sha256(mesh_file or stage / scene.mesh_name) if scene.meshed else None,
+            "mesh": _sha256(stage / scene.mesh_name),
         }
         _tell_accuracy(stage / "scene.toml", scene.values["accuracy"])
         _finish(stage, scene, estimated | {"total_seconds": time.monotonic() - started}, provenance)
-        _put(stage, folder, scene, mesh_file)
+        _put(stage, folder, scene)
     return Record(folder, read_summary(folder), reused=False)
 
 
@@ -163,41 +158,33 @@ def plan(
     scene: Scene,
     overrides: dict[str, Value] | None = None,
     *,
-    mesh_file: Path | str | None = None,
     estimate: bool = True,
 ) -> Plan:
     """Foretells what run() with these arguments will take. Writes nothing. Raises Failure as
     run().
     """
-    scene = scene.override(_sizes_left_to(mesh_file, scene) | (overrides or {}))
-    path, foreign = _mesh_of_file(mesh_file)
-    scene.description(foreign, path)
-    if scene.meshed and not foreign:
-        mesh.start_gmsh()
+    scene = scene.override(overrides or {})
+    mesh.start_gmsh()
     with work("foretelling the run"):
-        made = measure(scene, foreign, estimate)
+        made = measure(scene, estimate)
     if not made.is_long:
         return made
     with work("seeking an entry that makes the run short"):
-        return changed(made, advice=cure(scene, foreign, made.total_seconds, estimate))
+        return changed(made, advice=cure(scene, made.total_seconds, estimate))
 
 
 def states(scene: Scene) -> dict[str, Value]:
-    """Returns the default of the entry `fields` if the scene leaves it open, else nothing. For a
-    case of the paper, `fields` = 0 counts as open.
-    """
-    fields = scene.content.get("fields")
-    left_open = fields is None if scene.bodies else not fields
-    return {"fields": STATES} if left_open else {}
+    """Returns the default of the entry `fields` if the scene leaves it open, else nothing."""
+    return {"fields": STATES} if scene.content.get("fields") is None else {}
 
 
-def _put(stage: Path, folder: Path, scene: Scene, mesh_file: Path | None) -> None:
+def _put(stage: Path, folder: Path, scene: Scene) -> None:
     """Moves a run from `stage` to `folder`. In its log the path of `stage` is replaced by that of
     `folder`.
     """
     log = stage / "log.txt"
     log.write_text(log.read_text(errors="replace").replace(str(stage), str(shown(folder))))
-    replace(stage, folder, _same_scene(folder, scene, mesh_file))
+    replace(stage, folder, _same_scene(folder, scene))
 
 
 def _tell_accuracy(path: Path, accuracy: float) -> None:
@@ -262,10 +249,8 @@ def _keep_failed(stage: Path, failure: Failure, scene: Scene, provenance: dict) 
 # ---- reuse
 
 
-def reusable(
-    scene: Scene, folder: Path, mesh_file: Path | None = None, estimate: bool = False
-) -> Record | None:
-    """Returns the finished run in `folder` if it has the same scene, mesh and code, and an error
+def reusable(scene: Scene, folder: Path, estimate: bool = False) -> Record | None:
+    """Returns the finished run in `folder` if it has the same scene and code, and an error
     estimate where `estimate` is set; else None. Raises Unreadable if the folder was not written by
     this program.
     """
@@ -276,7 +261,7 @@ def reusable(
         and summary.get("provenance", {}).get("code") == code_hash()
         and (summary["provenance"].get("estimate") == _hash(ESTIMATING) or not estimate)
         and read_scene(folder)
-        and _same_scene(folder, scene, mesh_file)
+        and _same_scene(folder, scene)
     )
     if same:
         check_files(folder)
@@ -326,60 +311,18 @@ def _hash(modules: Iterable[str], files: Iterable[Path] = ()) -> str:
     return digest.hexdigest()
 
 
-def _same_scene(folder: Path, scene: Scene, mesh_file: Path | None) -> bool:
-    """Returns whether the finished or failed run in `folder` has this scene and this mesh, whatever
-    the version of the code.
+def _same_scene(folder: Path, scene: Scene) -> bool:
+    """Returns whether the finished or failed run in `folder` has this scene, whatever the version of
+    the code.
     """
     name = "summary.json" if (folder / "summary.json").exists() else "failure.json"
     try:
         provenance = json.loads((folder / name).read_text())["provenance"]
-        if mesh_file:
-            same_mesh = provenance["mesh"] == _sha256(mesh_file)
-        else:
-            same_mesh = provenance["gmsh"] == _gmsh(scene, None)
+        same_mesh = provenance["gmsh"] == mesh.start_gmsh().__version__
         same_script, request = provenance["script"] == scene.script, provenance["asked"]
     except (FileNotFoundError, ValueError, KeyError, TypeError):  # it has no such record
         return False
     return same_mesh and same_script and request == scene.decisive_entries
-
-
-# ---- the mesh
-
-
-def _sizes_left_to(mesh_file: Path | str | None, scene: Scene) -> dict[str, Value]:
-    """Returns the element sizes of a scene, reset to automatic if there is a mesh file: the sizes
-    of the scene are meant for another mesh. A scene of bodies keeps its sizes.
-    """
-    return dict.fromkeys(SIZES, 0) if mesh_file and not scene.bodies else {}
-
-
-def _mesh_of_file(mesh_file: Path | str | None) -> tuple[Path | None, bytes | None]:
-    """Returns the path and the content of a mesh file. Raises BadInput for a mesh that is not
-    accepted.
-    """
-    path = _mesh_path(Path(mesh_file)) if mesh_file else None
-    return path, gmsh_file.load(path, alone=True) if path else None
-
-
-def _mesh_path(mesh_file: Path) -> Path:
-    try:
-        path = mesh_file.resolve()
-        # Reading a pipe or a device might never end.
-        if path.exists() and not path.is_file():
-            raise BadInput(f"mesh: {mesh_file} is no file")
-    # For example a loop of links, or a name that is too long.
-    except (OSError, RuntimeError) as error:
-        raise BadInput(
-            f"mesh: {mesh_file} cannot be read: {getattr(error, 'strerror', None) or error}"
-        ) from None
-    return path
-
-
-def _gmsh(scene: Scene, mesh_file: Path | None) -> str | None:
-    """Returns the version of the gmsh that makes the mesh, or None if the mesh comes from a file or
-    from the script.
-    """
-    return mesh.start_gmsh().__version__ if scene.meshed and not mesh_file else None
 
 
 # ---- provenance

@@ -38,19 +38,18 @@ class Solver(AbstractContextManager):
         self,
         program: freefem.FreeFem,
         scene: Scene,
-        foreign: bytes | None,
         stage: Path,
         lock: int,
         line: Line,
         pair: bool,
     ):
-        self.program, self.scene, self.foreign = program, scene, foreign
+        self.program, self.scene = program, scene
         self.scaled = partial(scaled, scene)
         self.stage, self.lock, self.line = stage, lock, line
         self.pair = (
             pair and freefem.CORES > 1 and threading.current_thread() is threading.main_thread()
         )
-        self.own_mesh = foreign is None and not scene.of_files
+        self.own_mesh = not scene.of_files
         self.number = 0
         # The coarser runs that have started, by folder, with the entries that they override.
         self.beside: dict[Path, tuple[dict[str, Value], freefem.Process]] = {}
@@ -73,7 +72,6 @@ class Solver(AbstractContextManager):
         display = Display(
             self.line,
             self.scene,
-            self.foreign,
             "main run" if where == self.stage else f"{where.name} run",
             self.number,
         )
@@ -119,9 +117,8 @@ class Solver(AbstractContextManager):
                 write_json(where / "checkpoint.json", scene.decisive_entries)
         if display:
             display.at("mesh")
-        flags, used, scene_toml = prepare(scene, where, self.foreign, self.scene)
-        if scene_toml:
-            (where / USED).write_text(scene_toml, "utf-8")
+        flags, used, scene_toml = prepare(scene, where)
+        (where / USED).write_text(scene_toml, "utf-8")
         if display:
             display.at("set-up")
         flags = flags | {"out": where} | ({"restart": where / "checkpoint"} if goes_on else {})
@@ -140,9 +137,7 @@ class Solver(AbstractContextManager):
         """
         for k, name in enumerate(estimate.LEVELS, 1):
             where, factor = self.stage / name, estimate.COARSER**k
-            overrides = self.scaled(
-                self.scene.values | self.scene.sizes, used, factor, self.own_mesh
-            )
+            overrides = self.scaled(used, factor)
             if not (where / "summary.json").exists():
                 with suppress(Failure):
                     self.beside[where] = overrides, self._started(overrides, where, self.leaving)

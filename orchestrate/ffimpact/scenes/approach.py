@@ -352,7 +352,7 @@ def _pressed(scene: Scene, onset: Onset) -> float:
     support or of an obstacle makes, which moves on by a depth [m] after the onset of contact.
 
     Half-widths b of discs: b^2 = 0.8 R depth under a support (R/10 deep), b^2 = 2 R^2 v/c in an
-    impact (edp/program/input/sizes.idp). Of balls: b^2 = R depth and b = 1.31 R (v/c)^0.4.
+    impact (sizes.py). Of balls: b^2 = R depth and b = 1.31 R (v/c)^0.4.
     """
     bodies = [scene.bodies[k] for k in (onset.first, onset.second) if k >= 0]
     met = math.isfinite(onset.time)

@@ -5,12 +5,12 @@ Region k of the mesh is body k, from 0. Its edges have the label 1 where contact
 another label where the mesh file excludes contact or nothing can reach them. The bodies stand side
 by side along x, not turned, each about its own centre of area; scene.dat holds their positions at
 the start. For bodies of revolution the mesh is the half x >= 0 of their sections, one above the
-other, with the label 2 on the axis.
+other, with the label 2 on the axis. So it is for bodies in the plane that are reduced by symmetry.
 """
 
 import math
 import tomllib
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property, partial
 from pathlib import Path
@@ -19,7 +19,6 @@ import numpy as np
 
 from .. import progress
 from ..failure import BadInput
-from ..freefem.describe import describe
 from ..geometry.outlines import Loop, TubeOutline, rotation
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID
 from ..input.models import MATERIAL, OWN
@@ -31,9 +30,10 @@ from ..mesh.solids import Solid
 from .approach import Onset, loaded_pull, onsets_of, refuse_nothing, refuse_sinking, turned
 from .bodies import DAMPING, STIFF, Body
 from .front import Front, fronts, stretch_of
-from .mirror import COPIES, MIRROR_AXES, copies
+from .mirror import COPIES, copies, mirror_axes
 from .parts import sections
 from .scene import Pair, Scene
+from .sizes import Impact
 from .unstressed import find_unstressed
 
 __all__ = [
@@ -53,21 +53,17 @@ __all__ = [
 ]
 
 ROUND = 0.5  # largest element size on a circle or ellipse, over its smaller semi-axis
-LIKE = ("radius", "young", "nu", "density", "speed", "angle", "spin", *DAMPING)
 # Width of an outline near contact, over that of a disc on a plane, below which elements are
 # smaller. Two equal discs have 0.71.
 NARROW = 0.6
 # Largest half-width of a contact over the radius of the obstacle; the same as over that of a disc
-# on a plane (sizes.idp).
+# on a plane (sizes.py).
 POINTED = 0.5
 UNLIMITED = 1e-3  # accuracy for which no element of the rule has a limited size
 RESOLVED = 0.5  # largest element in a contact over its half-width
 ASIDE = 0.02  # distance from a corner of an obstacle that counts as on it, over the pair's radius
 SMALLEST = 1e-3  # smallest element in a contact over the pair's radius
 BETWEEN = 0.2  # distance of bodies in the mesh over their largest extent
-
-# Returns the automatic values of the scripts for a disc or a ball on a plane, as describe() does.
-Rule = Callable[[dict[str, Value]], dict]
 
 
 @dataclass(frozen=True)
@@ -99,73 +95,42 @@ class Assembly:
         (folder / "scene.dat").write_text(self.data)
 
 
-def prepare(
-    scene: Scene, where: Path, foreign: bytes | None = None, like: Scene | None = None
-) -> tuple[dict[str, Value | Path], dict, str]:
-    """Prepares a run in the folder `where`: writes the mesh and the data file of a scene of tables,
-    or the mesh of one of the paper's cases. Returns the flags of the run, the scene as used, and
-    the text of its scene.toml ("" if the script writes it).
-
-    The mesh of a case is `foreign` (the content of a mesh file) or is made from the sizes and the
-    part of the body that the script describes. They are those of the scene `like` if given, which
-    differs in sizes and steps only. Raises BadInput for a scene that cannot be run.
+def prepare(scene: Scene, where: Path) -> tuple[dict[str, Value | Path], dict, str]:
+    """Prepares a run in the folder `where`: writes the mesh and the data file of a scene. Returns the
+    flags of the run, the scene as used, and the text of its scene.toml. Raises BadInput for a scene
+    that cannot be run.
     """
-    file = where / scene.mesh_name
-    if scene.bodies:
-        if (
-            len(scene.bodies) == 1
-            and not scene.obstacles
-            and not (scene.bodies[0].supports or scene.bodies[0].loads)
-            and scene.values["end_time"] == 0
-        ):
-            raise BadInput(
-                "obstacle: is missing, and a second body too (accepted: one table [[obstacle]] or more, several "
-                "[[body]], or an end_time > 0)"
-            )
-        scene = turned(scene)
-        onsets = onsets_of(scene)
-        refuse_nothing(scene, onsets)
-        refuse_sinking(scene, onsets)
-        built = assemble(scene, onsets=onsets)
-        built.write(where)
-        text = to_toml(scene.with_files_in(where, built.used))
-        flags = built.values | {"mesh": file, "bodies": where / "scene.dat"}
-        if any(body.inflated for body in scene.bodies) and not (where / "checkpoint").exists():
-            find_unstressed(scene, flags, where)
-        return flags, tomllib.loads(text), text
-    description = (like or scene).description(foreign)
-    if not scene.meshed:
-        return scene.values, description["used"], ""
-    if foreign is not None:
-        file.write_bytes(foreign)
-    else:
-        sizes = (
-            scene.values[name] or description["used"][name]
-            for name in ("radius", "mesh_size", "contact_mesh_size")
+    if (
+        len(scene.bodies) == 1
+        and not scene.obstacles
+        and not (scene.bodies[0].supports or scene.bodies[0].loads)
+        and scene.values["end_time"] == 0
+    ):
+        raise BadInput(
+            "obstacle: is missing, and a second body too (accepted: one table [[obstacle]] or more, several "
+            "[[body]], or an end_time > 0)"
         )
-        mesh.write(mesh.disc(*sizes, description["half"], description["touch_arc"]), file)
-    return scene.values | {"mesh": file}, description["used"], ""
+    scene = turned(scene)
+    onsets = onsets_of(scene)
+    refuse_nothing(scene, onsets)
+    refuse_sinking(scene, onsets)
+    built = assemble(scene, onsets=onsets)
+    built.write(where)
+    text = to_toml(scene.with_files_in(where, built.used))
+    flags = built.values | {"mesh": where / scene.mesh_name, "bodies": where / "scene.dat"}
+    if any(body.inflated for body in scene.bodies) and not (where / "checkpoint").exists():
+        find_unstressed(scene, flags, where)
+    return flags, tomllib.loads(text), text
 
 
-def assemble(scene: Scene, rule: Rule | None = None, onsets: list[Onset] | None = None) -> Assembly:
-    """Meshes the bodies of a scene and collects the data of a run.
-
-    `rule` gives automatic values for a disc (ball) of the pair's radius that hits a plane; describe
-    by default. `onsets` holds the onsets of contact if they are known already.
+def assemble(scene: Scene, onsets: list[Onset] | None = None) -> Assembly:
+    """Meshes the bodies of a scene and collects the data of a run. `onsets` holds the onsets of
+    contact if they are known already.
     """
-    ask = Asker(
-        scene,
-        onsets_of(scene) if onsets is None else onsets,
-        rule or partial(describe, script=scene.dimension.like),
-    )
+    ask = Asker(scene, onsets_of(scene) if onsets is None else onsets)
     scene = replace(
         scene,
-        bodies=[
-            replace(body, viscosity=float(_of_body(k, ask, loss=body.loss)["viscosity"]))
-            if body.loss
-            else body
-            for k, body in enumerate(scene.bodies)
-        ],
+        bodies=[_with_viscosity(k, ask) for k in range(len(scene.bodies))],
     )
     ask = replace(ask, scene=scene)
     values = scene.values | contact_values(scene.bodies, scene.contact, ask, "contact")
@@ -194,7 +159,7 @@ def assemble(scene: Scene, rule: Rule | None = None, onsets: list[Onset] | None 
         together,
         regions,
         centres,
-        data_file(scene, disc, centres, rounds, pairs, front, conditions),
+        data_file(scene, disc.pressure, centres, rounds, pairs, front, conditions),
         values,
         used_tables(scene, sizes, values, pairs),
     )
@@ -212,13 +177,14 @@ def _sections(
         for k, body in enumerate(scene.bodies)
     ]
     meshes = [_reached(scene, k, made) for k, made in enumerate(meshes)]
-    centres = side_by_side(meshes, 1 if scene.dimension is AXISYMMETRIC else 0)
+    halved = bool(mirror_axes(scene.dimension, copies(scene)))
+    centres = side_by_side(meshes, 1 if halved else 0)
     circles = [
         (k, *(centre + at), radius)
         for k, (body, centre) in enumerate(zip(scene.bodies, centres))
         for loop in body.outline.loops
         for at, radius in loop.circles
-        if scene.dimension is not AXISYMMETRIC or at[0] >= 0
+        if not halved or at[0] >= 0
     ]
     return meshes, centres, [("circles", len(circles)), *circles]
 
@@ -229,10 +195,10 @@ def _solids(
     """Returns the same in three dimensions: bodies turned as at the start, one above the other,
     reduced by symmetry; lines of spheres and cylinders.
     """
-    mirror_axes = MIRROR_AXES[copies(scene)]
+    normals = mirror_axes(SOLID, copies(scene))
     accuracy = float(scene.values["accuracy"])
     meshes = [
-        solids.mesh_of(body, size, mirror_axes, accuracy) for body, size in zip(scene.bodies, sizes)
+        solids.mesh_of(body, size, normals, accuracy) for body, size in zip(scene.bodies, sizes)
     ]
     meshes = [_reached(scene, k, made) for k, made in enumerate(meshes)]
     count = sum(
@@ -269,13 +235,12 @@ def _solids(
 
 @dataclass(frozen=True)
 class Asker:
-    """Asks `rule` for automatic values of a disc (ball) that hits a plane as the scene's bodies hit
-    each other, with their largest speeds and accelerations along and across the normal.
+    """Makes a disc (ball) that hits a plane as the scene's bodies hit each other, with their largest
+    speeds and accelerations along and across the normal. Its automatic values are those of the scene.
     """
 
     scene: Scene
     onsets: list[Onset]
-    rule: Rule
 
     @cached_property
     def fronts(self) -> dict[tuple[int, int], Front]:
@@ -291,19 +256,6 @@ class Asker:
         """
         is_open = pair.values.get("penalty", self.scene.contact["penalty"]) == "auto"
         return self.fronts.get((pair.first, pair.second)) if is_open else None
-
-    def answer(
-        self,
-        bodies: list[Body],
-        radius: float,
-        slides: bool = False,
-        presses: bool = True,
-        **more: Value,
-    ) -> dict:
-        """Returns the answer of `rule` for the disc of these arguments (disc()), with the entries
-        `more`.
-        """
-        return self.rule(self.disc(bodies, radius, slides, presses) | more)
 
     def small(self, first: int, second: int) -> float:
         """Returns the radius [m] of an obstacle at the first contact with a body, 0 at a sharp
@@ -341,10 +293,15 @@ class Asker:
         return float(f"{max((onset.pressed for onset in self.onsets), default=0.0):.6g}")
 
     def disc(
-        self, bodies: list[Body], radius: float, slides: bool, presses: bool = True
-    ) -> dict[str, Value]:
-        """Returns the parameters of a disc of this radius [m] with the material of the softest
-        body.
+        self,
+        bodies: list[Body],
+        radius: float,
+        slides: bool = False,
+        presses: bool = True,
+        **more: float,
+    ) -> Impact:
+        """Returns the impact of a disc, or a ball, of this radius [m] with the material of the softest
+        body, and the entries `more`.
 
         It moves along the normal, or also across it if it `slides`. If it `presses`, it makes as
         wide a contact as moving supports do.
@@ -353,32 +310,29 @@ class Asker:
         along = max(along, self.pressed) if presses else along
         pressing = pressing if self.onsets else max(loaded_pull(body) for body in self.scene.bodies)
         soft = min(bodies, key=lambda body: body.stiffness)
+        values = self.scene.values
         request = {
-            name: self.scene.values[name]
-            for name in ("accuracy", "accuracy_of", "end_time", "until")
-        }
-        young = soft.young / (STIFF if soft.rigid else 1)
-        request |= {
-            "exponent": self.scene.contact["exponent"],
-            "young": young,
+            "sphere": self.scene.dimension is not PLANE_STRAIN,
+            "radius": radius,
+            "young": soft.young / (STIFF if soft.rigid else 1),
             "nu": soft.nu,
             "density": soft.density,
-            "radius": radius,
-            "symmetry": "full",
-            "speed": along,
-            "angle": 90.0,
-            "spin": 0.0,
-            "gravity": pressing,
-            **{name: getattr(soft, name) for name in DAMPING},
+            "damping": tuple(getattr(soft, name) for name in DAMPING),
+            "closing": along,
+            "pressing": pressing,
+            "exponent": self.scene.contact["exponent"],
+            "accuracy": values["accuracy"],
+            "accuracy_of": values["accuracy_of"],
+            "end_time": values["end_time"],
+            "endless": values["until"] == "rest",
         }
         if slides:
             request |= {
-                "speed": math.hypot(along, across),
-                "angle": math.degrees(math.atan2(along, across)),
+                "sliding": across,
                 "spin": max(float(np.linalg.norm(body.spin)) for body in bodies),
-                "body_force_x": pulling,
+                "pulling": pulling,
             }
-        return request
+        return Impact(**request | more)
 
 
 def contact_values(
@@ -389,17 +343,16 @@ def contact_values(
     """
     radius = min([least, *(body.outline.half_thickness for body in bodies)])
     sizes = [body.contact_mesh_size for body in bodies]
-    more = {"contact_mesh_size": min(*sizes, radius)} if min(sizes) > 0 else {}
+    more = {"given_contact_size": min(*sizes, radius)} if min(sizes) > 0 else {}
     values = dict(contact)
     if automatic := [name for name in ("penalty", "slip_velocity") if contact[name] == "auto"]:
-        used = ask.answer(bodies, radius, slides=True, exponent=contact["exponent"], **more)["used"]
-        values |= {name: used[name] for name in automatic}
+        more |= {"exponent": contact["exponent"]}
+        disc = ask.disc(bodies, radius, slides=True, **more)
+        values |= {name: getattr(disc, name) for name in automatic}
         # The slow motion of a support slips slowly, even if it makes a wide contact.
         if "slip_velocity" in automatic and ask.pressed > 0:
-            used = ask.answer(
-                bodies, radius, slides=True, presses=False, exponent=contact["exponent"], **more
-            )["used"]
-            values["slip_velocity"] = used["slip_velocity"]
+            slow = ask.disc(bodies, radius, slides=True, presses=False, **more)
+            values["slip_velocity"] = slow.slip_velocity
     if contact["friction_dynamic"] == "auto":
         values["friction_dynamic"] = contact["friction_static"]
     if values["friction_dynamic"] > values["friction_static"]:
@@ -486,7 +439,7 @@ def used_tables(
     contact |= {"self_contact": scene.content.get("contact", {}).get("self_contact", "auto")}
     contact |= {"pair": [{"bodies": names(pair)} | own for pair, own in zip(scene.pairs, pairs)]}
     top = {"title": scene.title, "script": scene.script, "dimension": scene.dimension.name}
-    if scene.dimension is SOLID:
+    if scene.dimension is not AXISYMMETRIC:
         top["symmetry"] = next(word for word, count in COPIES.items() if count == copies(scene))
     return (
         top
@@ -495,16 +448,26 @@ def used_tables(
     )
 
 
-def _of_body(k: int, ask: Asker, **values: Value) -> dict:
-    """Returns the values of the rule for a disc or ball as thick as body k."""
+def _disc_like(k: int, ask: Asker, **more: float) -> Impact:
+    """Returns the impact of a disc or ball as thick as body k."""
     body = ask.scene.bodies[k]
-    try:
-        return ask.answer([body], body.outline.half_thickness, **values)["used"]
-    except BadInput as error:
+    return ask.disc([body], body.outline.half_thickness, **more)
+
+
+def _with_viscosity(k: int, ask: Asker) -> Body:
+    """Returns body k with the viscosity that its loss factor sets. Raises BadInput if it has
+    another viscosity.
+    """
+    body = ask.scene.bodies[k]
+    if not body.loss:
+        return body
+    viscosity = _disc_like(k, ask).viscosity(body.loss)
+    if body.viscosity and not math.isclose(body.viscosity, viscosity):
         raise BadInput(
-            f"body.{k + 1}.{error} (of a {'disc' if ask.scene.dimension is PLANE_STRAIN else 'ball'} as thick as "
-            f"'{body.name}')"
-        ) from None
+            f"body.{k + 1}.loss: {body.loss:g} asks for viscosity {viscosity:g} Pa s of '{body.name}', which "
+            f"is {body.viscosity:g} (accepted: one of the two)"
+        )
+    return replace(body, viscosity=viscosity)
 
 
 def element_sizes(k: int, ask: Asker) -> Sizes:
@@ -542,7 +505,7 @@ def _bulk(k: int, ask: Asker) -> float:
     """
     body = ask.scene.bodies[k]
     looser = ask.scene.values["accuracy"] / UNLIMITED / _share(k, ask)
-    required = float(_of_body(k, ask, accuracy=UNLIMITED)["mesh_size"]) * math.sqrt(looser)
+    required = _disc_like(k, ask, accuracy=UNLIMITED).mesh_size * math.sqrt(looser)
     return max(min(required, body.outline.coarsest), body.contact_mesh_size)
 
 
@@ -595,8 +558,8 @@ def _hit(body: Body, k: int, onset: Onset, ask: Asker) -> tuple[float, np.ndarra
     axes) of its outline there, and half their distance [m].
     """
     bodies = [ask.scene.bodies[j] for j in (onset.first, onset.second) if j >= 0]
-    straight = ask.answer(bodies, onset.radius)
-    arc, size = straight["touch_arc"], float(straight["used"]["contact_mesh_size"])
+    straight = ask.disc(bodies, onset.radius)
+    arc, size = straight.touch_arc, straight.contact_mesh_size
     # The indentation of a stiffer body is smaller by the ratio of the moduli, and so is its error,
     # which is quadratic in the size. Its points still resolve the pressure. Rigid bodies have no
     # unknowns to save.
@@ -622,7 +585,7 @@ def _hit(body: Body, k: int, onset: Onset, ask: Asker) -> tuple[float, np.ndarra
         size = max(SMALLEST * onset.radius / wider, size)
         points, spacing = body.outline.samples(size * wider)
         near = _near(body, k, onset, min(depth, small), points)
-    slide = (ask.answer(bodies, onset.radius, slides=True)["touch_arc"] - arc) * onset.radius
+    slide = (ask.disc(bodies, onset.radius, slides=True).touch_arc - arc) * onset.radius
     if slide > 0:
         near = points[nearest(points, near) <= slide]
     return size * (wider if small > 0 else max(1.0, wider)), near, spacing / 2
@@ -649,8 +612,12 @@ def boundary_curves(scene: Scene, k: int) -> list[list[tuple[Curve, float, int]]
             return np.inf
         return (ROUND if loop.radius else min(ROUND, finest)) * loop.semi_axes.min()
 
-    if scene.dimension is AXISYMMETRIC:
-        if isinstance(scene.bodies[k].outline, TubeOutline):
+    outline = scene.bodies[k].outline
+    halved = outline if scene.dimension is AXISYMMETRIC else None
+    if copies(scene) > 1:
+        halved = revolution.crossing_axis(outline)
+    if halved:
+        if isinstance(outline, TubeOutline):
             return [
                 [
                     (partial(loops[0].at, piece), largest(loops[0]), FREE)
@@ -660,7 +627,7 @@ def boundary_curves(scene: Scene, k: int) -> list[list[tuple[Curve, float, int]]
         return [
             [
                 (piece, largest(loop), FREE) if loop else (piece, np.inf, AXIS)
-                for piece, loop in revolution.boundary(scene.bodies[k].outline)
+                for piece, loop in revolution.boundary(halved)
             ]
         ]
     return [
@@ -727,7 +694,7 @@ def stack(meshes: list[mesh.Mesh] | list[solid_mesh.SolidMesh], centres: np.ndar
 
 def data_file(
     scene: Scene,
-    disc: dict[str, Value],
+    pressure: float,
     centres: np.ndarray,
     rounds: list[tuple],
     pairs: list[dict[str, Value]],
@@ -737,12 +704,12 @@ def data_file(
     """Returns the text of scene.dat, words and numbers (SI, radians), in the format of
     edp/program/input/scene-file.idp.
 
-    `disc` holds the parameters of the disc, or ball, for the rules of sizes. `rounds` are the lines
+    `pressure` is the largest contact pressure [Pa] by the rules of sizes. `rounds` are the lines
     of circles, or of spheres and cylinders, `conditions` those of supports and loads. If there is a
     flat strike, `front` holds the transit of its front through an element and its rise time [s].
     """
     if scene.dimension is SOLID:
-        head = [("ffimpact-bodies-3d", 1), ("copies", copies(scene))]
+        head = [("ffimpact-bodies-3d", 1)]
         starts = [
             (*(body.position - centre), *body.velocity, *body.spin)
             for body, centre in zip(scene.bodies, centres)
@@ -750,7 +717,8 @@ def data_file(
     else:
         head = [("ffimpact-bodies", 1)]
         starts = [(*body.position, body.angle, *body.velocity, body.spin) for body in scene.bodies]
-    lines = [*head, ("disc", *(float(disc[name]) for name in LIKE)), ("bodies", len(scene.bodies))]
+    head += [("copies", copies(scene))]
+    lines = [*head, ("pressure", pressure), ("bodies", len(scene.bodies))]
     lines += [
         (
             body.name,

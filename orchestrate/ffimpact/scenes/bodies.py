@@ -88,7 +88,7 @@ class Body:
     @property
     def moduli(self) -> tuple[float, float]:
         """lambda + 2 mu and mu [Pa] in a wave across the body. Damping adds to them: they are
-        absolute values at omega = pi / transit (stiffen() of edp/program/input/sizes.idp).
+        absolute values at omega = pi / transit (stiffen() of edp/program/run/scales.idp).
 
         The part of lambda above nu = STIFFEST acts on the volume of elements and not in waves.
         """

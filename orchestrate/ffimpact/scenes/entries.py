@@ -29,6 +29,7 @@ SHAPE = (
     "scale",
 )
 EVERYWHERE = ("penalty", "dt")  # entries that depend on every body
+SIZES = ("mesh_size", "contact_mesh_size")  # likewise at the top of a scene
 
 
 def set_entry(content: dict, name: str, value: Value | list) -> dict:
@@ -67,8 +68,8 @@ def release(content: dict, names: list[str]) -> tuple[str, ...]:
     """Resets entries that depend on the changed entries `names` (FOLLOWS) to automatic: removes
     them from the tables `content`. Returns one message for each.
 
-    Coefficients of friction and sizes of a body depend on entries of the same table, penalty and
-    step on those of every body.
+    Coefficients of friction and sizes of a body depend on entries of the same table; penalty, step
+    and the sizes at the top of the scene depend on those of every body.
     """
     places = [_table_of(name) for name in names]
     messages = []
@@ -80,7 +81,7 @@ def release(content: dict, names: list[str]) -> tuple[str, ...]:
             changed_names = [
                 name
                 for name, (where, entry) in zip(names, places)
-                if (where == path or key in EVERYWHERE)
+                if (where == path or key in EVERYWHERE or (key in SIZES and not path))
                 and (
                     entry in causes
                     or "radius" in causes

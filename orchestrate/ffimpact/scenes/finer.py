@@ -13,17 +13,13 @@ from .scene import Scene
 __all__ = ["scaled"]
 
 
-def scaled(
-    scene: Scene, values: Mapping, used: Mapping, factor: float, own_mesh: bool = True
-) -> dict[str, Value | list]:
+def scaled(scene: Scene, used: Mapping, factor: float) -> dict[str, Value | list]:
     """Returns the entries to override in a scene, run before as the tables `used`, for `factor`
     times its elements and steps.
 
     Penalty, slip velocity and dynamic friction keep their values, except the penalty of flat
     strikes. Meshes of files stay, too.
     """
-    if not scene.bodies:
-        return estimate.other(values, used, factor, own_mesh)
     kept = ("penalty", "slip_velocity", "friction_dynamic")
     entries = {f"contact.{name}": used["contact"][name] for name in kept}
     if used["contact"].get("pair"):

@@ -1,40 +1,53 @@
-"""Symmetry of a scene. In three dimensions it decides whether all of it is computed, its half z >= 0,
-or the quarter x >= 0, z >= 0 (`symmetry`). In all dimensions it makes velocities and spins zero.
+"""Symmetry of a scene. It decides whether all of it is computed, in the plane its half x >= 0, or in
+three dimensions its half z >= 0 or the quarter x >= 0, z >= 0 (`symmetry`). It also makes velocities
+and spins zero.
 """
 
 import numpy as np
 
 from ..failure import BadInput
 from ..geometry.outlines import rotation
-from ..input.dimension import PLANE_STRAIN, SOLID
+from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
+from ..mesh import revolution
 from .bodies import Body
 from .obstacles import Obstacle
 
-__all__ = ["COPIES", "MIRROR_AXES", "copies", "symmetric_along"]
+__all__ = ["COPIES", "copies", "mirror_axes", "symmetric_along"]
 
 COPIES = {"full": 1, "half": 2, "quarter": 4}
-MIRROR_AXES = {1: (), 2: (2,), 4: (0, 2)}  # normals of the planes of symmetry, by symmetry factor
 AXES = "xyz"
 # Largest distance between an outline and its mirror image that is round-off, over the bounding
 # radius of the bodies. Points at which obstacles are compared with their mirror images.
 ALIKE, SAMPLES = 1e-9, 500
 
 
+def mirror_axes(dimension: Dimension, copies: int) -> tuple[int, ...]:
+    """Returns the normals (0: x, 1: y, 2: z) of the planes on one side of which bodies are computed, by
+    the symmetry factor `copies`. Of revolution this is the half x >= 0 of their sections.
+    """
+    if dimension is SOLID:
+        return {1: (), 2: (2,), 4: (0, 2)}[copies]
+    return (0,) if dimension is AXISYMMETRIC or copies == 2 else ()
+
+
 def copies(scene) -> int:
-    """Returns the symmetry factor 1, 2 or 4: whole scene over computed part. It is 1 in the plane.
+    """Returns the symmetry factor 1, 2 or 4: whole scene over computed part. Of revolution it is 1.
     Raises BadInput if the scene has less symmetry than its entry demands.
     """
-    if scene.dimension is not SOLID:
+    if scene.dimension is AXISYMMETRIC:
         return 1
     symmetry = scene.content.get("symmetry", "auto")
-    across_z = _broken(scene, 2)
-    across_x = across_z or _broken(scene, 0)
+    if scene.dimension is SOLID:
+        half = _broken(scene, 2)
+        quarter = half or _broken(scene, 0)
+    else:
+        half, quarter = _broken_in_plane(scene), "the scene is in the plane"
     if symmetry == "auto":
-        return 1 if across_z else 2 if across_x else 4
-    why = {"full": "", "half": across_z, "quarter": across_x}[symmetry]
+        return 1 if half else 2 if quarter else 4
+    why = {"full": "", "half": half, "quarter": quarter}[symmetry]
     if why:
         raise BadInput(
-            f"symmetry: {symmetry}, but {why} (accepted: auto|full{'' if across_z else '|half'})"
+            f"symmetry: {symmetry}, but {why} (accepted: auto|full{'' if half else '|half'})"
         )
     return COPIES[symmetry]
 
@@ -81,6 +94,20 @@ def _is_mirrored_in_plane(scene, axis: int) -> bool:
         and np.abs(obstacle.gap(points) - obstacle.gap(mirrored(points))).max() <= ALIKE * radius
         for obstacle in scene.obstacles
     )
+
+
+def _broken_in_plane(scene) -> str:
+    """Returns why the half x >= 0 of a plane scene does not represent all of it, "" if it does."""
+    if scene.bodies[0].position[0] != 0 or not _is_mirrored_in_plane(scene, 0):
+        return "the scene is not its own mirror image in x = 0"
+    for k, body in enumerate(scene.bodies):
+        if body.mesh or body.angle or any(body.moments):
+            return f"'{body.name}' is a file's, is turned, or has a moment of inertia of its own"
+        if not revolution.crossing_axis(body.outline):
+            return f"'{body.name}' has parts that do not cross x = 0"
+        if any(pair.first == pair.second == k for pair in scene.pairs):
+            return f"'{body.name}' may come into contact with itself"
+    return ""
 
 
 def _broken(scene, axis: int) -> str:

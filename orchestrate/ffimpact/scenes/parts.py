@@ -15,7 +15,7 @@ from ..mesh.mesh import Mesh
 from ..mesh.solid_mesh import SolidMesh
 from .bodies import Body
 from .conditions import KINDS, NEVER, ON_SIDE, SIDES, Part, Support
-from .mirror import MIRROR_AXES
+from .mirror import mirror_axes
 from .obstacles import Drive
 
 __all__ = ["sections"]
@@ -134,13 +134,13 @@ class _Surface:
         """Whether each element (f,) is on the boundary of the body, and not on a plane or axis of
         symmetry.
         """
-        if self.dimension is AXISYMMETRIC:
+        if self.dimension is not SOLID:
             return self.made.labels != mesh.AXIS
-        if self.dimension is SOLID and self.copies > 1:
+        if self.copies > 1:
             corners = self.made.points[self.made.sides] + self.body.position
             folded = [
                 abs(corners[:, :, axis]).max(axis=1) > ON_SIDE * np.ptp(self.own)
-                for axis in MIRROR_AXES[self.copies]
+                for axis in mirror_axes(self.dimension, self.copies)
             ]
             return np.all(folded, axis=0)
         return np.ones(len(self.made.sides), dtype=bool)
@@ -231,16 +231,9 @@ class _Surface:
         once = ends.ravel() if self.dimension is not SOLID else ends
         rims, count = np.unique(once, axis=0, return_counts=True)
         open_rims = self.made.points[rims[count == 1]] + self.body.position
-        folded = (
-            (0,)
-            if self.dimension is AXISYMMETRIC
-            else MIRROR_AXES[self.copies]
-            if self.dimension is SOLID
-            else ()
-        )
         extent = np.ptp(self.own)
         closed = np.zeros(len(open_rims), dtype=bool)
-        for axis in folded:
+        for axis in mirror_axes(self.dimension, self.copies):
             away = abs(open_rims[..., axis]).reshape(len(open_rims), -1)
             closed |= away.max(axis=1, initial=0.0) <= ON_SIDE * extent
         inner = self.sides().get("inner", np.array([], dtype=int))

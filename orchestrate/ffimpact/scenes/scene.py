@@ -9,24 +9,22 @@ import hashlib
 import itertools
 import os
 import shutil
-import tempfile
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..failure import BadInput, brief, gathered, unknown
-from ..freefem.describe import describe
+from ..failure import BadInput, brief, gathered
 from ..geometry.outlines import Shape, normal_of
 from ..input import dimension, models, parameters
 from ..input.dimension import AXISYMMETRIC, SOLID, Dimension
 from ..input.models import CONTACT, MATERIAL, OWN, listed
 from ..input.parameters import Value
-from ..input.table import MESHED, SCRIPTS
 from ..mesh.solid_file import declares_unit, takes_in_others
+from ..output import former
 from ..output.columns import Features, recorded
 from . import bodies, conditions, mirror, obstacles
 from .bodies import SIZES, STIFFEST, Body
@@ -39,6 +37,7 @@ RUN = (
     "gravity",
     "body_force_x",
     "body_force_y",
+    "volume",
     "degree",
     "integrator",
     "dt",
@@ -84,9 +83,7 @@ class Scene:
     """A scene as it was read.
 
     `content` holds the tables of the file, `values` every parameter of a run and `contact` those of
-    [contact]. Values that are left to the program (auto, 0) stay as they are. If `bodies` is empty
-    the scene is one of the paper's cases: then `values`, and with them `content`, hold EVERY
-    parameter that edp/program/<script>.edp takes, in SI units.
+    [contact]. Values that are left to the program (auto, 0) stay as they are.
     """
 
     name: str
@@ -95,11 +92,11 @@ class Scene:
     content: dict
     folder: Path
     values: dict[str, Value]
-    dimension: Dimension | None = None
-    bodies: list[Body] = field(default_factory=list)
-    obstacles: list[Obstacle] = field(default_factory=list)
-    contact: dict[str, Value] = field(default_factory=dict)
-    pairs: list[Pair] = field(default_factory=list)
+    dimension: Dimension
+    bodies: list[Body]
+    obstacles: list[Obstacle]
+    contact: dict[str, Value]
+    pairs: list[Pair]
     released: tuple[str, ...] = ()  # messages about entries that override() reset to automatic
 
     def override(self, entries: dict[str, Value]) -> "Scene":
@@ -109,23 +106,22 @@ class Scene:
         """
         if not entries:
             return self
+        named = self._by_full_name(self.check(entries))
         changed = self.content
-        for name, value in self.check(entries).items():
+        for name, value in named.items():
             changed = set_entry(changed, name, value)
-        messages = release(changed, list(entries))
+        messages = release(changed, list(named))
         return replace(read(changed, self.folder, self.name), released=self.released + messages)
 
     def check(self, entries: dict[str, Value]) -> dict[str, Value]:
         """Returns `entries`, by dotted names, with converted values. Raises BadInput if the
         scene has no such entry, or if the entry would change nothing.
         """
-        if not self.bodies:
-            return parameters.check(entries, self.script)
         converted, changed = (
             {name: toml_value(value) for name, value in entries.items()},
             self.content,
         )
-        for name, value in converted.items():
+        for name, value in self._by_full_name(converted).items():
             changed = set_entry(changed, name, value)
         # A value at the top of the file applies only to bodies without a value of their own.
         for name in converted:
@@ -136,6 +132,13 @@ class Scene:
                     f"{name}: changes nothing, as every body has its own (accepted: body.1.{name} and so on)"
                 )
         return converted
+
+    def _by_full_name(self, entries: dict[str, Value]) -> dict[str, Value]:
+        """Returns `entries` by their dotted names. Of two that are the same entry the later holds."""
+        return {
+            models.full_name(self.content, name, self.dimension): value
+            for name, value in entries.items()
+        }
 
     @property
     def decisive_entries(self) -> dict:
@@ -206,16 +209,14 @@ class Scene:
         """What decides the names of numbers and columns."""
         loads = [load for body in self.bodies for load in body.loads]
         words = {
-            "directed": not self.bodies,
-            "penalty_damped": bool((self.contact or self.values)["penalty_damping"]),
+            "penalty_damped": bool(self.contact["penalty_damping"]),
             "damped": self.damped,
             "projected": self._projected,
-            "solid": self.script in (SOLID.script, *SOLID.cases),
-            "spatial": self.script == SOLID.script,
+            "solid": self.script == SOLID.script,
         }
         return Features(
             words=frozenset(word for word, has in words.items() if has),
-            bodies=len(self.bodies) or (2 if self.script == "disc-block" else 1),
+            bodies=len(self.bodies),
             supports=sum(len(body.supports) for body in self.bodies),
             loads=len(loads),
             gases=tuple(k for k, load in enumerate(loads, 1) if load.kind == "gas"),
@@ -224,20 +225,16 @@ class Scene:
     @property
     def damped(self) -> bool:
         """Whether any body is damped."""
-        return any(body.damped for body in self.bodies) or any(
-            self.values.get(name) for name in bodies.DAMPED
-        )
+        return any(body.damped for body in self.bodies)
 
     @property
     def _projected(self) -> bool:
         """Whether the volume of the elements is projected. This needs quadratic elements, a
         `volume` that is not "plain" and a body with nu above STIFFEST.
         """
-        stiffest = max([body.nu for body in self.bodies] or [self.values["nu"]])
+        stiffest = max(body.nu for body in self.bodies)
         return (
-            self.values.get("volume") != "plain"
-            and self.values["degree"] == 2
-            and stiffest > STIFFEST
+            self.values["volume"] != "plain" and self.values["degree"] == 2 and stiffest > STIFFEST
         )
 
     @property
@@ -246,50 +243,14 @@ class Scene:
         return any(bool(body.mesh) for body in self.bodies)
 
     @property
-    def meshed(self) -> bool:
-        """Whether Python makes the mesh, with gmsh. Otherwise the script does."""
-        return self.script in MESHED
-
-    @property
     def mesh_name(self) -> str:
         """The name of the mesh file in the folder of a run."""
         return "mesh.mesh" if self.dimension is SOLID else "mesh.msh"
 
     @property
     def sizes(self) -> dict[str, float]:
-        """The largest element sizes [m] that bodies set, 0 where none does. Empty for the paper's
-        cases.
-        """
-        return (
-            {name: max(getattr(body, name) for body in self.bodies) for name in SIZES}
-            if self.bodies
-            else {}
-        )
-
-    def description(self, foreign: bytes | None = None, path: Path | None = None) -> dict:
-        """Returns what the script reports about one of the paper's cases, on the mesh `foreign` if
-        there is one (FreeFEM's .msh, the content of the file `path`). Empty for a scene of tables.
-        Raises BadInput if the script refuses the scene or the mesh.
-        """
-        if self.bodies:
-            if foreign is not None:
-                raise BadInput(
-                    'mesh: is of one body (accepted: in a table [[body]], shape = "mesh" with file)'
-                )
-            return {}
-        if foreign is None:
-            return describe(self.values, self.script)
-        if not self.meshed:
-            raise BadInput(
-                f"mesh: {self.script} takes no such parameter (accepted: in {'|'.join(MESHED)})"
-            )
-        with tempfile.NamedTemporaryFile(suffix=".msh") as file:
-            file.write(foreign)
-            file.flush()
-            try:
-                return describe(self.values | {"mesh": file.name}, self.script)
-            except BadInput as error:
-                raise BadInput(str(error).replace(file.name, str(path))) from None
+        """The largest element sizes [m] that bodies set, 0 where none does."""
+        return {name: max(getattr(body, name) for body in self.bodies) for name in SIZES}
 
 
 def read(content: dict, folder: Path, name: str) -> Scene:
@@ -297,31 +258,15 @@ def read(content: dict, folder: Path, name: str) -> Scene:
     Raises BadInput for whatever is wrong in the tables.
     """
     folder = folder.absolute()  # finds files from any working folder
-    if {"body", "obstacle", "contact", "dimension"} & set(content):
-        return _of_tables(content, folder, name)
     if not content:
         raise BadInput(
             "says nothing (accepted: a scene, as the built-in ones in orchestrate/ffimpact/scenes)"
         )
-    script, title = content.get("script", "disc-plane"), content.get("title", name)
-    if not isinstance(title, str):
-        raise BadInput(f"title: '{brief(title)}' is no text (accepted: text in quotes)")
-    if script in dimension.SCRIPTS:
+    if str(content.get("script")) in former.SCRIPTS:
         raise BadInput(
-            f"body: is missing, which script = '{brief(script)}' needs (accepted: one table [[body]] or more)"
+            f"script: '{content['script']}' is no kind of scene any more (accepted: tables [[body]], "
+            "[[obstacle]] and [contact], as in the built-in scene of its name)"
         )
-    scripts = [word for word in SCRIPTS if word not in dimension.SCRIPTS]
-    if script not in scripts:
-        raise BadInput(f"script: {unknown(script, scripts)}")
-    set_here = {key: value for key, value in content.items() if key not in ("script", "title")}
-    values = parameters.defaults(script) | parameters.check(set_here, script)
-    _refuse_damping(values, values)
-    _refuse_nu("nu", values["nu"], values["law"], values)
-    return Scene(name, title, script, {"title": title, "script": script} | values, folder, values)
-
-
-def _of_tables(content: dict, folder: Path, name: str) -> Scene:
-    """Returns the scene of tables with bodies."""
     scene_dimension = dimension.of_scene(content)
     tables = models.read(content, scene_dimension)
     if not tables.bodies:
@@ -402,7 +347,7 @@ def _refuse_nu(entry: str, nu: float, law: str, values: Mapping[str, Value]) -> 
     if law == "incompressible" and nu != 0.5:
         raise BadInput(f"{entry}: {nu:g} of law = incompressible (accepted: 0.5)")
     if nu == 0.5:
-        volume = values.get("volume", "auto")
+        volume = values["volume"]
         keeps_volume = values["degree"] == 2 and volume != "plain"
         conserves = values["integrator"] in ("energy-momentum", "auto")
         if not (law != "svk" and keeps_volume and conserves):

@@ -353,9 +353,11 @@ def _published(axes: plt.Axes, sweep, x: str, y: str) -> None:
         y.removeprefix("thresholded_"),
         (_quantity(y).factor, _unit(y, sweep.figure["per"])),
     )
-    scenes = (sweep.sample.content | point for point in sweep.points)
+    scenes = (sweep.sample.override(point).content for point in sweep.points)
     for at, value, words in dict.fromkeys(
-        number for scene in scenes for number in numbers_of_the_paper(scene, name, over=x)
+        number
+        for scene in scenes
+        for number in numbers_of_the_paper(scene, name, over=x.rpartition(".")[2])
     ):
         style = dict(color=BLACK, label=f"{words}: {factor * value:.3g}{unit}")
         if at is None:
