@@ -1,14 +1,12 @@
 """Fixtures of all tests: a substitute for FreeFem++, and result folders made without FreeFem++."""
 
-import re
 import shlex
-import shutil
 import signal
 import sys
 
 import pytest
 
-from ffimpact.freefem import freefem
+from ffimpact.freefem import freefem, kernels
 from tests.support import fake_freefem
 
 # A shell makes its background jobs ignore Ctrl-C, which tests send.
@@ -22,10 +20,8 @@ def fake(tmp_path, monkeypatch):
     program, count = tmp_path / "FreeFem++", tmp_path / "starts"
     program.write_text(f'#!/bin/sh\nexec {shlex.join([sys.executable, fake_freefem.__file__])} "$@"\n')
     program.chmod(0o755)
-    plugin = re.search('="(.*)"', freefem.find().plugin)[1]  # the substitute has no compiler
-    (tmp_path / "ff-c++").write_text(f"#!/bin/sh\nexec {shutil.which('cp')} {shlex.quote(f'/{plugin}.so')} kernels.so\n")
-    (tmp_path / "ff-c++").chmod(0o755)
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    word = freefem.find().plugin  # the substitute has no compiler
+    monkeypatch.setattr(kernels, "build", lambda *_: word)
     monkeypatch.setenv("FREEFEM", str(program))
     monkeypatch.setenv("FAKE_REAL", fake_freefem.REAL)
     monkeypatch.setenv("FAKE_COUNT", str(count))

@@ -12,7 +12,7 @@ from ffimpact.running import run
 from verification.measure import bodies
 
 COARSE = {"law": "neohookean", "accuracy": 0.1, "fields": 0}
-OBLIQUE = COARSE | {"speed": 12, "angle": 60, "friction_static": 0.7, "friction_dynamic": 0.5, "slip_velocity": 0.1}
+OBLIQUE = COARSE | {"speed": 12, "direction": -60, "friction_static": 0.7, "friction_dynamic": 0.5, "slip_velocity": 0.1}
 
 
 def go(tmp_path, name: str, values: dict) -> tuple[pd.DataFrame, run.Record]:
@@ -69,7 +69,7 @@ def test_a_touch_on_the_way_up(tmp_path):
 def test_bounces_are_rows(tmp_path):
     """Several bounces under gravity are consecutive impacts. The energy lost in one is missing in
     the next approach."""
-    rows, _ = go(tmp_path, "disc-normal", COARSE | {"speed": 0, "height": 0.02, "gravity": 9.81, "end_time": 0.5, "accuracy": 0.3})
+    rows, _ = go(tmp_path, "disc-normal", COARSE | {"speed": 0, "body.1.position.2": 0.07, "gravity": 9.81, "end_time": 0.5, "accuracy": 0.3})
     assert len(rows) >= 3 and (rows.start[1:].to_numpy() > rows.end[:-1].to_numpy()).all()
     first, second = rows.iloc[0], rows.iloc[1]
     assert first.approach == pytest.approx(np.sqrt(2 * 9.81 * 0.02), rel=1e-3) and 0.5 < first.restitution <= 1
@@ -122,14 +122,14 @@ def test_in_contact_at_the_end(tmp_path):
     """An interval that is not over is marked and ends with the run."""
     rows, _ = go(tmp_path, "disc-normal", COARSE | {"end_time": 1e-3})
     assert rows.over.tolist() == [0] and rows.end.tolist() == [1e-3]
-    rows, result = go(tmp_path, "disc-normal", COARSE | {"end_time": 1e-3, "height": 1.0})
+    rows, result = go(tmp_path, "disc-normal", COARSE | {"end_time": 1e-3, "body.1.position.2": 1.05})
     assert rows.empty and result.summary["restitution"] is None
 
 
 def test_bounces_are_drawn(tmp_path):
     """A contact pair with several impacts has a figure of restitution without grazing intervals. A
     damaged table is reported."""
-    rows, result = go(tmp_path, "disc-normal", COARSE | {"speed": 0, "height": 0.02, "gravity": 9.81, "end_time": 0.25, "accuracy": 0.3})
+    rows, result = go(tmp_path, "disc-normal", COARSE | {"speed": 0, "body.1.position.2": 0.07, "gravity": 9.81, "end_time": 0.25, "accuracy": 0.3})
     impacts.plt.close(figure := impacts.draw(rows.to_records(), ["body"], ["plane"]))
     assert figure.axes[0].get_ylabel() == "restitution" and len(figure.axes[0].lines[0].get_xdata()) == len(rows)
     light = rows.assign(impulse=[1.0] + [1e-3] * (len(rows) - 1)).to_records()

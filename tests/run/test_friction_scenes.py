@@ -50,7 +50,7 @@ def test_a_missing_picture_of_the_contact_is_named(oblique):
 
 def test_whole_body_without_friction(tmp_path):
     """Without friction there is no figure of friction or rolling. A whole body has its flight."""
-    values = COARSE | {"angle": 60, "speed": 4}
+    values = COARSE | {"direction": -60, "speed": 4}
     result = run.run(scene.load("disc-normal"), values, tmp_path / "slide", estimate=False)
     report.draw(result)
     assert {path.stem for path in (result.folder / "figures").iterdir()} == FRICTIONLESS | {"flight"}
@@ -58,8 +58,8 @@ def test_whole_body_without_friction(tmp_path):
 
 
 @pytest.mark.few(2)
-@pytest.mark.parametrize("values", [{"height": 0.01, "speed": 0, "angle": 90, "gravity": 9.81, "symmetry": "full"},
-                                    {"height": 0.01, "spin": 50, "gravity": 9.81}, {"end_time": 1e-3},
+@pytest.mark.parametrize("values", [{"body.1.position.2": 0.06, "speed": 0, "direction": -90, "gravity": 9.81, "symmetry": "full"},
+                                    {"body.1.position.2": 0.06, "spin": 50, "gravity": 9.81}, {"end_time": 1e-3},
                                     {"regularization": "tanh", "friction_transition": "smooth"}, {"fields": 1}, {"fields": 0}])
 def test_figures_of_unusual_runs(tmp_path, values):
     """Falls from rest, spins, runs that end during contact or keep at most one snapshot are drawn

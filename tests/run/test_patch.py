@@ -10,7 +10,7 @@ import pytest
 from ffimpact import scene
 from ffimpact.output import vtu
 from ffimpact.output.results import Record, body_names
-from ffimpact.report import bodies, contact, figures
+from ffimpact.report import contact, figures
 from ffimpact.running import run
 
 SCENES = {"disc": ("disc-normal", {}), "whole disc": ("disc-oblique", {}), "revolution": ("ball-axisymmetric", {"accuracy": 0.1}),
@@ -74,7 +74,7 @@ def test_half_width_is_that_of_the_size(ran, which):
 
 def test_no_contact_has_no_pressure(tmp_path):
     """A disc in flight has zeros, and no time or place."""
-    result = run.run(scene.load("disc-normal"), {"accuracy": 0.4, "height": 0.1, "end_time": 1e-3, "fields": 0}, tmp_path / "out", estimate=False)
+    result = run.run(scene.load("disc-normal"), {"accuracy": 0.4, "body.1.position.2": 0.15, "end_time": 1e-3, "fields": 0}, tmp_path / "out", estimate=False)
     assert not result.history["max_pressure"].any() and not result.history["contact_half_width"].any()
     assert result.summary["max_pressure"] == 0 and result.summary["max_pressure_time"] is None and result.summary["max_pressure_x"] is None
 
@@ -105,7 +105,7 @@ def test_panels_show_the_same_pressure(ran, which):
     result = ran(which)
     half = figures.is_half(result.scene)
     ball = result.scene if half and result.scene["script"] in figures.BODY else None
-    figure = contact.draw(contact.read(result.folder), body_names(result.scene) if bodies.are_several(result.scene) else ["body"],
+    figure = contact.draw(contact.read(result.folder), body_names(result.scene) if len(result.scene["body"]) > 1 else ["body"],
                           half, np.array([]), ball, result.scene.get("symmetry", "full"), result.history)
     profiles = next(axes for axes in figure.axes if axes.get_ylabel() == contact.PRESSURE)
     picture = next(axes for axes in figure.axes if axes.collections and "time" in axes.get_xlabel()).collections[0]
@@ -158,7 +158,7 @@ def test_panels_of_the_figure(ran, which, panels, maps):
     five instants.
     """
     result = ran(which)
-    several = bodies.are_several(result.scene)
+    several = len(result.scene["body"]) > 1
     half = figures.is_half(result.scene)
     figure = contact.draw(contact.read(result.folder), body_names(result.scene) if several else ["body"], half, np.array([]),
                           result.scene if half and result.scene["script"] in figures.BODY else None, result.scene.get("symmetry", "full"), result.history)

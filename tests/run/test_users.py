@@ -11,7 +11,7 @@ from ffimpact.scenes.assembly import prepare
 def test_a_scene_of_users_has_a_mesh(tmp_path, name):
     """The mesh with the sizes by hand has at most 4000 vertices, and the run has the step by hand."""
     opened = users.USERS[name].open().override(users.USERS[name].by_hand)
-    _, used, _ = prepare(opened, tmp_path, None, opened)
+    _, used, _ = prepare(opened, tmp_path)
     vertices = int((tmp_path / "mesh.msh").read_text().split()[0])
     assert 50 < vertices <= 4000 and used["dt"] == users.USERS[name].by_hand["dt"]
 

@@ -32,7 +32,7 @@ def test_the_numbers_of_a_summary(tmp_path):
     assert result["impulse"] == pytest.approx(4) and result["energy_drift"] == pytest.approx(2e-9 / 9) and result["contact_intervals"] == 2
     assert result["vibration_energy"] == pytest.approx(3) and (result["rebound_vx"], result["rebound_vy"], result["rebound_spin"]) == (1, 2, 2)
     assert result["contact_time"] == pytest.approx(0.28) and result["peak_force"] == 30 and result["min_jacobian"] == 0.8 and result["newton_iterations"] == 12
-    assert result.summary["made_by"] == "script" and result.warnings == [] and dict(result.errors) == {} and result.scene["nu"] == 0.45
+    assert result.summary["made_by"] == "script" and result.warnings == [] and dict(result.errors) == {} and result.scene["body"][0]["nu"] == 0.45
 
 
 def test_what_may_be_wrong_is_a_warning(tmp_path):

@@ -65,7 +65,8 @@ class Part:
         """
         if self.kind == "":
             side = SIDES.get(self.name)
-            return self.name in WHOLE or side is not None and abs(rotation[axis, side[0]]) < 1e-9
+            known = side is not None and side[0] < len(rotation)
+            return self.name in WHOLE or known and abs(rotation[axis, side[0]]) < 1e-9
         first, second = self.numbers
         if self.kind == "box":
             return bool(first[axis] == -second[axis])
