@@ -123,7 +123,7 @@ COMMAND = ("run", "disc-normal", "--quiet", "--checkpoint-every", "10", "--set",
 
 
 def go(out: Path, **changed) -> results.Record:
-    options = {name: changed.pop(name) for name in ("force", "mesh_file") if name in changed}
+    options = {name: changed.pop(name) for name in ("force",) if name in changed}
     return run.run(scene.load("disc-normal"), SET | changed, out, **options)
 
 
@@ -224,12 +224,10 @@ def test_killed_freefem(tmp_path, straight):
     assert_same(out, straight.folder)
 
 
-@pytest.mark.parametrize("changed", [{"speed": 7.5}, {"force": True}, {"mesh_file": True}, {}],
+@pytest.mark.parametrize("changed", [{"speed": 7.5}, {"force": True}, {"mesh_size": 0.021}, {}],
                          ids=["scene", "force", "mesh", "code"])
 def test_another_run_starts_anew(out, straight, monkeypatch, changed):
     """Another scene, mesh or code, and --force, delete the checkpoint and start again."""
-    if "mesh_file" in changed:
-        changed = {"mesh_file": straight.folder / "mesh.msh"}
     if not changed:
         monkeypatch.setattr(run, "code_hash", lambda: "other")
     result = go(out, **changed, end_time=2e-4)

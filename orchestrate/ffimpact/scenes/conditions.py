@@ -65,8 +65,9 @@ class Part:
         """
         if self.kind == "":
             side = SIDES.get(self.name)
-            known = side is not None and side[0] < len(rotation)
-            return self.name in WHOLE or known and abs(rotation[axis, side[0]]) < 1e-9
+            if side is None or side[0] >= len(rotation):
+                return self.name in WHOLE
+            return abs(rotation[axis, side[0]]) < 1e-9
         first, second = self.numbers
         if self.kind == "box":
             return bool(first[axis] == -second[axis])
