@@ -2,11 +2,11 @@
 # ARGS is handed on:  make disc-normal ARGS="--set speed=4 --out results/slow"
 PYTHON := .venv/bin/python
 READY := .venv/.ready
-SWEEPS := oblique friction-jump friction-steps slip-limit contact-time-svk law-comparison contact-time-neohookean pairing calibrate calibrate-oblique calibrate-ball calibrate-ball-3d conservation
+SWEEPS := oblique friction-jump friction-steps slip-limit contact-time-svk law-comparison contact-time-neohookean closest-points calibrate calibrate-oblique calibrate-ball calibrate-ball-3d conservation
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws $(SWEEPS) stick-slip verify paper-scripts paper movie docs pictures check unit coverage test robustness bench bench-quick scaling equal-errors promise disc-block-errors pairing-comparison oblique-angles viscoelastic rubber users clean
+.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws $(SWEEPS) stick-slip verify paper-scripts paper movie docs pictures check unit coverage test robustness bench bench-quick scaling equal-errors promise disc-block-errors oblique-angles viscoelastic rubber users clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
@@ -54,7 +54,7 @@ slip-limit: ## the oblique impact as epsilon goes to 0 (equation 12)
 contact-time-svk: ## sweep the speed with St. Venant-Kirchhoff (figure 6b)
 law-comparison: ## the force histories of both laws at 1 and 10 m/s (figure 7)
 contact-time-neohookean: ## sweep the speed with the neo-Hookean law (figure 8)
-pairing: ## closest points (9) beside pairs of points (14), (15)
+closest-points: ## what the search for closest points (9) costs
 calibrate: ## for which nu and k the paper's 0.0048 s at 8 m/s is met
 calibrate-oblique: ## for which nu, k and coarse mesh the paper's 0.0045 s of the oblique disc is met
 calibrate-ball: ## for which nu, k and coarse mesh the paper's 0.00603 s of the ball is met
@@ -117,11 +117,10 @@ robustness: $(READY) ## the tests that make test leaves out, malformed input and
 	@$(PYTHON) -m benchmarks stress
 
 disc-block-errors: override ARGS += --page docs/measurements/disc-block.md
-pairing-comparison: override ARGS += --page docs/measurements/pairing.md
 rubber: override ARGS += --page docs/measurements/rubber.md
 equal-errors: override ARGS += --page docs/measurements/bench.md
 promise scaling users: override ARGS += --page docs/measurements/$@.md
-bench scaling equal-errors promise disc-block-errors pairing-comparison rubber users: $(READY)
+bench scaling equal-errors promise disc-block-errors rubber users: $(READY)
 	@$(PYTHON) -m benchmarks $@ $(ARGS)
 bench: ## run time against error: meshes, steps, integrators, and other programs where installed
 bench-quick: $(READY) ## the same for one case, coarse
@@ -130,7 +129,6 @@ scaling: ## what a step costs over the number of unknowns, by phase, and memory:
 equal-errors: ## who takes how long for 1, 0.5 and 0.1 %, other programs where installed (docs/measurements/bench.md)
 promise: ## whether accuracy means what it says, and stated errors hold, over 240 scenes drawn at random
 disc-block-errors: ## the disc on the free block (section 3.2) over law, nu, stiffness and mesh, with error bars; NGSolve beside it
-pairing-comparison: ## closest point against pairs of points (14), (15): rebound, energy and time over epsilon and k
 oblique-angles: $(READY) ## disc and ball over the angle of incidence, beside rigid and elastic theory (ARGS="--friction 0.2 --angles 20,40,60")
 	@$(PYTHON) -m benchmarks $@ $(or $(ARGS),--page docs/measurements/$@.md)
 viscoelastic: $(READY) ## damped impacts: a slow ball against quasi-static theory, a disc over loss factor and relaxation time

@@ -15,7 +15,6 @@ from ffimpact.report.figures import (
     DASHED,
     GREEN,
     GREY,
-    LAWS,
     ORANGE,
     PURPLE,
     STYLE,
@@ -186,44 +185,6 @@ def disc_block(tables: Tables, path: Path) -> None:
     save(figure, path)
 
 
-def pairing(tables: Tables, path: Path) -> None:
-    """Draws the difference of pairwise contact from closest points, and the processor time, over
-    epsilon/h."""
-    rows = tables[""]
-    figure, (differ, cost) = plt.subplots(1, 2, figsize=(9, 3.6))
-    ranged = rows[rows["epsilon/h"].notna() & (rows["k/k0"] == 1)].sort_values("epsilon/h")
-    for ((law, mesh, kind), group), colour in zip(
-        ranged.groupby(["law", "mesh", "pairing"], sort=False), COLOURS
-    ):
-        label = (
-            f"{LAWS.get(law, law)}, {mesh} mesh{', as printed' if kind.endswith('printed') else ''}"
-        )
-        differ.loglog(
-            group["epsilon/h"], group["differ [%]"], "o-", color=colour, markersize=4, label=label
-        )
-        cost.semilogx(group["epsilon/h"], group["CPU [s]"], "o-", color=colour, markersize=4)
-    nearest = rows[(rows.pairing == "closest-point") & (rows["k/k0"] == 1)]
-    for mesh, style in (("usual", DASHED), ("finer", ":")):
-        value = nearest[nearest.mesh == mesh]["CPU [s]"].mean()
-        if not np.isnan(value):
-            cost.axhline(
-                value,
-                color=BLACK,
-                linewidth=0.9,
-                linestyle=style,
-                label=f"closest points, {mesh} mesh",
-            )
-    for panel in (differ, cost):
-        plain(panel.xaxis)
-        panel.axvline(0.39, color=GREY, linewidth=0.8)
-        panel.grid(alpha=0.3)
-        panel.set_xlabel("range ε / element size h")
-        panel.legend()
-    differ.set_ylabel("difference from closest points [%]")
-    cost.set(ylabel="processor time of a run [s]", ylim=(0, None))
-    save(figure, path)
-
-
 def plain(axis: Axis, marks: tuple[int, ...] = (1, 2, 5)) -> None:
     """Labels a logarithmic axis without powers, at the multiples `marks` of powers of ten."""
     axis.set_major_locator(LogLocator(subs=marks))
@@ -310,7 +271,6 @@ DRAWN: dict[str, Callable[[Tables, Path], None]] = {
     "scaling": scaling,
     "equal-errors": bench,
     "disc-block-errors": disc_block,
-    "pairing-comparison": pairing,
     "rubber": rubber,
     "oblique-angles": oblique_angles,
     "viscoelastic": viscoelastic,

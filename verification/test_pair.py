@@ -91,14 +91,3 @@ def test_gaps_are_those_of_an_exhaustive_search(measure, tmp_path_factory, degre
             else:
                 assert signed < -reach / 2
     assert near > 10
-
-
-@pytest.mark.few(2)
-@pytest.mark.parametrize("printed", [0, 1])
-@pytest.mark.parametrize("degree, depth, noise, tilt", CASES)
-def test_pairwise_rows_conserve(measure, degree, depth, noise, tilt, printed):
-    """The pairwise form (14), (15), as a repulsion and as printed, satisfies B d = q1 - q0 without
-    resultant force and moment."""
-    numbers = measure("pair", degree=degree, depth=depth, noise=noise, tilt=tilt, printed=printed)
-    assert numbers["pairwise"] > 20 and numbers["pairwiseNear"] > 0
-    assert numbers["pairwiseExact"] < ROUND_OFF and numbers["pairwiseForce"] < ROUND_OFF and numbers["pairwiseMoment"] < ROUND_OFF

@@ -1,6 +1,6 @@
 """Section 3.2: closest points (9), their cost, and contact (14), (15) without a search for them.
 
-The case is the disc on the block on two meshes: the cost by the program (sweep pairing), (14) and
+The case is the disc on the block on two meshes: the cost by the program (sweep closest-points), (14) and
 (15) by the paper's own script edp/disc-block.edp (scripts.py).
 """
 
@@ -10,7 +10,7 @@ from pathlib import Path
 from . import scripts
 from .judging import Results, both, graded, lost, states
 
-PAIRS = "pairing"
+SEARCH, LAW = "closest-points", {"law": "svk"}
 # Two contact formulations agree up to this difference of the rebound velocities over the speed, and
 # of the impulse.
 SAME = 0.01
@@ -19,14 +19,12 @@ DEAR = 0.1
 PRINTED = {"pairwise": "with a repulsion that vanishes at ε", "pairwise-printed": "as printed"}
 # ε equals an element size in the contact region.
 ELEMENT, DRAWN = scripts.ELEMENT, f"{scripts.FOLDER}/{scripts.FIGURE}"
-LOST = lost((PAIRS, {"pairing": "closest-point", "pairing_range": ELEMENT}))
+LOST = lost((SEARCH, LAW))
 
 
-def runs(results: Results, *widths: str | float) -> list[Path]:
-    """The runs of all contact formulations with these ε [m] and with ELEMENT, without duplicates.
-    """
-    return list(dict.fromkeys(run for width in (ELEMENT, *widths) for pairing in ("closest-point", *PRINTED)
-                              for run in results.pair(PAIRS, pairing=pairing, pairing_range=width)))
+def runs(results: Results) -> list[Path]:
+    """The runs of the program by closest points, on both meshes."""
+    return results.pair(SEARCH, **LAW)
 
 
 def script_runs(*widths: str | float) -> Callable[[Results], list[Path]]:
@@ -35,21 +33,17 @@ def script_runs(*widths: str | float) -> Callable[[Results], list[Path]]:
     return lambda results: [results.folder / scripts.FOLDER / name for name in names]
 
 
-@states("Section 3.2, equation (9)", "the minimum distance is found at each instant at the cost of CPU time", runs, PAIRS, LOST)
+@states("Section 3.2, equation (9)", "the minimum distance is found at each instant at the cost of CPU time", runs, SEARCH, LOST)
 def search_costs(results: Results) -> tuple[str, str]:
-    """Compares shares of the time of each run, which scatter less than seconds.
-
-    Agrees if the search for closest points takes more than a tenth of the processor time on both
+    """Agrees if the search for closest points takes more than a tenth of the processor time on both
     meshes, partly if it does on one.
     """
-    words = {"closest-point": "closest points (9)"} | {pairing: f"(14), (15) {how}" for pairing, how in PRINTED.items()}
-    ends = {pairing: results.summaries(PAIRS, pairing=pairing, pairing_range=ELEMENT) for pairing in words}
-    shares = {pairing: [end["phase_seconds"]["search"] / end["cpu_seconds"] for end in summaries] for pairing, summaries in ends.items()}
-    dear = [share > DEAR for share in shares["closest-point"]]
-    text = "; ".join(f"{words[pairing]} {' and '.join(f'{100 * share:.0f} %' for share in values)} of "
-                     f"{both([end['cpu_seconds'] for end in ends[pairing]], '.1f')} s" for pairing, values in shares.items())
-    return graded(all(dear), any(dear)), (f"the search's share of the processor time, on two meshes: {text}. More than {100 * DEAR:g} % is "
-                                          f"asked; boxes leave few edges to a point.")
+    ends = results.summaries(SEARCH, **LAW)
+    shares = [end["phase_seconds"]["search"] / end["cpu_seconds"] for end in ends]
+    dear = [share > DEAR for share in shares]
+    return graded(all(dear), any(dear)), (
+        f"the search takes {' and '.join(f'{100 * share:.0f} %' for share in shares)} of {both([end['cpu_seconds'] for end in ends], '.1f')} s of processor time on two "
+        f"meshes. More than {100 * DEAR:g} % is asked; boxes leave few edges to a point.")
 
 
 @states("Section 3.2, equations (14), (15)", "a sum over all points nearer than ε takes the place of the closest points", script_runs(ELEMENT),

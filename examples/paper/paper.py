@@ -44,7 +44,7 @@ TARGETS = {"disc-oblique-svk": "disc-oblique", "disc-block-neohookean": "disc-bl
 # The approximate duration of each target on two cores [s], for the remaining time. Other targets
 # take USUAL.
 SECONDS = {"disc-normal": 3, "disc-oblique": 40, "disc-rolling": 10, "friction-laws": 3, "oblique": 36, "friction-jump": 6,
-           "friction-steps": 11, "slip-limit": 6, "contact-time-svk": 90, "law-comparison": 6, "contact-time-neohookean": 90, "pairing": 15,
+           "friction-steps": 11, "slip-limit": 6, "contact-time-svk": 90, "law-comparison": 6, "contact-time-neohookean": 90, "closest-points": 6,
            "calibrate": 115, "calibrate-oblique": 62, "calibrate-ball": 13, "calibrate-ball-3d": 27, "conservation": 8, "stick-slip": 70,
            "verify": 200, "paper-scripts": 600}
 USUAL = 20

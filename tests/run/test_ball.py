@@ -96,7 +96,6 @@ def test_contact_points_carry_the_load(oblique):
 
 @pytest.mark.parametrize("values, message", [
     ({"symmetry": "quarter", "direction": -60}, "symmetry: quarter, but 'ball' moves along x .accepted: auto.full.half"),
-    ({"pairing": "pairwise"}, "pairing: bodies-3d takes no such parameter"),
     ({"mesh_size": 0.06}, "mesh_size: 0.06 does not fit the thickness of 'ball'"),
 ])
 def test_what_is_refused(values, message):

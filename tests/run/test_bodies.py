@@ -214,7 +214,7 @@ def test_the_scene_as_used_is_the_same_scene(name, tmp_path):
         built = assembly.assemble(load(source))
         assert built.mesh.volumes.min() > 0 if scene.dimension.axes == 3 else areas(built.mesh).min() > 0 and smallest_angle(built.mesh) > 20
         assert set(built.regions) == set(range(len(scene.bodies)))
-        assert "auto" not in {name: value for name, value in built.values.items() if name not in ("pairing_range", "volume")}.values()
+        assert "auto" not in {name: value for name, value in built.values.items() if name != "volume"}.values()
         built.write(folder)
         (folder / "scene.toml").write_text(to_toml(built.used))
     for file in (scene.mesh_name, "scene.dat", "scene.toml"):
@@ -255,7 +255,7 @@ BAD = [
     ([("obstacle.1.normal", [0, 0])], "obstacle.1.normal: '[0, 0]'"),
     ([("obstacle.1.friction_static", -1)], "obstacle.1.friction_static: -1 is out of range (accepted: 0 to 10)"),
     ([("contact", 3)], "contact: '3' is no table"),
-    ([("contact.pairing", "nearest")], "contact.pairing: 'nearest' is not known (accepted: closest-point|pairwise|pairwise-printed)"),
+    ([("contact.pairing", "pairwise")], "contact.pairing: 'pairwise' is no entry any more (accepted: closest points, of all scenes; pairs of points are in edp/disc-block.edp)"),
     ([("contact.pair", 3)], "contact.pair: '3' is no list of tables (accepted: [[contact.pair]])"),
     ([("contact.pair", [{"penalty": 1e9}])], "contact.pair.1.bodies: '' is no pair (accepted: two names, one at least of a body, of disc, block, floor)"),
     ([("contact.pair", [{"bodies": ["disc", "ball"]}])], "contact.pair.1.bodies: 'ball' is not in the scene (accepted: two names, one at least of a body, of disc, block, floor)"),

@@ -82,12 +82,11 @@ DRIVEN = SOFT | {"accuracy": 0.2, "end_time": 8e-3, "checkpoint_every": 4, "grav
 
 @pytest.mark.few(3)
 @pytest.mark.parametrize("script, flags", [
-    ("bodies", DRIVEN), ("bodies-axisymmetric", BALLS), ("disc-block", COARSE | dict(radius=0.5, speed=10, accuracy=0.02, pairing="pairwise", checkpoint_every=10)),
+    ("bodies", DRIVEN), ("bodies-axisymmetric", BALLS), ("disc-block", COARSE | dict(radius=0.5, speed=10, accuracy=0.02, checkpoint_every=10)),
     ("ball", BALL), ("ball", BALL | dict(angle=60, friction_static=0.5, friction_dynamic=0.4))])
 def test_bodies_go_on_to_the_last_bit(tmp_path, script, flags):
     """The state of gaps and of the active set is restored for bodies of revolution, bodies that are
-    rigid, held, driven or filled with air, a disc on a block in pairwise contact, and balls in
-    space."""
+    rigid, held, driven or filled with air, a disc on a block, and balls in space."""
     flags = prepared(tmp_path, flags) if "body" in flags else flags
     out = tmp_path / "out"
     assert direct(flags, tmp_path / "straight", script).communicate(timeout=120)

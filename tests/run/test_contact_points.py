@@ -51,14 +51,13 @@ def test_forces_on_a_plane(ran, name, values):
 
 
 @pytest.mark.few(1)
-@pytest.mark.parametrize("values", [{}, {"pairing": "pairwise"}, {"angle": 60, "friction_static": 0.4, "contact_mesh_size": 0.03}])
+@pytest.mark.parametrize("values", [{}, {"angle": 60, "friction_static": 0.4, "contact_mesh_size": 0.03}])
 def test_both_bodies_bear_the_force_between_them(ran, values):
     """Each body carries the normal load once (to 10 % on coarse elements, as each has both roles;
     shear on finer ones), both together exactly twice."""
     result = ran("disc-block", **values)
     forces, there = summed(result)
-    if "pairing" not in values:  # pairwise forces differ in direction
-        np.testing.assert_allclose(forces.pressure[[1, 2]].sum(axis=1), 2 * there.normal_load, rtol=1e-6)
+    np.testing.assert_allclose(forces.pressure[[1, 2]].sum(axis=1), 2 * there.normal_load, rtol=1e-6)
     shares = pd.DataFrame(contact.read(result.folder)).eval("load = pressure * weight").groupby("body").load.sum()
     assert shares[1] == pytest.approx(shares[2], rel=0.1)
     np.testing.assert_allclose(forces.shear[1].sum(), forces.shear[2].sum(), rtol=0.1, atol=1e-9)

@@ -113,18 +113,6 @@ def test_every_body_has_its_mass(tmp_path):
     assert masses[1] == pytest.approx(masses[0], rel=1e-13)
 
 
-def test_pairs_of_points_are_softened_too(tmp_path):
-    """A penalty beyond what explicit steps take is the same one: with pairs of points as well, and the warning names the one in use and the requested one."""
-    summaries = {}
-    for penalty in (1e13, 1e14):
-        flags = dict(script="disc-block", pairing="pairwise", pairing_range=0.02, radius=0.5, speed=5, accuracy=0.1, end_time=0.01, **EXPLICIT)
-        summaries[penalty] = disc(tmp_path / f"{penalty:g}", **flags, penalty=penalty).summary
-        words, = (words for words in summaries[penalty]["warnings"] if words.startswith("explicit penalty: "))
-        assert f"in place of the requested {penalty:g} Pa/m".replace("e+", "e+") in words
-    first, second = summaries.values()
-    assert first["impulse"] == pytest.approx(second["impulse"], rel=1e-9) and first["impulse"] > 0
-
-
 def test_an_obstacle_has_its_own_penalty(tmp_path):
     """The scene's penalty does not limit that of an obstacle, which may be stiffer: a plane with
     1e10 is the same whether the scene has 1e9 or 1e10."""

@@ -30,9 +30,6 @@ void *calloc(size_t k, size_t n) { char *p = malloc(k * n);  return p ? memset(p
 """
 BLOCK, FRICTION = dict(radius=0.5, height=0.15, end_time=0.035), dict(angle=60, friction_static=0.5, friction_dynamic=0.3)
 RUNS = {
-    "pairs of points": ("disc-block", BLOCK | {"pairing": "pairwise"}),
-    "printed pairs": ("disc-block", BLOCK | {"pairing": "pairwise-printed"}),
-    "explicit pairs": ("disc-block", BLOCK | {"pairing": "pairwise", "integrator": "central-difference"}),
     "closest points": ("disc-block", BLOCK | FRICTION),
     "explicit friction": ("disc", FRICTION | {"integrator": "central-difference", "law": "neohookean"}),
     "rubber": ("ball-axisymmetric", {"law": "neohookean", "nu": 0.4999}),

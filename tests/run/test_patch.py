@@ -15,7 +15,7 @@ from ffimpact.running import run
 
 SCENES = {"disc": ("disc-normal", {}), "whole disc": ("disc-oblique", {}), "revolution": ("ball-axisymmetric", {"accuracy": 0.1}),
           "ball": ("ball", {"accuracy": 0.2}), "oblique ball": ("ball-oblique", {}),
-          "block": ("disc-block", {}), "pairs of points": ("disc-block", {"pairing": "pairwise"})}
+          "block": ("disc-block", {})}
 
 
 @pytest.fixture(scope="module")

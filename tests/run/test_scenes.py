@@ -392,7 +392,6 @@ def _other_triangles(text: str, what: str, new) -> str:
 @pytest.mark.parametrize("script, flags, message", [
     ("bodies", ("-accuracy", "0.4"), "bodies: -bodies FILE is missing"),
     ("bodies", ("-radius", "1"), "-radius: no such parameter (accepted: "),
-    ("bodies-3d", ("-pairing", "pairwise"), "pairing: bodies-3d takes no such parameter (accepted: in bodies)"),
 ])
 def test_flags_of_another_script_are_refused(script, flags, message):
     """A direct run refuses parameters that its script does not use, with exit code 10."""

@@ -94,10 +94,9 @@ def test_which_bodies_touch_themselves(tmp_path):
     assert partners(tables | {"contact": {"self_contact": "on"}}) == [(0, 0), (1, 1), (2, 2), (3, 3)]
     own = {"self_contact": "off", "pair": [{"bodies": ["thick", "thick"], "penalty": 1e9}]}
     assert partners(tables | {"contact": {"self_contact": "off"}}) == [] and partners(tables | {"contact": own}) == [(2, 2)]
-    assert partners(tables | {"obstacle": [], "contact": {"pairing": "pairwise"}}) == []
     rigid = {"body": [PIN, RING | {"position": [0.3, 0.1], "rigid": True}]}
     assert partners(SCENE | rigid) == [(0, 0)] == partners(SCENE | rigid | {"contact": {"self_contact": "on"}})
-    for contact, message in (({"self_contact": "yes"}, "^contact.self_contact: 'yes' is not known .accepted: auto|on|off"), ({"self_contact": "on", "pairing": "pairwise"}, "^contact.self_contact: on, but pairing = 'pairwise'")):
+    for contact, message in (({"self_contact": "yes"}, "^contact.self_contact: 'yes' is not known .accepted: auto|on|off"),):
         with pytest.raises(BadInput, match=message):
             read(tables | {"contact": contact})
     _, used, _ = assembly.prepare(read(SCENE | {"body": [PIN], "contact": {"penalty": 1e9}}), tmp_path)

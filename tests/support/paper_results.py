@@ -132,8 +132,12 @@ def steps(law, static=0.7):
     return key("friction-steps", friction_static=static, law=law)
 
 
-def pairs(pairing, width="auto"):
-    return key("pairing", pairing=pairing, pairing_range=width)
+def pairs(formulation, width="auto"):
+    return key("paper-scripts", formulation=formulation, width=width)
+
+
+def search(law="svk"):
+    return key("closest-points", law=law)
 
 
 def forces(law, speed):
@@ -178,7 +182,7 @@ def base() -> dict:
                      | {forces(law, speed): [PUSH] * 2 for law in both for speed in (1, 10)}
                      | {steps(law, static): JUMPS if static == 0.7 else SLIDES for law in both for static in (0.7, 0.5)},
         "summaries": {jump("svk"): [KEPT] * 2, steps("svk"): [KEPT] * 2}
-                     | {pairs(pairing, width): [end] * 2 for width in ("auto", 0.049) for pairing, end in (("closest-point", NEAR), ("pairwise", NEAR), ("pairwise-printed", CHATTERS))}
+                     | {search(): [NEAR] * 2} | {pairs(pairing, width): [end] * 2 for width in ("auto", 0.049) for pairing, end in (("closest-point", NEAR), ("pairwise", NEAR), ("pairwise-printed", CHATTERS))}
                      | {forces(law, speed): [KEPT | {"newton_iterations": 450 if law == "neohookean" else 300}] * 2 for law in both for speed in (1, 10)},
         "table": {
             "friction-jump": pd.DataFrame([rebound | {"law": law, "friction_static": static} for law in both for static in (0.7, 0.5)]),
@@ -195,7 +199,6 @@ def base() -> dict:
                                         "rebound_vy_error": 1e-3} for law in both for k, time in ((3e8, 5.2e-3), (1e9, 4.9e-3), (1e10, 4.8e-3), (1e12, 4.7e-3))]),
             "slip-limit": pd.DataFrame({"slip_velocity": [3.0, 1, 0.1, 0.01], "exit": 0, "rebound_vx": [3.3, 3.1, 3.04, 3.03], "rebound_vx_error": 0.02,
                                         "friction_work": [60.0, 50, 45, 44.5], "friction_work_error": 1.0}),
-            "pairing": pd.DataFrame({"pairing_range": ["auto", 0.049]}),
             # Stiffer contacts are shorter. On the finer mesh contacts are 0.1 ms longer. With k =
             # 1e9 all runs lose ellipticity.
             "calibrate-oblique": pd.DataFrame([{"angle": angle, "nu": nu, "penalty": k, "mesh_size": h, "exit": 0, "contact_time": time + 1e-4 * (h == 0.008) + 2e-4 * (angle == 30),

@@ -140,7 +140,6 @@ BAD = [
     ({}, {"symmetry": "third"}, "symmetry: 'third' is not known (accepted: auto|full|half|quarter)"),
     ({"velocity": [0, -8, 1]}, {"symmetry": "half"}, "symmetry: half, but 'ball' moves along z (accepted: auto|full)"),
     ({"spin": 1}, {"symmetry": "quarter"}, "symmetry: quarter, but 'ball' spins out of the plane x = 0 (accepted: auto|full|half)"),
-    ({}, {"contact": {"pairing": "pairwise"}}, "pairing: bodies-3d takes no such parameter"),
     ({}, {"script": "bodies"}, "script: 'bodies' is not that of [[body]] tables in dimension = '3d'"),
 ]
 

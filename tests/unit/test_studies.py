@@ -6,7 +6,7 @@ import re
 import pandas as pd
 import pytest
 
-from benchmarks import pairing_comparison, stress
+from benchmarks import stress
 from ffimpact.sweeps import study
 from verification import commands
 
@@ -48,27 +48,6 @@ def test_stress_requirement(row, kind, good):
     """A closed balance, or exit code 11 or 12 with a message, is required."""
     rows = pd.DataFrame([row | {"outcome": stress.outcome(pd.Series(row))}])
     assert rows.outcome[0] == kind and stress.holds(rows)[0] == good
-
-
-def test_pairs_are_held_against_closest_points_of_the_same_penalty(monkeypatch, tmp_path):
-    """There is a row for each run, with differences from closest points with the same k in per
-    cent.
-
-    A failed run is a row with the reason and fails the requirement.
-    """
-    def runs(points, *_, **__):
-        return pd.DataFrame([{"exit": 0, "message": "", "warnings": "", "rebound_vy_1": 5 + (point["pairing"] == "pairwise") * 0.05, "energy_drift": 1e-12,
-                              "rebound_vy_2": -0.5, "impulse_y_1": 2e4, "thresholded_contact_time": 0.05} | point for point in points])
-    monkeypatch.setattr(study, "study", runs)
-    monkeypatch.setattr(pairing_comparison, "read_scene", lambda folder: {"contact": {"pairing_range": 0.1, "penalty": 1e9}, "body": [{"contact_mesh_size": 0.1}]})
-    monkeypatch.setattr(pairing_comparison, "read_history", lambda folder: {"momentum_y": pd.Series([-1.0, -1.0])})
-    monkeypatch.setattr(study, "place", lambda *_: tmp_path)
-    for name in ("scene.toml", "history.csv"):
-        (tmp_path / name).touch()
-    table = pairing_comparison.compare(["neohookean"], tmp_path)
-    assert table.pairing.value_counts().to_dict() == {"pairwise": 11, "closest-point": 4, "pairwise-printed": 2} and pairing_comparison.holds(table)
-    assert table["differ [%]"][table.pairing == "pairwise"].tolist() == pytest.approx([0.5] * 11) and (table[table.pairing != "pairwise"]["differ [%]"] == 0).all()
-    assert not pairing_comparison.holds(table.assign(outcome="step"))
 
 
 def test_pages_say_what_measured_them():

@@ -899,8 +899,6 @@ class Contact(Entries):
     regularization: Annotated[str | None, shared("regularization")] = None
     friction_transition: Annotated[str | None, shared("friction_transition")] = None
     penalty_damping: Annotated[float | None, shared("penalty_damping")] = None
-    pairing: Annotated[str | None, shared("pairing")] = None
-    pairing_range: Annotated[float | str | None, shared("pairing_range")] = None
     self_contact: Annotated[
         str | None,
         Parameter(
@@ -913,6 +911,12 @@ class Contact(Entries):
         ),
     ] = None
     pair: Annotated[list[Pair] | None, BeforeValidator(several)] = None
+
+    @classmethod
+    def refused(cls, name: str, value: Any, dimension: Dimension | None) -> str:
+        if name.startswith("pairing"):
+            return _no_more(name, value)
+        return super().refused(name, value, dimension)
 
 
 CONTACT = tuple(name for name in Contact.model_fields if name not in ("self_contact", "pair"))
@@ -933,7 +937,14 @@ FORMER = {
     "height": "body.1.position, that of the centre of mass",
     "block_width": "body.2.width",
     "block_height": "body.2.height",
+    "pairing": "closest points, of all scenes; pairs of points are in edp/disc-block.edp",
+    "pairing_range": "the flag -pairing_range of edp/disc-block.edp",
 }
+
+
+def _no_more(name: str, value: Any) -> str:
+    """The message about a former entry, behind its name."""
+    return f": '{brief(value)}' is no entry any more (accepted: {FORMER[name]})"
 
 
 class Top(Entries):
@@ -997,7 +1008,7 @@ class Top(Entries):
     def refused(cls, name: str, value: Any, dimension: Dimension | None) -> str:
         """The message about an unknown entry, with the table that has this entry, if any."""
         if name in FORMER:
-            return f": '{brief(value)}' is no entry any more (accepted: {FORMER[name]})"
+            return _no_more(name, value)
         of_bodies = {entry for model in BODIES.values() for entry in model.names(dimension)}
         meant = (
             f"body.1.{name}" if name in of_bodies else f"contact.{name}" if name in CONTACT else ""

@@ -135,24 +135,6 @@ ROWS = (
         "retardation time tau of the penalty: a closing contact takes t_N + tau dt_N/dt instead of "
         "t_N of (10), never below 0; 0 = none. It takes energy (penalty_damping_work)",
     ),
-    word(
-        "pairing",
-        "closest-point",
-        ("closest-point", "pairwise", "pairwise-printed"),
-        "what two bodies see of each other: the closest point (9), or all points nearer than "
-        "pairing_range, (14) and (15): with a repulsion that vanishes there, or as printed",
-        ("bodies",),
-    ),
-    real(
-        "pairing_range",
-        "auto",
-        1e-12,
-        1e9,
-        "m",
-        "epsilon of (14), the range of the repulsion between pairs of points; auto = an element at "
-        "the contact, or four times the penetration that the penalty allows",
-        ("bodies",),
-    ),
     real(
         "friction_static",
         0,

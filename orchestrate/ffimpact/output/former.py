@@ -31,9 +31,10 @@ OF_THE_SCRIPT = (
 
 
 def tables(flat: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns the tables of a scene with flat entries. A scene of tables is returned unchanged."""
+    """Returns the tables of a scene with flat entries. Of a scene of tables, pairings are left out."""
     if flat.get("script") not in SCRIPTS or "body" in flat:
-        return dict(flat)
+        contact = {name: value for name, value in flat.get("contact", {}).items() if name in CONTACT}
+        return dict(flat) | ({"contact": contact} if contact else {})
     script, dimension = SCRIPTS[flat["script"]]
     ball, radius = flat["script"].startswith("ball"), flat["radius"]
     material = {name: flat[name] for name in (*MATERIAL, *SIZES) if name in flat}

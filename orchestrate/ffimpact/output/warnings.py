@@ -47,8 +47,6 @@ LOOSEST = 0.1  # slip velocity over the speeds of the scene
 LOCKING_LINEAR, LOCKING_QUADRATIC = 0.4, 0.495  # Poisson's ratio from which on elements lock
 SPREAD = 0.1  # det F at a point relative to its mean over the element
 DIFFERENT_MASS = 0.01  # relative to the mesh of a file
-APART = 0.39  # distance of contact points over the length of their edge
-RANGE = 0.7  # penetration over the range of pairs of points, where the repulsion is largest
 # Speed over the bar wave speed. A penalty ten times larger on a mesh twice as fine moves the peak
 # force by 1 % at most up to 0.01, by 7 to
 # 18 % at 0.1, in twelve materials: by POINTWISE at most. Impulse and restitution hardly change: the
@@ -441,8 +439,6 @@ def _contact(e: Evidence) -> Iterator[Sentence]:
             f"steps: {e.loaded_steps} steps in contact: at least {FEWEST_STEPS} are needed: "
             "take a smaller dt, or a smaller accuracy"
         )
-    if facts["pairwise"]:
-        yield from _pairing_range(e)
     if not facts["in_contact"]:
         yield from _end_of_contact(e)
 
@@ -516,27 +512,6 @@ def _mean_over(step: np.ndarray, force: np.ndarray, width: float) -> float:
     them."""
     share = np.clip(width - (np.cumsum(step) - step), 0, step)
     return float(share @ force) / width
-
-
-def _pairing_range(e: Evidence) -> Iterator[Sentence]:
-    reach, apart, deepest = (
-        e.facts["pairing_range"],
-        APART * e.facts["coarsest_contact"],
-        e.record["max_penetration"],
-    )
-    if reach < apart:
-        yield warn(
-            f"pairing range: {reach:g} m, contact points are {rounded(apart)} m apart at the "
-            "contact: points of one body may pass between those of the "
-            "other: take a larger pairing_range, or a smaller contact_mesh_size"
-        )
-    if deepest > RANGE * reach:
-        yield warn(
-            "pairing range: the smallest distance of a pair of points is "
-            f"{percent(1 - deepest / reach)} of it: the repulsion is largest at 28 % and "
-            "decreases below, so the bodies may pass through each other: take a larger penalty or "
-            "pairing_range"
-        )
 
 
 def _end_of_contact(e: Evidence) -> Iterator[Sentence]:
@@ -647,24 +622,20 @@ def _pairs(e: Evidence) -> Iterator[Sentence]:
 
 def _points(e: Evidence) -> Iterator[Sentence]:
     """Too few contact points at the largest force, of pairs with a hundredth of the largest force
-    and more; with pairs of points of all bodies together.
+    and more.
     """
     pairs, needed = e.facts["pairs"], FEWEST_POINTS[e.facts["dimension"]]
-    if e.facts["pairwise"]:
-        fewest = e.facts["touching_at_peak"]
-        rough = pairs[:1] if e.largest_force > 0 and fewest < needed else []
-    else:
-        largest = max((pair["peak"] for pair in pairs), default=0)
-        rough = [
-            pair
-            for pair in pairs
-            if pair["peak"] > THRESHOLD * largest and pair["points_at_peak"] < needed
-        ]
-        fewest = min((pair["points_at_peak"] for pair in rough), default=0)
+    largest = max((pair["peak"] for pair in pairs), default=0)
+    rough = [
+        pair
+        for pair in pairs
+        if pair["peak"] > THRESHOLD * largest and pair["points_at_peak"] < needed
+    ]
     if not rough:
         return
-    worst = rough[0] if e.facts["pairwise"] else min(rough, key=lambda pair: pair["points_at_peak"])
-    whose = e.pair(worst) if not e.facts["pairwise"] and len(pairs) > 1 else "the body"
+    worst = min(rough, key=lambda pair: pair["points_at_peak"])
+    fewest = worst["points_at_peak"]
+    whose = e.pair(worst) if len(pairs) > 1 else "the body"
     yield warn(
         f"contact points: {fewest} of {whose}{_others(len(rough))} carry the largest force: at "
         f"least {needed} are needed. Forces and contact time are "

@@ -308,7 +308,6 @@ def read(content: dict, folder: Path, name: str) -> Scene:
         contact |= {"penalty": max(penalties)}  # no pair uses it, and no body would determine it
     for k in _touching_themselves(
         tables.contact,
-        contact.get("pairing", "closest-point"),
         all_bodies,
         scene_dimension,
         len(all_bodies) == 1 and not all_obstacles,
@@ -388,20 +387,16 @@ def _refuse_integrator(scene: Scene) -> None:
 
 def _refuse_damping(contact: Mapping[str, Value], values: Mapping[str, Value]) -> None:
     """Raises BadInput if the penalty is damped and the integrator takes contact forces at the end of
-    a step, so that their work is not exact, or if the law of the pairs has no penalty.
+    a step, so that their work is not exact.
     """
     if not contact["penalty_damping"]:
         return
-    exact = ("auto", "energy-momentum", "midpoint", "central-difference")
-    for name, value, accepted in [
-        ("integrator", values["integrator"], exact),
-        ("pairing", contact.get("pairing", "closest-point"), ("closest-point", "pairwise")),
-    ]:
-        if value not in accepted:
-            raise BadInput(
-                f"penalty_damping: '{contact['penalty_damping']:g}' beside {name} = '{value}' "
-                f"(accepted: 0, or {name} = {'|'.join(accepted)})"
-            )
+    accepted = ("auto", "energy-momentum", "midpoint", "central-difference")
+    if values["integrator"] not in accepted:
+        raise BadInput(
+            f"penalty_damping: '{contact['penalty_damping']:g}' beside integrator = "
+            f"'{values['integrator']}' (accepted: 0, or integrator = {'|'.join(accepted)})"
+        )
 
 
 def _refuse_start(scene: Scene) -> None:
@@ -509,7 +504,6 @@ def _exceptions(tables: list[models.Pair], index: dict[str, int]) -> dict[tuple[
 
 def _touching_themselves(
     contact: models.Contact,
-    pairing: str,
     all_bodies: list[Body],
     scene_dimension: Dimension,
     alone: bool,
@@ -521,11 +515,6 @@ def _touching_themselves(
     A body that is `alone`, without obstacles or other bodies, always may.
     """
     self_contact = contact.self_contact or "auto"
-    if self_contact == "on" and pairing != "closest-point":
-        raise BadInput(
-            f"{contact.at('self_contact')}: on, but pairing = '{pairing}' is between bodies "
-            f"(accepted: auto|off, or pairing = 'closest-point')"
-        )
     if alone and self_contact == "off":
         raise BadInput(
             f"{contact.at('self_contact')}: off, but a body without obstacles and other bodies may "
@@ -533,7 +522,7 @@ def _touching_themselves(
         )
     if alone:
         return [0]
-    if self_contact == "off" or pairing != "closest-point":
+    if self_contact == "off":
         return []
     flat = scene_dimension is not SOLID
     return [
