@@ -1,6 +1,6 @@
 // arrays.hpp: arrays of FreeFEM scripts as the kernels see them. It needs one header of FreeFEM, as
-// the others take long to compile. Exports Reals, Ints, Table, copied(), Kept, JacobianRows and
-// Archive.
+// the others take long to compile. Exports Reals, Ints, Table, copied(), Kept, Triplets,
+// JacobianRows and Archive.
 #pragma once
 #include <vector>
 #include "RNM.hpp"
@@ -24,6 +24,14 @@ template <class R> struct Kept {
   R &operator[](long i) const { return (*array)[i]; }
   long size() const { return array->N(); }
   Eigen::Map<Numbers> numbers() const { return {static_cast<R *>(*array), array->N()}; }
+};
+
+// A sparse matrix of FreeFEM: entries in any order.
+struct Triplets {
+  int n, m;                                // numbers of rows and columns
+  size_t size;
+  const int *row, *column;
+  const double *value;
 };
 
 // Script arrays for the rows of gaps as triplets: B(row, unknown) = normal, and for each tangent

@@ -6,18 +6,11 @@
 #pragma once
 #include <map>
 #include <vector>
+#include "arrays.hpp"
 #include "laws.hpp"
 #include "status.hpp"
 
 namespace bodies {
-
-// A sparse matrix of FreeFEM: entries in any order.
-struct Triplets {
-  int n, m;                                // numbers of rows and columns
-  size_t size;
-  const int *row, *column;
-  const double *value;
-};
 
 using laws::Tensor;
 using laws::Symmetric;

@@ -141,7 +141,7 @@ void Rows::makePattern() {
                                   made.row.data(), nullptr, made.place.data()) == UMFPACK_OK
         && umfpack_di_symbolic(n, n, made.start.data(), made.row.data(), nullptr, &symbolic,
                                nullptr, nullptr) == UMFPACK_OK,
-        "there is not forceTolerance of it for the pattern of the contact");
+        "the pattern of the contact");
   made.symbolic.reset(symbolic, [](void *s) { umfpack_di_free_symbolic(&s); });
   pattern = std::make_shared<const Pattern>(std::move(made));
 }

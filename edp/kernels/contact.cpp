@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include "contact.hpp"
+#include "factor.hpp"
 
 namespace contact {
 

@@ -6,7 +6,8 @@
 #pragma once
 #include "arrays.hpp"
 #include "contact-solve.hpp"
-#include "factor.hpp"
+
+class Factor;
 
 namespace contact {
 
@@ -29,8 +30,8 @@ class Contact {
   Vector diagonal;                               // explicit steps: A^-1 is diagonal, else empty
   Indices candidates;                            // of the active set
   Indices unknowns;                              // of it or, if B changes, of all sets so far
-  Indices orderedLast;                           // unknowns that A orders lastForces
-  Vector lastForces;                                   // candidateForces of the lastForces solve
+  Indices orderedLast;                           // unknowns that A orders last
+  Vector lastForces;                             // candidateForces of the last solve
   long contactMatrices = 0, mostContactMatrices = 1000000000;
 
   Contact(Factor &factorOfA, int &numberOfUnknowns) : factor(factorOfA), ndof(numberOfUnknowns) {}
@@ -92,7 +93,7 @@ class Contact {
   std::vector<char> active;                      // (ns) 1: in the active set
   Indices index;                                 // (ndof) position in `unknowns`, or -1
   size_t computed = 0;                           // number of unknowns in C
-  long setsMade = 0, solvedSet = -1;             // active sets so far; the lastForces one solved
+  long setsMade = 0, solvedSet = -1;             // active sets so far; the last one solved
   Vector C;                                      // full, or the diagonal
 
   Candidate point(long s) const;

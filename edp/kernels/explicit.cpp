@@ -1,4 +1,5 @@
 // explicit.cpp: the substep of explicit.hpp.
+#include "contact.hpp"
 #include "explicit.hpp"
 
 using Vector = Eigen::VectorXd;

@@ -7,7 +7,10 @@
 // diagonal A = (2/h^2) M. Exports ExplicitContact.
 #pragma once
 #include <functional>
-#include "contact.hpp"
+#include "status.hpp"
+#include "tensors.hpp"
+
+namespace contact { class Contact; }
 
 // Momentum changes only by -h B^T tau, as the inner forces of free bodies sum to zero. B
 // annihilates rotations about the middle of (a), so angular momentum is exact, too. Energy:

@@ -3,6 +3,7 @@
 #include <xmmintrin.h>
 #endif
 #include <algorithm>
+#include "bodies.hpp"
 #include "factor.hpp"
 #include "failure.hpp"
 

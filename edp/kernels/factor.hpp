@@ -7,7 +7,9 @@
 // A must then be positive definite. Exports Factor.
 #pragma once
 #include <cholmod.h>
-#include "bodies.hpp"
+#include <vector>
+
+namespace bodies { class Bodies; }
 
 class Factor {
 public:

@@ -4,8 +4,9 @@
 #include <cholmod.h>   // first: without SuiteSparse's headers the build ends at once
 #include "call.hpp"
 #include "bodies.hpp"
-#include "factor.hpp"
+#include "contact.hpp"
 #include "explicit.hpp"
+#include "factor.hpp"
 #include "obstacles.hpp"
 #include "pairs.hpp"
 #include "step.hpp"
@@ -33,7 +34,7 @@ static ExplicitContact substep(touching);
 static std::unique_ptr<pairs::AnyPairs> pairsOfBodies;
 static obstacles::Obstacles sceneObstacles;                   // the obstacles
 
-static bodies::Triplets entries(Sparse A) {
+static Triplets entries(Sparse A) {
   // The entries of a sparse matrix. The kernels take no half (symmetric) or 1-based storage.
   HashMatrix<int, double> *H = A.pHM();
   ffassert(H && !H->half && !H->fortran);

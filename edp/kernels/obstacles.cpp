@@ -64,7 +64,7 @@ double StepMotion::intoScene(const Point &middle, Point &b) const {
   return changed.dot(middle - centre) - b.dot(shift);
 }
 
-void Obstacles::setPoints(const double *places, const bodies::Triplets &traces) {
+void Obstacles::setPoints(const double *places, const Triplets &traces) {
   const int n = traces.n / axes;
   reference.assign(n, Point::Zero());
   for (int c = 0; c < axes; c++) for (int p = 0; p < n; p++)

@@ -8,7 +8,6 @@
 #pragma once
 #include <eigen3/Eigen/Sparse>
 #include "arrays.hpp"
-#include "bodies.hpp"
 #include "shapes.hpp"
 
 namespace obstacles {
@@ -80,7 +79,7 @@ class Obstacles {
 
   // Reference positions of the points and the matrix (axes points x ndof) of their displacements,
   // both stacked by component.
-  void setPoints(const double *places, const bodies::Triplets &traces);
+  void setPoints(const double *places, const Triplets &traces);
 
   // Starts a step at u0 and `time`: finds the candidates with a gap below searchDistance [m],
   // which must exceed the motion of any point in the step. Returns their number. A gap changes by

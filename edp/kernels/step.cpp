@@ -1,6 +1,8 @@
 // step.cpp: Newton's method of step.hpp.
 #include <algorithm>
 #include <cmath>
+#include "contact.hpp"
+#include "factor.hpp"
 #include "step.hpp"
 
 using Vector = Eigen::VectorXd;

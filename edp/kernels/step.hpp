@@ -9,7 +9,9 @@
 #include <functional>
 #include "anderson.hpp"
 #include "bodies.hpp"
-#include "contact.hpp"
+
+class Factor;
+namespace contact { class Contact; }
 
 // Numbers that do not change in a run. `newMatrix`: factorise in every iteration.
 struct Settings {
@@ -41,7 +43,7 @@ class ImplicitStep {
   using Vector = Eigen::VectorXd;
   StepArrays script;
   Settings settings = {};
-  bodies::Triplets translations = {};            // (ndof x 3 bodies)
+  Triplets translations = {};            // (ndof x 3 bodies)
   double residualWorkRatio = 0;                  // work of the residual over energyScale
 
   ImplicitStep(bodies::Bodies &allBodies, Factor &factorOfA, contact::Contact &contactOfStep)
