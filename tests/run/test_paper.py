@@ -106,7 +106,7 @@ def test_the_control_differs_in_the_jump_alone():
 def test_page_holds_everything_itself(tmp_path):
     """The figures are inside, there are no external links, and every statement has its verdict,
     parameters and provenance of its runs."""
-    fake_freefem.write_scene(tmp_path)
+    (tmp_path / "scene.toml").write_text(fake_freefem.SCENE.replace("speed = 8", "speed = 7"))
     (tmp_path / "summary.json").write_text(json.dumps({"provenance": dict(git="abc", code="def", freefem="4.9", gmsh="4", mesh="0123")}))
     (tmp_path / "a.png").write_bytes(b"\x89PNG picture")
     text = paper_page.page([("Figure 1", "a < b", Finding(AGREES, "2 & 3", [tmp_path / "a.png"], [tmp_path])),
@@ -202,7 +202,7 @@ def test_values_are_listed_as_numbers(tmp_path):
     """The range of a varied parameter goes from its smallest to its largest number."""
     for k, speed in enumerate((0.5, 9.9, 12.1, 1, 2, 3, 4, 5, 6)):
         (tmp_path / str(k)).mkdir()
-        fake_freefem.write_scene(tmp_path / str(k)))
+        (tmp_path / str(k) / "scene.toml").write_text(fake_freefem.SCENE.replace("speed = 8", f"speed = {speed}"))
     assert "speed: 9 values from 0.5 to 12.1" in paper_page.provenance_of(sorted(tmp_path.iterdir()))
 
 
