@@ -31,6 +31,7 @@ from .approach import Onset, loaded_pull, onsets_of, refuse_nothing, refuse_sink
 from .bodies import DAMPING, STIFF, Body
 from .front import Front, fronts, stretch_of
 from .mirror import COPIES, copies, mirror_axes
+from .needs import IMPLICIT, implicit_for
 from .parts import sections
 from .scene import Pair, Scene
 from .sizes import Impact
@@ -128,9 +129,11 @@ def assemble(scene: Scene, onsets: list[Onset] | None = None) -> Assembly:
     contact if they are known already.
     """
     ask = Asker(scene, onsets_of(scene) if onsets is None else onsets)
+    why = implicit_for(scene) if scene.values["integrator"] == "auto" else ""
     scene = replace(
         scene,
         bodies=[_with_viscosity(k, ask) for k in range(len(scene.bodies))],
+        values=scene.values | ({"integrator": IMPLICIT} if why else {}),
     )
     ask = replace(ask, scene=scene)
     values = scene.values | contact_values(scene.bodies, scene.contact, ask, "contact")
@@ -154,12 +157,16 @@ def assemble(scene: Scene, onsets: list[Onset] | None = None) -> Assembly:
         strike.rise_on(penalties.get(both, values["penalty"]), scene.bodies, values["exponent"])
         for both, strike in ask.fronts.items()
     ]
-    front = [(min(strike.tau for strike in ask.fronts.values()), max(rises))] if rises else []
+    # Why auto takes implicit steps; the transit [s] of the front of a flat strike through an element
+    # and its rise time [s].
+    notes = [("implicit", why)] if why else []
+    if rises:
+        notes += [("front", min(strike.tau for strike in ask.fronts.values()), max(rises))]
     return Assembly(
         together,
         regions,
         centres,
-        data_file(scene, disc.pressure, centres, rounds, pairs, front, conditions),
+        data_file(scene, disc.pressure, centres, rounds, pairs, notes, conditions),
         values,
         used_tables(scene, sizes, values, pairs),
     )
@@ -698,15 +705,15 @@ def data_file(
     centres: np.ndarray,
     rounds: list[tuple],
     pairs: list[dict[str, Value]],
-    front: Sequence[tuple[float, float]] = (),
+    notes: Sequence[tuple] = (),
     conditions: Sequence[tuple] = (),
 ) -> str:
     """Returns the text of scene.dat, words and numbers (SI, radians), in the format of
     edp/program/input/scene-file.idp.
 
     `pressure` is the largest contact pressure [Pa] by the rules of sizes. `rounds` are the lines
-    of circles, or of spheres and cylinders, `conditions` those of supports and loads. If there is a
-    flat strike, `front` holds the transit of its front through an element and its rise time [s].
+    of circles, or of spheres and cylinders, `conditions` those of supports and loads. `notes` are
+    the lines `implicit` and `front`.
     """
     if scene.dimension is SOLID:
         head = [("ffimpact-bodies-3d", 1)]
@@ -754,7 +761,7 @@ def data_file(
         ("pairs", len(pairs)),
         *((pair.first, pair.second, *own.values()) for pair, own in zip(scene.pairs, pairs)),
     ]
-    lines += [("front", *strike) for strike in front]
+    lines += notes
     damped = [
         (k, *(getattr(body, name) for name in DAMPING))
         for k, body in enumerate(scene.bodies)

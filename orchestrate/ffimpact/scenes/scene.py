@@ -9,7 +9,6 @@ import hashlib
 import itertools
 import os
 import shutil
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -26,7 +25,7 @@ from ..input.parameters import Value
 from ..mesh.solid_file import declares_unit, takes_in_others
 from ..output import former
 from ..output.columns import Features, recorded
-from . import bodies, conditions, mirror, obstacles
+from . import bodies, conditions, mirror, needs, obstacles
 from .bodies import SIZES, STIFFEST, Body
 from .entries import release, set_entry, toml_value
 from .obstacles import Obstacle
@@ -327,82 +326,26 @@ def read(content: dict, folder: Path, name: str) -> Scene:
         [pairs[both] for both in sorted(pairs)],
     )
     _apart(scene)
-    _refuse_integrator(scene)
+    needs.refuse(scene)
     _refuse_start(scene)
-    _refuse_straight(scene)
-    _refuse_damping(contact, values)
     for k, body in enumerate(all_bodies, 1):
-        _refuse_nu(f"body.{k}.nu" if len(all_bodies) > 1 else "nu", body.nu, body.law, values)
+        _refuse_nu(f"body.{k}.nu" if len(all_bodies) > 1 else "nu", body.nu, body.law)
     mirror.copies(scene)
     return scene
 
 
-def _refuse_nu(entry: str, nu: float, law: str, values: Mapping[str, Value]) -> None:
-    """Raises BadInput if the settings do not allow the nu of a body.
-
-    nu = 0.5 (J = 1) needs quadratic elements with projected volume, integrator = energy-momentum
-    or auto, and any law but svk. Otherwise nu is at most 0.4999.
+def _refuse_nu(entry: str, nu: float, law: str) -> None:
+    """Raises BadInput unless the nu of a body is at most 0.4999, or 0.5, as law = incompressible
+    has it.
     """
     if law == "incompressible" and nu != 0.5:
         raise BadInput(f"{entry}: {nu:g} of law = incompressible (accepted: 0.5)")
-    if nu == 0.5:
-        volume = values["volume"]
-        keeps_volume = values["degree"] == 2 and volume != "plain"
-        conserves = values["integrator"] in ("energy-momentum", "auto")
-        if not (law != "svk" and keeps_volume and conserves):
-            raise BadInput(
-                f"{entry}: {nu:g} (J = 1) of law = {law}, degree = {values['degree']}, "
-                f"volume = {volume}, integrator = {values['integrator']} (accepted: up to 0.4999, or 0.5 "
-                "with any law but svk, degree = 2, volume = auto or projected, integrator = energy-momentum or auto)"
-            )
-    elif nu > 0.4999:
+    if 0.4999 < nu < 0.5:
         raise BadInput(f"{entry}: {nu:g} is out of range (accepted: 0 to 0.4999, or 0.5: J = 1)")
 
 
-def _refuse_straight(scene: Scene) -> None:
-    """Raises BadInput for an inflated shape of straight elements, whose nodes are not moved."""
-    for b, body in enumerate(scene.bodies, 1):
-        if body.inflated and scene.values["degree"] == 1:
-            raise BadInput(
-                f"body.{b}.load: given_shape = 'inflated' needs elements of degree 2 "
-                "(accepted: degree = 2)"
-            )
-
-
-def _refuse_integrator(scene: Scene) -> None:
-    """Raises BadInput if the work of supports and loads would not be exact with the integrator, or
-    if it needs a diagonal mass, which the few unknowns of a rigid body do not have.
-    """
-    accepted, integrator = ("auto", "energy-momentum", "midpoint"), scene.values["integrator"]
-    if integrator not in accepted and any(body.supports or body.loads for body in scene.bodies):
-        raise BadInput(
-            f"integrator: '{integrator}' has no supports and loads (accepted with them: {'|'.join(accepted)})"
-        )
-    if integrator == "central-difference" and any(body.rigid for body in scene.bodies):
-        words = (word for word in parameters.PARAMETERS["integrator"].words if word != integrator)
-        raise BadInput(
-            f"integrator: '{integrator}' has no rigid bodies (accepted with them: {'|'.join(words)})"
-        )
-
-
-def _refuse_damping(contact: Mapping[str, Value], values: Mapping[str, Value]) -> None:
-    """Raises BadInput if the penalty is damped and the integrator takes contact forces at the end of
-    a step, so that their work is not exact.
-    """
-    if not contact["penalty_damping"]:
-        return
-    accepted = ("auto", "energy-momentum", "midpoint", "central-difference")
-    if values["integrator"] not in accepted:
-        raise BadInput(
-            f"penalty_damping: '{contact['penalty_damping']:g}' beside integrator = "
-            f"'{values['integrator']}' (accepted: 0, or integrator = {'|'.join(accepted)})"
-        )
-
-
 def _refuse_start(scene: Scene) -> None:
-    """Raises BadInput if the scene starts in equilibrium and something moves at t = 0, or explicit
-    steps would soften the penalty afterwards.
-    """
+    """Raises BadInput if the scene starts in equilibrium and something moves at t = 0."""
     if scene.values["start"] != "equilibrium":
         return
     for key, table in [
@@ -415,11 +358,6 @@ def _refuse_start(scene: Scene) -> None:
                     f"{key}.{name}: '{brief(table[name])}' beside start = 'equilibrium', where all is at "
                     "rest (accepted: 0, or start = 'given')"
                 )
-    if scene.values["integrator"] == "central-difference":
-        raise BadInput(
-            "integrator: 'central-difference' softens the penalty of start = 'equilibrium' "
-            "(accepted: auto, or an implicit one)"
-        )
 
 
 def _parameters(
