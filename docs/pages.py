@@ -25,6 +25,7 @@ from ffimpact.input import models, parameters
 from ffimpact.input.parameter import Parameter, Rule
 from ffimpact.output.columns import FILES, NEEDS
 from ffimpact.places import PACKAGE, ROOT, shown
+from ffimpact.scenes import needs
 
 EQUATION = re.compile(r"// ((?:\(\d+\)(?:, |–| ))*\(\d+\))(?::| |$)")
 
@@ -125,6 +126,12 @@ def entries() -> str:
         default = parameter.default if isinstance(parameter.default, str) else f"{parameter.default:g}"
         accepted = cell(words(parameter.accepted))
         text += f"| `{parameter.name}` | {parameter.unit} | {default} | {accepted} | {cell(parameter.help)} |\n"
+    text += "\n## What needs what\nOther values are refused, except `auto`, which becomes one of these.\n\n"
+    text += "| what | entry | accepted |\n|---|---|---|\n"
+    for need in needs.NEEDS:
+        what = need.what.rpartition(" ")[0]
+        for name, values in need.accepted.items():
+            text += f"| {what} | `{name}` | {cell(words('|'.join(map(str, values))))} |\n"
     text += "\n## Materials\nIn Python `material = NeoHookean(...)` and so on; in a file the same "
     text += "entries in a body's table, or at the top for all bodies.\n\n"
     text += "".join(

@@ -3,6 +3,7 @@
 Hence only waves in the bodies determine the substeps of a step.
 """
 
+import math
 from functools import cache
 
 import pytest
@@ -125,3 +126,37 @@ def test_an_obstacle_has_its_own_penalty(tmp_path):
         depths.append(result.summary["max_penetration"])
         assert not any(words.startswith("explicit penalty: ") for words in result.summary["warnings"])
     assert depths[0] == pytest.approx(depths[1], rel=1e-9) and depths[0] > 1e-5
+
+
+DRIVEN = {"law": "neohookean", "young": 7e6, "nu": 0.3, "density": 1000, "accuracy": 0.1, "end_time": 2.5e-3,
+          "contact": {"penalty": 2e9, "friction_static": 0.4, "slip_velocity": 0.05}, **EXPLICIT}
+
+
+def struck(tmp_path, name, velocity, obstacle):
+    """A disc that hits a driven obstacle."""
+    disc = {"shape": "disc", "radius": 0.05, "position": [0, 0.0501], "velocity": velocity, "contact_mesh_size": 0.005}
+    tables = DRIVEN | {"body": [disc], "obstacle": [obstacle]}
+    return run.run(scene.read(tables, tmp_path, name), {}, tmp_path / name, estimate=False)
+
+
+def test_a_driven_plane_strikes_as_it_is_struck(tmp_path):
+    """A plane that a function of time moves at V strikes a disc at rest as the disc strikes the plane
+    at rest, seen from a frame at V. The work of the plane is V times the impulse."""
+    plane, speed = {"kind": "plane", "point": [0, 0], "normal": [0, 1]}, 2.0
+    moved = struck(tmp_path, "moved", [0, 0], plane | {"motion": ["0", f"{speed}*t"]}).summary
+    still = struck(tmp_path, "still", [0, -speed], plane).summary
+    assert moved["impulse"] == pytest.approx(still["impulse"], rel=1e-4) and moved["rebound_vy"] == pytest.approx(still["rebound_vy"] + speed, rel=1e-4)
+    assert moved["external_work"] == pytest.approx(speed * moved["impulse"], rel=1e-9)
+
+
+def test_a_turning_cylinder_works_by_its_moment(tmp_path):
+    """The work of a cylinder that turns at a constant rate is the rate times the angular momentum
+    that the disc gains about the cylinder's axis."""
+    rate, axis = math.radians(3000), -0.2
+    cylinder = {"kind": "circle", "centre": [0, axis], "radius": -axis, "rotation": "3000*t", "pivot": [0, axis]}
+    result = struck(tmp_path, "turns", [0, -2], cylinder)
+    mass, at = result.summary["mass"], result.history
+    about = at["angular_momentum"] + mass * (at["x"] * at["vy"] - (at["y"] - axis) * at["vx"])
+    gained = about[-1] - about[0]
+    assert result.summary["external_work"] == pytest.approx(rate * gained, rel=1e-3) and result.summary["friction_work"] > 0.1 * abs(rate * gained) > 0
+    assert result.summary["energy_drift"] < 1e-3

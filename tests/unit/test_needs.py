@@ -92,3 +92,10 @@ def test_the_accepted_words_are_those_of_all_rows():
     both = {"integrator": "newmark", "end_time": 1e-3, "body": [BAR | {"nu": 0.5, "support": [{"where": "left"}], "velocity": [0, -1]}]}
     with pytest.raises(BadInput, match=re.escape("integrator: 'newmark', but supports and loads need another value (accepted: auto|energy-momentum)")):
         read(both, Path("."), "scene")
+
+
+def test_auto_still_chooses_where_obstacles_are_driven():
+    """Explicit steps count the work of a driven obstacle (tests/run/test_explicit.py)."""
+    driven = {"kind": "plane", "point": [0, 0], "normal": [0, 1], "motion": ["0", "t"]}
+    built = assembly.assemble(read(tables("penalty_damping needs") | {"integrator": "auto", "obstacle": [driven]}, Path("."), "scene"))
+    assert built.values["integrator"] == "auto" and "implicit" not in built.data
