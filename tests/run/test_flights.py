@@ -69,7 +69,7 @@ def test_what_leaves_an_expression_that_is_no_distance(tmp_path, distance, notes
 
 def test_a_steel_bead_bounces(tmp_path):
     """A bead of 1 mm dropped from 1 m is in contact for Hertz' time, with and without end_time."""
-    bead = STEEL | {"radius": 5e-4, "body.1.position.2": 1.0005, "speed": 0, "gravity": 9.81, "penalty": "auto", "accuracy": 0.02}
+    bead = STEEL | {"radius": 5e-4, "body.1.position": 1.0005, "speed": 0, "gravity": 9.81, "penalty": "auto", "accuracy": 0.02}
     stiff, speed, mass = 2e11 / (1 - 0.3**2), math.sqrt(2 * 9.81), 7800 * 4 / 3 * math.pi * 5e-4**3
     for more in ({"end_time": 0.45153}, {}):
         _, result = go(tmp_path / str(len(more)), scene.load("ball-axisymmetric"), bead | more)

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ffimpact.failure import Failure
+from ffimpact.failure import BadInput, Failure
 from ffimpact.output.results import Contents
 from ffimpact.report import impacts
 from tests.support.rest import (
@@ -26,7 +26,7 @@ from verification.measure import bodies, disc
 def fallen(tmp_path_factory):
     """A disc that fell from 0.5 m, and its contacts."""
     folder = tmp_path_factory.mktemp("fall") / "out"
-    return disc(folder, **FALL), np.genfromtxt(folder / "contacts.csv", delimiter=",", names=True)
+    return disc(folder, **FALL), np.genfromtxt(folder / "run/contacts.csv", delimiter=",", names=True)
 
 
 def test_a_disc_bounces_until_it_rests(fallen):
@@ -164,10 +164,17 @@ def test_what_friction_does_not_hold_is_no_rest(tmp_path, friction):
     assert result.summary["ended"] == "end_time" and result.history["vx"][-1] > 0.02
 
 
-@pytest.mark.parametrize("change, message", [({"gravity": 0}, "until: rest needs what pulls"), ({"loss": 0}, "until: rest needs what takes energy"),
-                                             ({"until": "sleep"}, "until: 'sleep' is not known .accepted: impact.rest")], ids=str)
+@pytest.mark.parametrize("change, message", [({"gravity": 0}, "exit code 10: ffimpact: until: rest needs what pulls"),
+                                             ({"loss": 0}, "exit code 10: ffimpact: until: rest needs what takes energy")], ids=str)
 def test_what_never_rests_is_refused(tmp_path, change, message):
     """Without a force, or without damping, a body cannot come to rest."""
-    with pytest.raises(Failure, match=f"exit code 10: ffimpact: {message}"):
+    with pytest.raises(Failure, match=message):
         disc(tmp_path / "out", **FALL | {"speed": 1} | change)
+    assert not (tmp_path / "out/run").exists()
+
+
+def test_an_unknown_end_is_refused(tmp_path):
+    """Where the scene is read, before any file of it is written."""
+    with pytest.raises(BadInput, match="^until: 'sleep' is not known .accepted: impact.rest.$"):
+        disc(tmp_path / "out", **FALL | {"until": "sleep"})
     assert not (tmp_path / "out").exists()

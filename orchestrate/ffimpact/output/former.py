@@ -5,7 +5,7 @@ that take their place. So result folders of these versions are read like others.
 from collections.abc import Mapping
 from typing import Any
 
-from ..input.models import CONTACT, MATERIAL
+from ..input.models import CONTACT, MATERIAL, Contact
 
 __all__ = ["SCRIPTS", "tables"]
 
@@ -33,8 +33,12 @@ OF_THE_SCRIPT = (
 def tables(flat: Mapping[str, Any]) -> dict[str, Any]:
     """Returns the tables of a scene with flat entries. Of a scene of tables, pairings are left out."""
     if flat.get("script") not in SCRIPTS or "body" in flat:
-        contact = {name: value for name, value in flat.get("contact", {}).items() if name in CONTACT}
-        return dict(flat) | ({"contact": contact} if contact else {})
+        contact = {
+            name: value
+            for name, value in flat.get("contact", {}).items()
+            if name in Contact.model_fields
+        }
+        return dict(flat) | ({"contact": contact} if "contact" in flat else {})
     script, dimension = SCRIPTS[flat["script"]]
     ball, radius = flat["script"].startswith("ball"), flat["radius"]
     material = {name: flat[name] for name in (*MATERIAL, *SIZES) if name in flat}
