@@ -181,7 +181,7 @@ def _compared(problem: scene.Scene, folder: Path) -> dict:
         seconds, answers = paid[0], read_answers(stage)
         twice = problem.name in TWICE
         used, factor = (answers.used, 1 / 2) if twice else (used, 1 / 3)
-        solve(scaled(problem, problem.values, used, factor), finer)
+        solve(scaled(problem, used, factor), finer)
         best = read_answers(finer)
     # Sizes of the reference over those of the answer. The reference itself has this share of an
     # error of first order (bodies that strike flat), or its square of an error of second order.

@@ -134,5 +134,7 @@ def test_study_of_another_scene(fake, tmp_path):
     """A study runs its scene, by default disc-normal."""
     study.study([{"speed": 4.0}], tmp_path, {"fields": 0}, 30.0, "disc-oblique")
     study.study([{"speed": 5.0}], tmp_path, {"fields": 0}, 30.0)
-    used = {folder.name: json.loads((folder / "summary.json").read_text())["provenance"]["asked"] for folder in (tmp_path / "runs").iterdir()}
-    assert used["speed=4.0"]["contact"]["friction_static"] == 0.7 and used["speed=5.0"]["contact"]["friction_static"] == 0
+    made = {folder.name: json.loads((folder / "summary.json").read_text())["provenance"]["asked"] for folder in (tmp_path / "runs").iterdir()}
+    for where, name, speed in (("speed=4.0", "disc-oblique", 4.0), ("speed=5.0", "disc-normal", 5.0)):
+        assert made[where] == scene.load(name).override({"fields": 0, "speed": speed}).decisive_entries
+        assert made[where]["body"][0]["speed"] == speed and ("friction_static" in made[where]["contact"]) == (name == "disc-oblique")

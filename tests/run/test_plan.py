@@ -73,7 +73,7 @@ def test_the_command_prints_the_plan_and_writes_nothing(tmp_path, monkeypatch, c
     assert re.search(r"mesh +left +\d+ elements +\d+ unknowns", table) and "without an estimate of the errors" in table
     for words in (["--out", "x"], ["--force"], ["--quiet"], ["--verbose"], ["--no-figures"], ["--checkpoint-every", "5"]):
         code, error = main(["run", "two-discs", "--plan", *words]), capsys.readouterr().err
-        assert code == 10 and error == f"ffimpact: --plan: makes no run, so {words[0]} has no meaning (accepted: --set, --mesh, --no-estimate)\n"
+        assert code == 10 and error == f"ffimpact: --plan: makes no run, so {words[0]} has no meaning (accepted: --set, --no-estimate)\n"
     assert not list(Path(tmp_path).iterdir())
 
 

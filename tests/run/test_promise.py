@@ -16,8 +16,9 @@ def test_drawn_scenes_cover_what_is_promised():
     assert {point["young"] for point in points} == {young for young, *_ in draws.MATERIALS.values()}
     shares = [point["speed"] / draws.bar_speed(point["young"], point["density"]) / draws.FASTEST[point["law"]] for point in points]
     assert max(shares) < 1.001 and min(shares) < 0.02 and {point["law"] for point in points} == {"svk", "neohookean"}
-    for name in ("angle", "spin", "friction_static", "exponent"):
+    for name in ("spin", "friction_static", "exponent"):
         assert 10 < sum(name in point for point in points) < 190, name
+    assert 10 < sum(point["direction"] != -90 for point in points) < 190
     assert all(scene.load("disc-normal").override({"fields": 0, "penalty": "auto"} | point) for point in points)
 
 
@@ -73,7 +74,7 @@ def test_a_scene_that_fails_is_a_row_with_its_reason(tmp_path):
 
 @pytest.mark.few(1)
 @pytest.mark.parametrize("scene, point", [
-    ("disc-normal", {"law": "svk", "young": 1e6, "density": 100.0, "nu": 0.0, "radius": 0.05, "speed": 0.138, "angle": 60.0, "friction_static": 0.1,
+    ("disc-normal", {"law": "svk", "young": 1e6, "density": 100.0, "nu": 0.0, "radius": 0.05, "speed": 0.138, "direction": -60.0, "friction_static": 0.1,
                      "friction_dynamic": 0.07}),
     ("ball-axisymmetric", {"law": "svk", "young": 1e10, "density": 700.0, "nu": 0.3, "radius": 0.005, "speed": 91.5})])
 def test_stated_errors_hold_where_the_steps_of_a_pair_are_the_same(tmp_path, scene, point):
