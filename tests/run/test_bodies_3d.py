@@ -331,7 +331,7 @@ def test_the_scene_as_used_makes_the_same_run(falls, tmp_path):
     assert made.data == (result.folder / "scene.dat").read_text() and to_toml(made.used) == (result.folder / "scene.toml").read_text()
     flags = freefem.words_of(made.values)
     code, _, _ = call(*flags, "-mesh", str(result.folder / "mesh.mesh"), "-bodies", str(result.folder / "scene.dat"), "-out", str(tmp_path / "direct"),
-                      cwd=tmp_path, script=SCRIPT)
+                      cwd=tmp_path, kind=SCRIPT)
     assert code == 0 and (tmp_path / "direct/history.csv").read_text() == (result.folder / "history.csv").read_text()
 
 

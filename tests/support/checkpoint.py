@@ -21,10 +21,8 @@ EFFORT = ("start_seconds", "wall_seconds", "total_seconds", "cpu_seconds", "esti
 
 def direct(flags: dict, out: Path, script: str = "disc") -> subprocess.Popen:
     """Starts FreeFem++ on an impact with these entries, or a script of bodies with these flags."""
-    program = freefem.find()
-    words = program.words(f"edp/program/{script}.edp", *freefem.words_of(flags | {"out": out})) if "bodies" in flags else impact_words(flags | {"out": out}, script)
-    return subprocess.Popen(words, cwd=parameters.ROOT, text=True,
-                            env=program.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    return subprocess.Popen(impact_words(flags | {"out": out}, script), cwd=parameters.ROOT, text=True,
+                            env=freefem.find().environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
 
 def rows_known(checkpoint: Path) -> int:

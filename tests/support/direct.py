@@ -28,7 +28,11 @@ def _prepared(kind: str, entries: tuple) -> tuple[str, dict]:
 
 
 def case(values: dict, kind: str = "disc") -> tuple[str, ...]:
-    """Script and flags of an impact with these entries (verification.measure.impact()) and flags of the run."""
+    """Script and flags of an impact with these entries (verification.measure.impact()) and flags of the run.
+
+    With `bodies`, a file, `values` are the flags of the script edp/program/<kind>.edp."""
+    if "bodies" in values:
+        return str(parameters.ROOT / f"edp/program/{kind}.edp"), *freefem.words_of(values)
     entries = tuple((name, toml_value(value)) for name, value in values.items() if name not in OF_THE_RUN)
     script, flags = _prepared(kind, entries)
     of_the_run = {name: value for name, value in values.items() if name in OF_THE_RUN}
