@@ -278,11 +278,11 @@ def test_a_refused_point_keeps_no_other(fake, tmp_path, capsys):
     place = study.place(tmp_path / "out", plan.points[0])
     outcomes = study.outcomes(plan.points, tmp_path / "out", plan.base, sweep.scene.load(plan.scene))
     assert list(outcomes) == [place] and outcomes[place]["exit"] == 10 and "overlaps 'right'" in outcomes[place]["message"]
-    path.write_text('scene = "disc-normal"\ncollect = ["contact_time"]\n' + COARSE + '[[zip]]\nangle = [60, 90]\nsymmetry = ["half", "half"]\n')
+    path.write_text('scene = "disc-normal"\ncollect = ["contact_time"]\n' + COARSE + '[[zip]]\ndirection = [-60, -90]\nsymmetry = ["half", "half"]\n')
     capsys.readouterr()
     assert main(["sweep", str(path), "--out", str(tmp_path / "plane")]) == 10
     captured, rows = capsys.readouterr(), table(tmp_path / "plane")
     assert list(rows.exit) == [10, 0] and rows.contact_time.notna().tolist() == [False, True]
-    assert "first: angle=60.0,symmetry=half: symmetry: half" in captured.err and captured.err.count("\n") == 1 and "failed, exit 10: angle=60.0,symmetry=half" in captured.out
+    assert "first: direction=-60,symmetry=half: symmetry: half" in captured.err and captured.err.count("\n") == 1 and "failed, exit 10: direction=-60,symmetry=half" in captured.out
     # No point is left.
     assert main(["sweep", str(write(tmp_path, 'scene = "two.toml"\n[product]\n"body.1.position.1" = [0.05, 0.06]\n')), "--list"]) == 10
