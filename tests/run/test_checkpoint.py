@@ -1,7 +1,6 @@
 """Checkpoint and restart: a killed run continues from its last checkpoint with unchanged results.
 """
 
-import json
 import re
 import shutil
 import subprocess
@@ -12,9 +11,9 @@ import pytest
 
 from ffimpact import scene
 from ffimpact.failure import Failure, Unreadable
-from ffimpact.input import parameters
 from ffimpact.output import results
 from ffimpact.running import run
+from ffimpact.scenes import assembly
 from tests.support.checkpoint import EFFORT, assert_same, direct, kill_at, rows_known
 from tests.support.cli import call, is_alive, start, wait_for
 from verification.measure import prepared
@@ -274,21 +273,20 @@ def test_checkpoint_of_nobody_knows_what(out):
         go(out)
 
 
-@pytest.mark.parametrize("changed, words", [
-    ({"speed": 7}, "it is of .* speed = [0-9.]+ .not 7.;"),
-    ({"mesh": None}, "it is of another mesh, of other bodies or of another version;"),
-    ({"restart": "nowhere"}, "there is no such file"),
-    ({"out": "elsewhere"}, "does not have the .* rows before it"),
+@pytest.mark.parametrize("entries, changed, words", [
+    ({}, {"gravity": 7}, "it is of gravity = 0 .not 7.;"),
+    ({"body.1.position.2": 0.0501}, {}, "it is of another mesh, of other bodies or of another version;"),
+    ({"body.1.mesh_size": 0.02}, {}, "it is of another mesh, of other bodies or of another version;"),
+    ({}, {"restart": "nowhere"}, "there is no such file"),
+    ({}, {"out": "elsewhere"}, "does not have the .* rows before it"),
 ])
-def test_restart_without_python(out, tmp_path, changed, words):
+def test_restart_without_python(out, tmp_path, entries, changed, words):
     """FreeFem++ itself refuses a checkpoint of another scene or mesh, a missing one, or one without
     its history: exit code 14."""
-    stage = out.with_name("out.part")
-    used = json.loads((stage / "checkpoint.json").read_text())["asked"]
-    flags = {name: used[name] for name in parameters.names() if name in used}
-    flags |= {"mesh": stage / "mesh.msh", "restart": stage / "checkpoint"} | changed
-    flags = {name: value for name, value in flags.items() if value is not None}
-    process = direct(flags, tmp_path / flags.pop("out", "out.part"))
+    (tmp_path / "files").mkdir()
+    flags, _, _ = assembly.prepare(scene.load("disc-normal").override(SET | entries), tmp_path / "files")
+    flags |= {"restart": out.with_name("out.part") / "checkpoint"} | changed
+    process = direct(flags, tmp_path / flags.pop("out", "out.part"), "bodies")
     _, err = process.communicate(timeout=60)
     assert process.returncode == 14 and err.count("\n") == 1
     assert err.startswith("ffimpact: the checkpoint '") and re.search(words, err), err
