@@ -98,9 +98,9 @@ def test_figures_6b_and_8_are_over_the_same_speeds():
 def test_the_control_differs_in_the_jump_alone():
     """friction-jump has the same runs with equal coefficients, for both laws, on two meshes."""
     plan = sweep.load("friction-jump")
-    used = [{**scene.load(plan.scene).values, **plan.base, **point} for point in plan.points]
-    assert {(values["law"], values["friction_static"], values["friction_dynamic"]) for values in used} == {(law, static, 0.5) for law in ("svk", "neohookean") for static in (0.7, 0.5)}
-    assert plan.refine.keys() == {"mesh_size", "contact_mesh_size"} and {values["regularization"] for values in used} == {"linear"}
+    used = [scene.load(plan.scene).override(plan.base | point) for point in plan.points]
+    assert {(run.bodies[0].law, run.contact["friction_static"], run.contact["friction_dynamic"]) for run in used} == {(law, static, 0.5) for law in ("svk", "neohookean") for static in (0.7, 0.5)}
+    assert plan.refine.keys() == {"mesh_size", "contact_mesh_size"} and {run.contact["regularization"] for run in used} == {"linear"}
 
 
 def test_page_holds_everything_itself(tmp_path):
@@ -173,7 +173,7 @@ def test_a_missing_case_stops_it(tmp_path, capsys):
     assert guarded(paper.main, ["--results", str(tmp_path)]) == 14
     err = capsys.readouterr().err
     assert err.count("\n") == 1 and not (tmp_path / "paper").exists()
-    assert "run: make disc-normal ball-comparison disc-oblique disc-rolling disc-block ball ball-axisymmetric calibrate calibrate-ball calibrate-ball-3d calibrate-oblique conservation" in err and "stick-slip friction-laws" in err
+    assert "run: make disc-normal ball-comparison disc-oblique disc-rolling disc-block ball ball-axisymmetric calibrate calibrate-ball calibrate-ball-3d calibrate-oblique closest-points conservation" in err and "stick-slip friction-laws" in err
 
 
 @pytest.mark.few(2)
@@ -215,7 +215,7 @@ def test_the_map_of_the_oblique_disc_has_both_angles(tmp_path):
     sweep_figures.draw(plan, table, tmp_path)
     text = "\n".join(sweep_figures.findings(plan, table, tmp_path))
     assert figures.plt.imread(tmp_path / "sweep.png").std() > 0
-    assert all(f"angle = {angle} deg, mesh size = {size} m: contact time = 4.5" in text for angle in (60, 30) for size in (0.01, 0.008))
+    assert all(f"direction = -{angle} deg, mesh size = {size} m: contact time = 4.5" in text for angle in (60, 30) for size in (0.01, 0.008))
 
 
 def test_the_search_is_drawn_for_both_angles(tmp_path):
@@ -223,6 +223,7 @@ def test_the_search_is_drawn_for_both_angles(tmp_path):
     run, counted by angle and law."""
     axes = {name: values[-2:] for name, values in stick_slip.AXES.items()}
     table = pd.DataFrame(stick_slip.grid(axes)).assign(exit=0, contact_time=4.5e-3, first=1.0, second=0.9, last=0.3, work_last=0.01, quiet=True, time=True)
+    table["angle"] = -table.direction
     table["order"] = stick_slip.as_told(table)
     stick_slip.draw(table, axes, tmp_path / "map.png")
     text = stick_slip.report(table)

@@ -93,6 +93,7 @@ __all__ = [
     "listed",
     "of_table",
     "read",
+    "rule_of_body",
     "several",
     "shared",
     "tables",
@@ -1082,6 +1083,16 @@ def of_table(
         raise BadInput(f"{entry}.{word}: {unknown(name, accepted)}")
     own = {key: value for key, value in table.items() if key != word}
     return models[name].read(entry, own, dimension)
+
+
+def rule_of_body(name: str) -> Parameter | None:
+    """The rule of a number among the entries of bodies, None if no body has such a number."""
+    for model in BODIES.values():
+        field = model.model_fields.get(name)
+        rules = [rule for rule in field.metadata if isinstance(rule, Parameter)] if field else []
+        if rules:
+            return rules[0]
+    return None
 
 
 def full_name(content: dict[str, Any], name: str, dimension: Dimension) -> str:

@@ -25,7 +25,7 @@ import pandas as pd
 from matplotlib.ticker import LogLocator, NullLocator
 
 from ..failure import BadInput, brief, suggestion, unknown
-from ..input import parameters
+from ..input import models, parameters
 from ..output.results import read_history
 from ..report import report
 from ..report.figures import (
@@ -256,8 +256,9 @@ def _value(name: str, value) -> str:
 
 def unit_of(name: str) -> str:
     """Returns the unit of a parameter (of body.2.young that of young), "-" if it has none."""
-    parameter = parameters.PARAMETERS.get(name.rpartition(".")[2])
-    return parameter.unit if parameter else "-"
+    entry = name.rpartition(".")[2]
+    parameter = parameters.PARAMETERS.get(entry) or models.rule_of_body(entry)
+    return parameter.unit if parameter and parameter.unit else "-"
 
 
 def _groups(sweep, rows: pd.DataFrame, key: str) -> Iterator[tuple[str, pd.DataFrame]]:
