@@ -51,13 +51,13 @@ MORE = [(route, number, receiver, point if "checkpoints" in route else EARLY, Fa
 
 
 def command(route: str, out: Path, speed: str = "8", **changed: str) -> list[str]:
-    values = COARSE | {"speed": speed} | changed | ({"checkpoint_every": "10"} if "checkpoints" in route else {})
+    values = COARSE | {"speed": speed} | changed | ({"checkpoint_every": "2"} if "checkpoints" in route else {})
     if route == "sweep":
         file = out.parent / "case.toml"
         file.write_text(SWEEP if speed == "8" else SWEEP.replace("0.4", "0.3"))
         return [sys.executable, "-m", "ffimpact", "sweep", str(file), "--out", str(out)]
-    if route.startswith("direct"):
-        return impact_words(values | {"out": out})
+    if route.startswith("direct"):   # fine enough that it does not end while it is being stopped
+        return impact_words(values | {"accuracy": "0.005", "out": out})
     return [sys.executable, "-m", "ffimpact", "run", "disc-normal", "--quiet", "--set", *(f"{name}={value}" for name, value in values.items()), "--out", str(out)]
 
 
