@@ -61,7 +61,8 @@ def test_circle_about_another_point(tmp_path):
         occ.synchronize()
         gmsh.model.mesh.generate(2)
         mesh.write(gmsh_file.taken(gmsh.model), tmp_path / "m.msh")
-    row, _ = go(tmp_path / "out", "disc-normal", {"speed": 1, "spin": 100, "height": 0.01, "accuracy": 0.2}, tmp_path / "m.msh")
+    body = {"shape": "mesh", "file": str(tmp_path / "m.msh"), "radius": None, "position.2": RADIUS + 0.01, "speed": 1, "spin": 100}
+    row, _ = go(tmp_path / "out", "disc-normal", {f"body.1.{name}": value for name, value in body.items()} | {"accuracy": 0.2})
     turned, lever = 100 * row.start, beside * hole**2 / (RADIUS**2 - hole**2)
     assert 0.5 < turned < 1.5
     assert row.approach == pytest.approx(1 + 100 * lever * math.sin(turned), rel=2e-3)

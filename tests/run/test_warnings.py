@@ -21,8 +21,9 @@ from verification import measure
 
 COARSE = dict(accuracy=0.1, mesh_size=0.02, contact_mesh_size=0.006, dt=5e-5)
 OBLIQUE = COARSE | dict(angle=60, law="neohookean", friction_static=0.7)
-# Its last contact is a grazing one.
-LONG = dict(mesh_size=0.008, contact_mesh_size=0.006, dt=2e-5, penalty=1e10)
+# The last contact of the first is a grazing one; that of the second oscillates about the threshold.
+LONG = dict(mesh_size=0.006, contact_mesh_size=0.006, dt=2e-5, penalty=1e10)
+OSCILLATING = LONG | dict(mesh_size=0.008, contact_mesh_size=0.004)
 RELAXING = COARSE | dict(relaxation_modulus=1e6)
 DAMPED = COARSE | dict(integrator="backward-euler", accuracy=0.02)
 SPINS = COARSE | dict(speed=1, spin=60, angle=90, height=0.01, law="neohookean", accuracy=0.002, dt=1e-4, without="flight")
@@ -101,7 +102,7 @@ def test_the_advice_about_volume_helps(disc, material):
 
 
 NOTES = [("contact time", LONG, LONG | dict(accuracy=0.05), r"for the last (\S+) % of it", (0.5, 5)),
-         ("thresholded contact time", LONG, LONG | dict(accuracy=0.05), r"uncertain by (\S+) %", (0.4, 5)),
+         ("thresholded contact time", OSCILLATING, OSCILLATING | dict(accuracy=0.05), r"uncertain by (\S+) %", (0.4, 5)),
          ("peak force", COARSE, COARSE | dict(speed=1), r"at (\S+) % of the wave speed", (12, 13))]
 
 
@@ -127,12 +128,18 @@ def test_real_materials_are_not_asked_about(disc, density, young):
 
 
 @pytest.mark.parametrize("name, names", [
-    ("disc-normal", []), ("disc-oblique-svk", ["ellipticity", "estimated errors"]), ("ball-axisymmetric-svk", ["breakdown", "estimated errors", "touches"])])
+    ("disc-normal", ["estimated errors"]), ("disc-oblique-svk", ["ellipticity", "estimated errors"]), ("ball-axisymmetric-svk", ["ellipticity", "estimated errors"])])
 def test_scenes_of_the_paper_have_no_warning_or_those_that_a_reader_must_know(tmp_path, name, names):
     """Each with its estimate and default settings. The screen has a line for each sentence, with
-    its mark at the number, and the place of the whole text."""
+    its mark at the number, and the place of the whole text.
+
+    The contact time of disc-normal scatters with the mesh, by 1 % on meshes of the requested
+    accuracy of 0.5 %: its estimate alone is above the request, on the finest mesh too. The ball of
+    St. Venant-Kirchhoff loses ellipticity; on its mesh no element is inverted.
+    """
     result = run.run(scene.load(name), {"fields": 0}, tmp_path / "out")
     assert [notes.name(sentence) for sentence in result.summary["warnings"]] == names
+    assert name != "disc-normal" or result.summary["warnings"][0].startswith("estimated errors: thresholded contact time ")
     lines, whole = report.report(result).splitlines(), report.report(result, verbose=True)
     assert [line.split(maxsplit=1)[1].partition(":")[0] for line in lines if line.startswith("  warning ")] == names
     footnotes = [line for line in lines if line.startswith("  [")]
@@ -177,7 +184,7 @@ def test_a_trifle_is_no_warning(disc):
         assert bool(sentences_of(disc(COARSE | dict(penalty=share * least)), "penalty")) == said
 
 
-@pytest.mark.parametrize("flags", [LONG, COARSE, COARSE | dict(height=1e-3), COARSE | dict(dt=3e-4), OBLIQUE | dict(slip_velocity=2)])
+@pytest.mark.parametrize("flags", [LONG, OSCILLATING, COARSE, COARSE | dict(height=1e-3), COARSE | dict(dt=3e-4), OBLIQUE | dict(slip_velocity=2)])
 def test_thresholded_contact_time(disc, flags):
     """From the first to the last crossing of 1 % of the largest step mean of the normal force,
     linear between the middles of the steps.
