@@ -132,6 +132,15 @@ class Scene:
                 )
         return converted
 
+    def tables(self, entries: dict[str, Value]) -> models.Tables:
+        """Returns the tables with `entries` set. Raises BadInput if the rule of an entry refuses its
+        value, whatever the others are.
+        """
+        changed = self.content
+        for name, value in self._by_full_name(entries).items():
+            changed = set_entry(changed, name, value)
+        return models.read(changed, self.dimension)
+
     def _by_full_name(self, entries: dict[str, Value]) -> dict[str, Value]:
         """Returns `entries` by their dotted names. Of two that are the same entry the later holds."""
         return {

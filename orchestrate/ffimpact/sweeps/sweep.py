@@ -224,10 +224,7 @@ def _sweep(path: Path, content: dict, text: str) -> Sweep:
         name = os.path.join(path.parent.resolve(), name)
     loaded = scene.load(name)
     base, refine = (loaded.check(_flat(tables[key])) for key in ("set", "refine"))
-    axes = [
-        [{name: value} for value in _values(name, values, loaded)]
-        for name, values in _flat(tables["product"]).items()
-    ]
+    axes = _crossed(_flat(tables["product"]), base, loaded)
     axes += [
         _together(_flat(_is(group, dict, "zip", "tables [[zip]]")), loaded) for group in groups
     ]
@@ -339,6 +336,20 @@ def _flat(table: dict, path: str = "") -> dict:
         nested = isinstance(value, dict) and not set(value) & set(RANGE)
         entries |= _flat(value, f"{path}{name}.") if nested else {f"{path}{name}": value}
     return entries
+
+
+def _crossed(product: dict, base: study.Point, loaded: scene.Scene) -> list[list[study.Point]]:
+    """Returns the axes of [product]. Raises BadInput for a value that is refused by its own rule.
+
+    What only a whole scene refuses is left to the runs of the points.
+    """
+    axes = [
+        [{name: value} for value in _values(name, values, loaded)]
+        for name, values in product.items()
+    ]
+    for point in itertools.chain(*axes):
+        loaded.tables(base | point)
+    return axes
 
 
 def _values(name: str, axis: list | dict, loaded: scene.Scene) -> list[Value]:
