@@ -279,7 +279,8 @@ def nodes_on(curve: Curve, largest: float, sizes: Sizes) -> np.ndarray:
     while len(size) < len(s):
         size = np.minimum(sizes.at(curve(s)), largest / sizes.stretch)
         step = np.linalg.norm(np.diff(sizes.squeezed(curve(s)), axis=0), axis=1)
-        coarse = step > SAMPLED * np.minimum(size[1:], size[:-1])
+        # Round-off, which differs with the unit of length, decides nothing.
+        coarse = step > (1 + 1e-9) * SAMPLED * np.minimum(size[1:], size[:-1])
         s = np.sort(np.concatenate([s, (s[1:] + s[:-1])[coarse] / 2]))
         if len(s) > MOST_ON_CURVE:
             raise BadInput(

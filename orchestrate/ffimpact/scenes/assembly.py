@@ -604,7 +604,8 @@ def _near(body: Body, k: int, onset: Onset, depth: float, points: np.ndarray) ->
     its lowest point.
     """
     gaps = onset.gaps(k, body.outline.carried(onset.outlines[0 if k == onset.first else 1], points))
-    return points[gaps <= gaps.min() + depth]
+    # A point at the depth itself counts in any unit of length, whatever the round-off.
+    return points[gaps <= gaps.min() + (1 + 1e-9) * depth]
 
 
 def boundary_curves(scene: Scene, k: int) -> list[list[tuple[Curve, float, int]]]:
