@@ -18,7 +18,7 @@ figure, panels = plt.subplots(1, 3, figsize=(WIDTH, 2.6), layout="constrained")
 for ax, (scene, script, flags) in zip(panels, CASES):
     sizes = {} if scene == "disc-block" else {"mesh_size": 0.02, "contact_mesh_size": 0.01}
     run = ff.run(scene, estimate=False, penalty=1e9, out=RUNS / f"beside-{scene}", progress=False, **sizes)
-    mesh = {"mesh": run.folder / "mesh.msh"} if sizes else {}
+    mesh = {"mesh": scripts.on_the_plane(run.folder / "mesh.msh")} if sizes else {}
     scripts.compute(RUNS / f"script-{scene}", script, flags | mesh | {"penalty": 1e9})
     for result, color, line, label in ((run, BLUE, "-", "program"), (ff.load(RUNS / f"script-{scene}"), ORANGE, "--", "script")):
         h = result.history

@@ -8,12 +8,14 @@ meshes, by closest points (9) and by pairs of points (14), (15).
 import argparse
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 
 from ffimpact.failure import BadInput, Failure
 from ffimpact.freefem import freefem
+from ffimpact.mesh import mesh
 from ffimpact.output.evaluate import evaluate
 from ffimpact.output.folder import result_folder
 from ffimpact.output.paper_script import ANSWERS
@@ -55,6 +57,14 @@ def runs() -> dict[str, tuple[str, dict]]:
                 flags = {"nu": 0.4, "mesh_size": 0.25, "contact_mesh_size": size, "pairing": formulation}
                 every[name] = "disc-block", flags | ({} if width == ELEMENT or formulation == "closest-point" else {"pairing_range": width})
     return every
+
+
+def on_the_plane(path: Path) -> Path:
+    """A copy of the mesh of a body about its centre, moved up until the body touches y = 0."""
+    about = mesh.read(path)
+    moved = path.with_name("moved.msh")
+    mesh.write(replace(about, points=about.points - [0, about.points[:, 1].min()]), moved)
+    return moved
 
 
 def sources(script: str) -> Iterator[Path]:

@@ -8,7 +8,6 @@ others. On the same mesh the impulse and the rebound agree to 0.5 %, the contact
 import json
 import math
 import subprocess
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,9 +15,9 @@ import pandas as pd
 import pytest
 
 import ffimpact
+from examples.paper import scripts
 from ffimpact.__main__ import main
 from ffimpact.freefem import freefem
-from ffimpact.mesh import mesh
 from ffimpact.places import ROOT
 
 SAME, SAME_TIME = 0.005, 0.02
@@ -52,13 +51,6 @@ def apart(history: pd.DataFrame, result: ffimpact.Result, speed: float) -> dict[
     return {name: abs(float(value)) for name, value in differences.items()}
 
 
-def on_the_plane(path: Path) -> Path:
-    """A copy of the mesh of a body about its centre, moved up until the body touches y = 0."""
-    about = mesh.read(path)
-    mesh.write(replace(about, points=about.points - [0, about.points[:, 1].min()]), path.with_name("moved.msh"))
-    return path.with_name("moved.msh")
-
-
 @pytest.mark.parametrize("scene, script, flags", [
     ("disc-normal", "disc-plane", {"law": "svk", "dt": 1e-4}),
     ("disc-normal-incompressible", "disc-plane", {"law": "incompressible", "dt": 1.5e-4}),
@@ -69,7 +61,7 @@ def test_a_body_on_the_plane_as_the_program_has_it(tmp_path, scene, script, flag
     """On the program's mesh impulse, rebound, contact time and spin agree; the energy is constant,
     with friction its loss included."""
     result = ffimpact.run(scene, out=tmp_path / "run", estimate=False, mesh_size=0.02, contact_mesh_size=0.01, penalty=1e9, fields=0)
-    ends, history = answers(script, tmp_path, mesh=on_the_plane(tmp_path / "run/mesh.msh"), penalty=1e9, **flags)
+    ends, history = answers(script, tmp_path, mesh=scripts.on_the_plane(tmp_path / "run/mesh.msh"), penalty=1e9, **flags)
     differences = apart(history, result, flags.get("speed", 8))
     assert max(differences.values()) < SAME, differences
     assert ends["contact_end"] - ends["contact_start"] == pytest.approx(result["contact_time"], rel=SAME_TIME)
