@@ -5,10 +5,10 @@ from style import BODY, INK, LIGHT, OTHER, arrow, box, diagram, save
 
 figure, ax = diagram(2.6)
 rows = (("obstacle", "input/models.py\nthe entry", "scenes/obstacles.py\nentry → numbers", "kernels/shapes.cpp\ngap and normal"),
-        ("friction law", "input/table.py\nthe word", "", "program/contact/friction.idp\nφ and its derivative"),
-        ("law", "input/table.py\nthe word", "", "program/law/NAME.idp\nS, tangent, energy"),
+        ("friction law", "input/table.py\nthe word", "", "kernels/contact-law.cpp\nφ and its derivative"),
+        ("law", "input/table.py\nthe word", "", "kernels/laws.cpp\nS, tangent, energy"),
         ("figure", "", "report/NAME.py\nhistory → axes", ""))
-for x, title in ((3.0, "what users write"), (5.75, "Python"), (8.55, "FreeFEM")):
+for x, title in ((3.0, "what users write"), (5.75, "Python"), (8.55, "kernels (C++)")):
     ax.text(x, 3.95, title, ha="center", fontsize=9.5, weight="bold")
 for k, (name, *cells) in enumerate(rows):
     y = 3.3 - 0.9 * k
