@@ -142,6 +142,13 @@ def test_a_wrong_flag_is_one_line(tmp_path, words, line):
     assert done.returncode == 10 and done.stderr.startswith(f"ffimpact: {line}") and done.stderr.count("\n") == 1
 
 
+def test_material_turned_inside_out_is_one_line(tmp_path):
+    """Exit code 12, and no answers."""
+    done = call("disc-plane", tmp_path, out="run", speed=80, mesh_size=0.02, contact_mesh_size=0.01, dt=1e-5)
+    assert done.returncode == 12 and done.stderr.startswith("ffimpact: det F = -") and done.stderr.count("\n") == 1
+    assert not (tmp_path / "run/answers.json").exists()
+
+
 @pytest.mark.parametrize("script", SCRIPTS)
 def test_each_script_refuses_an_unknown_flag(tmp_path, script):
     """All scripts compile from another folder and check their flags."""
