@@ -447,7 +447,7 @@ def exports() -> dict[str, list[str]]:
 
 
 BASES = {"materials": models.Material, "bodies": models.Body, "obstacles": models.Obstacle}
-MORE = {"results": ("plot.Plots", "result.Fields")}  # classes of results that are not exported
+MORE = {"results": ("plot.Plots", "output.states.Fields", "output.states.State")}  # classes of results that are not exported
 # The documented members; "" means all members.
 SHOWN_OF = {
     "Scene": "set, save, load",
@@ -455,7 +455,8 @@ SHOWN_OF = {
     "Result": "",
     "Study": "",
     "plot.Plots": "",
-    "result.Fields": "",
+    "output.states.Fields": "",
+    "output.states.State": "",
 }
 
 

@@ -15,23 +15,21 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
-from .failure import BadInput, NotInstalled, Unreadable, unknown
-from .input.dimension import per_metre
-from .output import vtu
+from .failure import BadInput, Unreadable, unknown
+from .input.dimension import AXISYMMETRIC, per_metre
 from .output.columns import units
 from .output.errors import errors
 from .output.evaluate import evaluate
 from .output.filters import channel_class, filtered
 from .output.results import Record, numbers, read_record, read_summary, reading
+from .output.states import Fields
 from .places import shown
 from .report import report
 
 if TYPE_CHECKING:
-    import pyvista
-
     from .plot import Plots
 
-__all__ = ["Fields", "Result", "compare", "load"]
+__all__ = ["Result", "compare", "load"]
 
 # Numbers that `Result.table` lists after those of the report.
 ALSO = ("thresholded_contact_time", "energy_initial", "energy_final")
@@ -195,8 +193,15 @@ class Result:
 
     @property
     def fields(self) -> Fields:
-        """The states that the run kept (entry `fields`), as PyVista grids."""
-        return Fields(self.folder)
+        """The states that the run kept (entry `fields`) as numpy arrays: result.fields[-1].von_mises."""
+        revolution = self.summary["provenance"]["script"] == AXISYMMETRIC.script
+        return Fields(self.folder, revolution, self.summary.get("symmetric_along", ()))
+
+    def probe(self, *point: float, body: int = 1) -> pd.DataFrame:
+        """The motion of a material point of a body, from its centre of mass on [m]: a row for each kept
+        state with position, velocity and stresses. See Fields.probe.
+        """
+        return self.fields.probe(point, body)
 
     def view(
         self,
@@ -218,35 +223,6 @@ def _bar(error: float | None) -> str:
 
 def _unit(unit: str) -> str:
     return "" if unit in ("1", "-") else unit
-
-
-class Fields(Sequence["pyvista.UnstructuredGrid"]):
-    """The kept states in order of time, as PyVista grids: fields[-1]["von_mises"] are nodal values.
-    `times` has the times of the states [s]. Access raises NotInstalled without PyVista and
-    Unreadable without states.
-    """
-
-    def __init__(self, folder: Path):
-        self.series = vtu.series(folder / "fields.pvd")
-        self.times = [time for time, _ in self.series]
-        self.folder = folder
-
-    def __len__(self) -> int:
-        return len(self.series)
-
-    def __repr__(self) -> str:
-        return f"{len(self)} states of {shown(self.folder)}"
-
-    def __getitem__(self, index: Any) -> Any:
-        try:
-            import pyvista
-        except ImportError:
-            raise NotInstalled("fields: need pyvista; install it: pip install pyvista") from None
-        if not self.series:
-            raise Unreadable(
-                f"{self.folder}: has no states (accepted: a run with fields = 20, for example)"
-            )
-        return pyvista.read(self.series[index][1])
 
 
 def load(folder: str | Path) -> Result:

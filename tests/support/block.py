@@ -14,10 +14,8 @@ HISTORY = 'result.history.plot("t", "normal_force")'
 TABLES = "result.contacts, result.warnings, result.scene"
 PLOTS = "ax = result.plot.force(); result.plot.energies(); result.plot.shapes()"
 STATE = """
-try:
-    print(result.fields[-1]["von_mises"].max())
-except ff.NotInstalled as missing:
-    print(missing)
+last = result.fields[-1]
+print(last.von_mises.max(), last.positions.min(axis=0), result.probe(0, -0.05).y.min())
 """
 PLAYER = """
 try:

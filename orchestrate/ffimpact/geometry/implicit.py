@@ -491,15 +491,16 @@ def settled(
     return float(min(half, 1 / max(3 * bend, 1e-300))), *code
 
 
-def _point_of_surface(code: Sequence[float], point: np.ndarray) -> np.ndarray | None:
+def _point_of_surface(code: Sequence[float], start: np.ndarray) -> np.ndarray | None:
     """A point (axes,) of the surface, by Newton's method along the gradient; None if it fails."""
+    point = start
     for _ in range(10 * TURNS):
         (value,), (slope,) = run(code, point[None])
         step = value / (slope @ slope) * slope
         point = point - step
         if not np.isfinite(point).all():
             return None
-        if np.linalg.norm(step) <= 1e-9 * np.linalg.norm(point):
+        if np.linalg.norm(step) <= 1e-9 * np.linalg.norm(point - start):
             return point
     return None
 

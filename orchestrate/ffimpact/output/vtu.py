@@ -105,7 +105,7 @@ def read(path: Path) -> Snapshot:
     many straight triangles that curved sides look curved. A body in three dimensions without such
     faces is cut in this plane.
     """
-    points, kind, cells, fields = read_parts(path)
+    points, kind, cells, fields, _ = read_parts(path)
     on_plane = np.ones(len(points), dtype=bool)
     if kind == QUADRATIC_TETRAHEDRON:
         on_plane, solid = np.abs(points[:, 2]) < 1e-9 * np.ptp(points, axis=0).max(), cells
@@ -130,13 +130,15 @@ def read(path: Path) -> Snapshot:
 
 def read_solid(path: Path) -> Solid | None:
     """Returns a snapshot of a whole body in three dimensions, None for a body in the plane."""
-    points, kind, cells, fields = read_parts(path)
+    points, kind, cells, fields, _ = read_parts(path)
     return Solid(points, cells, fields) if kind == QUADRATIC_TETRAHEDRON else None
 
 
-def read_parts(path: Path) -> tuple[np.ndarray, str, np.ndarray, dict[str, np.ndarray]]:
-    """Returns the points, the common type of the cells, their nodes (cells, nodes) and the fields.
-    Raises Unreadable if the file is no snapshot.
+def read_parts(
+    path: Path,
+) -> tuple[np.ndarray, str, np.ndarray, dict[str, np.ndarray], np.ndarray]:
+    """Returns the points, the common type of the cells, their nodes (cells, nodes), the fields, and
+    the number of the body of each cell. Raises Unreadable if the file is no snapshot.
     """
     import meshio  # slow to load, so it is imported only here
 
@@ -154,7 +156,8 @@ def read_parts(path: Path) -> tuple[np.ndarray, str, np.ndarray, dict[str, np.nd
         nodes = mesh.cells[0].data
         if nodes.min() < 0 or nodes.max() >= len(mesh.points):
             raise ValueError("a node is missing")
-        return mesh.points, kinds.pop(), nodes, Contents(mesh.point_data, path)
+        body = mesh.cell_data.get("body", [np.ones(len(nodes), np.int32)])[0]
+        return mesh.points, kinds.pop(), nodes, Contents(mesh.point_data, path), body
 
 
 @lru_cache(1)  # all snapshots of a run have the same triangles
