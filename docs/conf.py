@@ -177,7 +177,8 @@ def entries(model: type[models.Entries]) -> list[str]:
     common = base.model_fields if base in pages.BASES.values() else {}
     lines = [".. list-table::", "   :header-rows: 1", "   :widths: 22 10 24 44", ""]
     rows = [("entry", "unit", "accepted", "meaning")]
-    for name, field in model.model_fields.items():
+    for name in model.names(None):
+        field = model.model_fields[name]
         texts = pages.entry_of(name, field)
         if texts and (name not in common or field.is_required() != common[name].is_required()):
             rows.append(

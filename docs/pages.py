@@ -117,13 +117,17 @@ def pages() -> dict[Path, str]:
 
 def entries() -> str:
     """Tables of all entries of a scene with unit, accepted values and meaning."""
-    text = "\n## Parameters of a run\nAt the top of a scene file, or in `[contact]` and `[[body]]` as "
+    text = (
+        "\n## Parameters of a run\nAt the top of a scene file, or in `[contact]` and `[[body]]` as "
+    )
     text += "below; by `--set name=value`, and in Python.\n"
     text += "\n| name | unit | default | accepted | meaning |\n|---|---|---|---|---|\n"
     for parameter in parameters.PARAMETERS.values():
         if parameter.name in ("speed", "spin"):  # of bodies alone
             continue
-        default = parameter.default if isinstance(parameter.default, str) else f"{parameter.default:g}"
+        default = (
+            parameter.default if isinstance(parameter.default, str) else f"{parameter.default:g}"
+        )
         accepted = cell(words(parameter.accepted))
         text += f"| `{parameter.name}` | {parameter.unit} | {default} | {accepted} | {cell(parameter.help)} |\n"
     text += "\n## What needs what\nOther values are refused, except `auto`, which becomes one of these.\n\n"
@@ -178,7 +182,8 @@ def table_of(heading: str, words: str, model: type[models.Entries]) -> str:
 def rows(model: type[models.Entries], but: Collection[str] = (), first: str = "") -> str:
     """The rows of a table of the entries of a model, without the entries in `but`."""
     text = ""
-    for name, field in model.model_fields.items():
+    for name in model.names(None):
+        field = model.model_fields[name]
         if (texts := entry_of(name, field)) and name not in but:
             needed = ", needed" if field.is_required() else ""
             text += f"|{first} `{name}`{needed} | {' | '.join(map(cell, texts))} |\n"
@@ -269,7 +274,14 @@ def _literal(expression: ast.expr) -> str:
             return _literal(sizes)
         case ast.JoinedStr(values=parts):
             text = "".join(map(_literal, parts))
-            return re.sub(r"(…\s*)+", "… ", text).replace("… )", "…)").replace("… :", "…:").replace("… ,", "…,").replace("… .", "….").strip()
+            return (
+                re.sub(r"(…\s*)+", "… ", text)
+                .replace("… )", "…)")
+                .replace("… :", "…:")
+                .replace("… ,", "…,")
+                .replace("… .", "….")
+                .strip()
+            )
         case _:
             return "…"
 
@@ -282,7 +294,9 @@ def equations(prefix: str = "") -> str:
         "kernels": (ROOT / "edp/kernels").glob("*.[ch]pp"),
         "program": (ROOT / "edp/program").rglob("*.idp"),
     }
-    text = "| equation | the paper's scripts | kernels | the program's scripts | what stands there |\n"
+    text = (
+        "| equation | the paper's scripts | kernels | the program's scripts | what stands there |\n"
+    )
     text += "|---|---|---|---|---|\n"
     places = {home: marked(sorted(paths)) for home, paths in homes.items()}
     for equation in range(1, 16):
@@ -447,7 +461,9 @@ def exports() -> dict[str, list[str]]:
 
 
 BASES = {"materials": models.Material, "bodies": models.Body, "obstacles": models.Obstacle}
-MORE = {"results": ("plot.Plots", "output.states.Fields", "output.states.State")}  # classes of results that are not exported
+MORE = {
+    "results": ("plot.Plots", "output.states.Fields", "output.states.State")
+}  # classes of results that are not exported
 # The documented members; "" means all members.
 SHOWN_OF = {
     "Scene": "set, save, load",

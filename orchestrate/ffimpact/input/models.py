@@ -72,6 +72,8 @@ __all__ = [
     "NeoHookean",
     "OBSTACLES",
     "OWN",
+    "OfContact",
+    "OfMaterial",
     "Obstacle",
     "Ogden",
     "Pair",
@@ -150,7 +152,8 @@ class _Made(type(BaseModel)):  # type: ignore[misc]
     @property
     def __signature__(cls) -> Signature:
         """The entries as keywords, with units and meanings, for help() and notebooks."""
-        keywords = [_keyword(*item) for item in cls.model_fields.items() if not item[1].exclude]
+        fields = {name: cls.model_fields[name] for name in cls.names(None)}
+        keywords = [_keyword(*item) for item in fields.items() if not item[1].exclude]
         if issubclass(cls, Body):
             own = Keyword("material", Keyword.KEYWORD_ONLY, default=None, annotation="a Material")
             keywords.insert(1, own)
@@ -209,12 +212,13 @@ class Entries(BaseModel, metaclass=_Made):
 
     @classmethod
     def names(cls, dimension: Dimension | None) -> list[str]:
-        """The names of the entries in a dimension; the model's own precede those of its base."""
-        general = cls.__mro__[1]
-        common = (
-            general.model_fields if issubclass(general, Entries) and general is not Entries else {}
+        """The names of the entries in a dimension, the model's own before those of its bases."""
+        every = dict.fromkeys(
+            name
+            for model in cls.__mro__
+            for name in model.__dict__.get("__annotations__", {})
+            if name in cls.model_fields
         )
-        every = [name for name in cls.model_fields if name not in common] + list(common)
         return [
             name
             for name in every
@@ -347,7 +351,22 @@ def _refusal(
 # ---- materials
 
 
-class Material(Entries):
+class OfMaterial(Entries):
+    """The entries of a material, which a body and the top of a scene may have, too."""
+
+    law: Annotated[str | None, shared("law")] = None
+    young: Annotated[float | None, shared("young")] = None
+    nu: Annotated[float | None, shared("nu")] = None
+    density: Annotated[float | None, shared("density")] = None
+    law_parameters: Annotated[str | None, shared("law_parameters")] = None
+    viscosity: Annotated[float | None, shared("viscosity")] = None
+    bulk_viscosity: Annotated[float | None, shared("bulk_viscosity")] = None
+    relaxation_modulus: Annotated[float | None, shared("relaxation_modulus")] = None
+    relaxation_time: Annotated[float | None, shared("relaxation_time")] = None
+    loss: Annotated[float | None, shared("loss")] = None
+
+
+class Material(OfMaterial):
     """The material of a body; `law` is a constitutive law, and the classes below are the laws.
 
     The laws are in edp/program/law. The damping is of the Kelvin-Voigt type with `viscosity` and
@@ -359,12 +378,6 @@ class Material(Entries):
     young: Annotated[float, shared("young")]
     nu: Annotated[float, shared("nu")]
     density: Annotated[float, shared("density")]
-    law_parameters: Annotated[str | None, shared("law_parameters")] = None
-    viscosity: Annotated[float | None, shared("viscosity")] = None
-    bulk_viscosity: Annotated[float | None, shared("bulk_viscosity")] = None
-    relaxation_modulus: Annotated[float | None, shared("relaxation_modulus")] = None
-    relaxation_time: Annotated[float | None, shared("relaxation_time")] = None
-    loss: Annotated[float | None, shared("loss")] = None
 
 
 class SaintVenantKirchhoff(Material):
@@ -476,7 +489,7 @@ class Load(Entries):
 # ---- bodies
 
 
-class Body(Entries):
+class Body(OfMaterial):
     """The entries of bodies of all shapes; the shapes are the classes below.
 
     `material` sets law, young, nu, density and damping together. A rigid body needs only a density
@@ -495,16 +508,6 @@ class Body(Entries):
     name: Annotated[str | None, Name("of its own")] = None
     position: Annotated[Any, Place("of the centre of mass [m]")]
     velocity: Annotated[Any, Place("of the centre of mass [m/s]")] = None
-    law: Annotated[str | None, shared("law")] = None
-    young: Annotated[float | None, shared("young")] = None
-    nu: Annotated[float | None, shared("nu")] = None
-    density: Annotated[float | None, shared("density")] = None
-    law_parameters: Annotated[str | None, shared("law_parameters")] = None
-    viscosity: Annotated[float | None, shared("viscosity")] = None
-    bulk_viscosity: Annotated[float | None, shared("bulk_viscosity")] = None
-    relaxation_modulus: Annotated[float | None, shared("relaxation_modulus")] = None
-    relaxation_time: Annotated[float | None, shared("relaxation_time")] = None
-    loss: Annotated[float | None, shared("loss")] = None
     mesh_size: Annotated[
         float | None, shared("mesh_size", "largest element size; 0 = by accuracy")
     ] = None
@@ -749,15 +752,23 @@ BODIES: dict[str, type[Body]] = {
 
 # ---- rigid obstacles
 
-# Entries of contact that a pair and an obstacle may have of their own.
-OWN = (
-    "penalty",
-    "friction_static",
-    "friction_dynamic",
-)
+
+class OfContact(Entries):
+    """The entries of contact that a pair and an obstacle may have of their own."""
+
+    penalty: Annotated[float | str | None, shared("penalty")] = None
+    friction_static: Annotated[float | None, shared("friction_static")] = None
+    friction_dynamic: Annotated[float | str | None, shared("friction_dynamic")] = None
+
+    @classmethod
+    def refused(cls, name: str, value: Any, dimension: Dimension | None) -> str:
+        return _of_all(name, value) or super().refused(name, value, dimension)
 
 
-class Obstacle(Entries):
+OWN = tuple(OfContact.model_fields)
+
+
+class Obstacle(OfContact):
     """The entries of rigid obstacles of all kinds; the kinds are the classes below."""
 
     kind: ClassVar[str]
@@ -771,17 +782,10 @@ class Obstacle(Entries):
     axis: Annotated[
         list[float] | None, Vector("in space, the direction that it turns about", count=3)
     ] = None
-    penalty: Annotated[float | str | None, shared("penalty")] = None
-    friction_static: Annotated[float | None, shared("friction_static")] = None
-    friction_dynamic: Annotated[float | str | None, shared("friction_dynamic")] = None
 
     def table(self) -> dict[str, Any]:
         """The table `[[obstacle]]`."""
         return {"kind": self.kind} | super().table()
-
-    @classmethod
-    def refused(cls, name: str, value: Any, dimension: Dimension | None) -> str:
-        return _of_all(name, value) or super().refused(name, value, dimension)
 
 
 class Plane(Obstacle):
@@ -872,29 +876,19 @@ OBSTACLES: dict[str, type[Obstacle]] = {
 # ---- contact
 
 
-class Pair(Entries):
+class Pair(OfContact):
     """The entries of one contact pair, a body and an obstacle or two bodies, given by their names.
 
     They replace the entries of the whole scene.
     """
 
     bodies: Annotated[Any, Partners("two names")] = None
-    penalty: Annotated[float | str | None, shared("penalty")] = None
-    friction_static: Annotated[float | None, shared("friction_static")] = None
-    friction_dynamic: Annotated[float | str | None, shared("friction_dynamic")] = None
-
-    @classmethod
-    def refused(cls, name: str, value: Any, dimension: Dimension | None) -> str:
-        return _of_all(name, value) or super().refused(name, value, dimension)
 
 
-class Contact(Entries):
+class Contact(OfContact):
     """Contact and friction of the whole scene, paper (10) to (13)."""
 
     nested = {"pair": Pair}
-    penalty: Annotated[float | str | None, shared("penalty")] = None
-    friction_static: Annotated[float | None, shared("friction_static")] = None
-    friction_dynamic: Annotated[float | str | None, shared("friction_dynamic")] = None
     exponent: Annotated[float | None, shared("exponent")] = None
     slip_velocity: Annotated[float | str | None, shared("slip_velocity")] = None
     regularization: Annotated[str | None, shared("regularization")] = None
@@ -948,7 +942,7 @@ def _no_more(name: str, value: Any) -> str:
     return f": '{brief(value)}' is no entry any more (accepted: {FORMER[name]})"
 
 
-class Top(Entries):
+class Top(OfMaterial):
     """The entries at the top of a scene.
 
     They control the run, and set the material and mesh sizes of bodies without their own.
@@ -973,16 +967,6 @@ class Top(Entries):
         ),
     ] = None
     only = {"symmetry": (PLANE_STRAIN, SOLID)}
-    law: Annotated[str | None, shared("law")] = None
-    young: Annotated[float | None, shared("young")] = None
-    nu: Annotated[float | None, shared("nu")] = None
-    density: Annotated[float | None, shared("density")] = None
-    law_parameters: Annotated[str | None, shared("law_parameters")] = None
-    viscosity: Annotated[float | None, shared("viscosity")] = None
-    bulk_viscosity: Annotated[float | None, shared("bulk_viscosity")] = None
-    relaxation_modulus: Annotated[float | None, shared("relaxation_modulus")] = None
-    relaxation_time: Annotated[float | None, shared("relaxation_time")] = None
-    loss: Annotated[float | None, shared("loss")] = None
     mesh_size: Annotated[float | None, shared("mesh_size")] = None
     contact_mesh_size: Annotated[float | None, shared("contact_mesh_size")] = None
     gravity: Annotated[float | None, shared("gravity")] = None
