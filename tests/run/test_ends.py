@@ -132,6 +132,22 @@ def test_a_held_body_swings_back_into_the_impact(strip):
     assert result.summary["ended"] == "impact" and not result.summary["later_contact_possible"]
 
 
+def test_a_stiff_beam_swings_back_to_a_fast_disc(tmp_path):
+    """A disc of aluminium leaves a clamped beam at 6 m/s and is struck again 0.1 ms later. At the
+    look after the first contact the gap is larger than what the last step has searched."""
+    metal = {"law": "svk", "young": 7e10, "density": 2700, "nu": 0.33}
+    disc = DISC | {
+        "radius": 0.025, "position": [0, 0.0455], "velocity": [0, -27],
+        "mesh_size": 0.0088, "contact_mesh_size": 0.0008,
+    }
+    beam = STRIP | {
+        "width": 0.2, "height": 0.04, "mesh_size": 0.0118, "contact_mesh_size": 0.00076,
+    }
+    rows, result = go(tmp_path, read(disc, beam, **metal, accuracy=0.05))
+    assert rows.start.iloc[-1] > 1.5e-4
+    assert result.summary["impulse"] == pytest.approx(225.4, rel=0.01)  # until 0.3 ms
+
+
 def test_a_slender_free_body_swings_back_into_the_impact(tmp_path):
     """A light disc leaves the middle of a free bar slowly. The bar bends back and strikes it again
     after 38 ms, within its slowest period of 63 ms. The impulse is that of a run until 45 ms, to
