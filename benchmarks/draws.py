@@ -280,7 +280,7 @@ FLAT_SHAPES = {"block-wall": _block, "two-bars": _bars, "polygon-wall": _polygon
 # ---- supports, loads, rigid bodies and obstacles that move
 
 # The number of each scene in sixty.
-HELD_MIXTURE = {"drop-weight": 18, "disc-beam": 10, "hollow-ball": 16, "roller": 16}
+HELD_MIXTURE = {"drop-weight": 15, "disc-beam": 15, "hollow-ball": 15, "roller": 15}
 HELD_ACCURACIES = (0.02, 0.05, 0.1)
 FASTEST_HELD = 0.06  # upper bound of the speed over sqrt(E/density)
 

@@ -3,8 +3,10 @@
 Random scenes run with default settings and are compared with finer runs.
 """
 
+import math
 import shutil
 import tempfile
+import time
 from argparse import Namespace
 from collections.abc import Iterable
 from functools import partial
@@ -50,6 +52,7 @@ ANSWERS = (*estimate.RESULTS, *estimate.HIGHEST, "support_peak_1", "support_peak
 COVER = {"answer": "", "cases": "", "within": ".1%", "times": ".1f", "needed": ".2f"}
 TITLES = {"coarse": "at coarse accuracies", "flat": "where faces strike flat", "held": "of what is held, loaded or rigid",
           "others": "in five other families of scenes"}
+LATER: dict = {"message": "not begun"}
 Drawn = tuple[str, study.Point]  # a built-in scene and its overrides
 
 
@@ -71,11 +74,13 @@ def main(argv: list[str]) -> int:
                         help="curved, hollow, nearly incompressible, unlike, and strips: stated errors hold there too")
     parser.add_argument("--limit", metavar="S", type=float, default=LIMIT, help=f"longest time of a scene (default: {LIMIT:g} s); "
                         "scenes that take longer are left out")
+    parser.add_argument("--minutes", metavar="M", type=float, default=math.inf, help="no scene begins later than that; the same command "
+                        "goes on with the others")
     parser.add_argument("--of", metavar="SCENE", choices=draws.SCENES, help=f"of one kind only: {', '.join(draws.SCENES)}")
     options = parser.parse_args(argv)
     kind = next((kind for kind in SCENES if getattr(options, kind, False)), "round")
     seed, count = (default if value is None else value for default, value in zip(SCENES[kind], (options.seed, options.scenes)))
-    table = compare(_drawn(options, kind, seed, max(1, count)), options.out, options.limit)
+    table = compare(_drawn(options, kind, seed, max(1, count)), options.out, options.limit, options.minutes)
     if kind != "round":
         name = table.scene.str.partition(":")[0]
         part = table.accuracy.map("accuracy {:g}".format) if kind == "coarse" else name.map(draws.family) if kind == "others" else name
@@ -129,26 +134,28 @@ def held(row) -> bool:
     return row.within >= KEPT - 1.96 * (KEPT * (1 - KEPT) / row.cases) ** 0.5
 
 
-def compare(drawn: list[Drawn], out: Path, limit: float = LIMIT) -> pd.DataFrame:
-    """A row for each scene.
+def compare(drawn: list[Drawn], out: Path, limit: float = LIMIT, minutes: float = math.inf) -> pd.DataFrame:
+    """A row for each scene that begins within so many minutes.
 
     The columns are the error and the error estimate of each result, and the largest of each over
     the promised results, all over the requested accuracy; the warnings; and processor seconds of
     the run with its estimate and of the reference. Values of a failed run are nan.
     """
-    acts = {k: partial(_row, out, *entry, limit) for k, entry in enumerate(drawn)}
+    acts = {k: partial(_row, out, *entry, limit, time.monotonic() + 60 * minutes) for k, entry in enumerate(drawn)}
     rows = {k: {"message": str(outcome)} if isinstance(outcome, Failure) else outcome
             for k, outcome in study.side_by_side(acts, study.CORES, out.name)}
     rows = [{"scene": f"{name}: {draws.words(point)}", "accuracy": point.get("accuracy"), "warnings": ""} | rows[k]
-            for k, (name, point) in enumerate(drawn)]
+            for k, (name, point) in enumerate(drawn) if rows[k] != LATER]
     columns = [column for name in ANSWERS for column in (name, f"{name} stated")]
     return pd.DataFrame(rows).reindex(columns=["scene", "accuracy", *columns, "error", "estimated", "seconds", "finer seconds", "warnings",
                                                "message"])
 
 
-def _row(out: Path, name: str, point: study.Point, limit: float) -> dict:
-    """The row of one scene, unless it takes longer than `limit` [s]. Its runs are kept, each without
-    an estimate, so that other estimates need no new runs."""
+def _row(out: Path, name: str, point: study.Point, limit: float, last: float) -> dict:
+    """The row of one scene, unless it takes longer than `limit` [s]; LATER after the time `last`.
+    Its runs are kept, each without an estimate, so that other estimates need no new runs."""
+    if time.monotonic() > last:
+        return LATER
     try:
         with freefem.limited(limit):
             return _compared(open_scene(name, point), study.place(out / name, point))

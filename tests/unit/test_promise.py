@@ -113,6 +113,12 @@ def test_stated_errors_are_to_hold_and_not_to_be_far_too_large_in_each_part(tmp_
     assert ("DO NOT HOLD" in output) == bool(code) and "accuracy 0.03" in output and f"{1 - missed / 30:.1%}" in output
 
 
+def test_scenes_that_do_not_begin_in_time_are_left_out(tmp_path, monkeypatch):
+    monkeypatch.setattr(promise, "_compared", lambda problem, folder: {"error": 0.5, "message": ""})
+    drawn = draws.held(3, 4)
+    assert len(promise.compare(drawn, tmp_path, minutes=1)) == len(drawn) == 4 and promise.compare(drawn, tmp_path, minutes=0).empty
+
+
 def test_drawn_scenes_of_other_families_are_accepted():
     """Each family has about the same number of scenes; equal seeds give equal scenes."""
     drawn = draws.others(3, 10)
