@@ -7,6 +7,7 @@ import contextlib
 import errno
 import gc
 import importlib
+import io
 import locale
 import os
 import re
@@ -14,6 +15,7 @@ import signal
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Never
 
 from . import __version__
 from .failure import BadInput, Failure, Unreadable, brief, signals, unknown
@@ -50,7 +52,7 @@ def guarded(run: Command, argv: list[str]) -> int:
     message.
     """
     # A wrong command line is reported like any bad input: one line and exit code 10.
-    argparse.ArgumentParser.error = _bad_usage
+    argparse.ArgumentParser.error = _bad_usage  # type: ignore[method-assign, assignment]
     try:
         return run(argv) or 0
     except Failure as failure:
@@ -66,11 +68,9 @@ def guarded(run: Command, argv: list[str]) -> int:
         advice = (
             "make room, or choose another --out" if error.errno in FULL else "choose another --out"
         )
-        failure = Unreadable(
-            f"{error.filename or 'the result folder'}: {error.strerror or error}; {advice}"
-        )
-        print(f"ffimpact: {failure}", file=sys.stderr)
-        return failure.code
+        where = error.filename or "the result folder"
+        print(f"ffimpact: {where}: {error.strerror or error}; {advice}", file=sys.stderr)
+        return Unreadable.code
     except KeyboardInterrupt:
         print("ffimpact: interrupted", file=sys.stderr)
         return 130
@@ -79,13 +79,14 @@ def guarded(run: Command, argv: list[str]) -> int:
 def execute(argv: list[str]) -> int | None:
     """Executes the words of a command line. Raises Failure."""
     if argv[:1] and argv[0] in OWN_MAIN:
-        return importlib.import_module(OWN_MAIN[argv[0]]).main(argv[1:])
+        command: Command = importlib.import_module(OWN_MAIN[argv[0]]).main
+        return command(argv[1:])
     options = _parser().parse_args(argv)
     options.command(options)
     return 0
 
 
-def _bad_usage(parser: argparse.ArgumentParser, message: str) -> None:
+def _bad_usage(parser: argparse.ArgumentParser, message: str) -> Never:
     if choice := re.fullmatch(
         r"argument (\S+): invalid choice: (['\"])(.*)\2 \(choose from (.*)\)", message
     ):
@@ -300,7 +301,7 @@ def _figures(options: argparse.Namespace) -> None:
         print(f"ffimpact: without figures/solid.png: {reason}", file=sys.stderr)
 
 
-def leave(number: int, _) -> None:
+def leave(number: int, _: object) -> None:
     """Signal handler: ends the program with exit code 128 + `number`. Every `finally` is executed
     as after Ctrl-C: FreeFem++ is ended and unfinished files are removed.
     """
@@ -327,7 +328,8 @@ def start(run: Command | None = None) -> int:
         if getattr(sys, name) is None:
             setattr(sys, name, open(os.devnull, "w"))
     # Paths are bytes, which need not be valid text.
-    sys.stdout.reconfigure(errors="surrogateescape")
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="surrogateescape")
     code = guarded(run or execute, sys.argv[1:])
     gc.freeze()  # avoids a garbage collection when Python exits
     return code

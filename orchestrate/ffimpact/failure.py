@@ -60,7 +60,7 @@ class Failure(Exception):
         return type(self)(*(f"{origin}: {message}" for message in self.messages), code=self.code)
 
 
-def brief(value) -> str:
+def brief(value: object) -> str:
     """Returns a value as the text that a message repeats, cut if it is long. True and false are
     written as in TOML.
     """
@@ -73,7 +73,7 @@ def shortened(text: str, limit: int) -> str:
     return text if len(text) <= limit else text[: limit - len(MORE)] + MORE
 
 
-def suggestion(word, accepted: Iterable[str]) -> str:
+def suggestion(word: object, accepted: Iterable[str]) -> str:
     """Returns the part of a message that suggests one or two accepted words similar to the user's
     word. It is empty if no word is similar.
     """
@@ -86,7 +86,7 @@ def suggestion(word, accepted: Iterable[str]) -> str:
     return f"; did you mean {' or '.join(near)}?" if near else ""
 
 
-def unknown(word, accepted: Iterable[str], between: str = "|") -> str:
+def unknown(word: object, accepted: Iterable[str], between: str = "|") -> str:
     """Returns a message that `word` is unknown, with suggestions and all accepted words."""
     words = list(accepted)
     return (
@@ -149,7 +149,8 @@ def gathered(acts: Iterable[Callable[[], T]]) -> list[T]:
     """Calls all `acts` and returns their results. Raises one BadInput with the messages of all that
     failed.
     """
-    results, messages = [], []
+    results: list[T] = []
+    messages: list[str] = []
     for act in acts:
         try:
             results.append(act())

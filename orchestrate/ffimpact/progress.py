@@ -14,6 +14,9 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
+from typing import Any, TypeVar
+
+T = TypeVar("T")
 
 __all__ = ["Line", "forward", "in_notebook", "in_turn", "muted", "work"]
 
@@ -141,7 +144,7 @@ class _Bar:
         self.leaving.close()
 
 
-class Line(contextlib.AbstractContextManager):
+class Line(contextlib.AbstractContextManager["Line", None]):
     """Progress of the work `name`. `costs` maps each part to its cost, in any unit. With `watched` =
     False nothing is shown.
     """
@@ -149,7 +152,7 @@ class Line(contextlib.AbstractContextManager):
     def __init__(
         self,
         name: str,
-        costs: Mapping[Hashable, float],
+        costs: Mapping[Any, float],
         watched: bool | None = None,
         words: str = "",
     ):
@@ -160,7 +163,7 @@ class Line(contextlib.AbstractContextManager):
             on_screen = sys.stderr.isatty() or in_notebook()
             self.shown = _Bar(self._words(words)) if on_screen else _Printed()
 
-    def __exit__(self, *_) -> None:
+    def __exit__(self, *_: object) -> None:
         if self.shown:
             self.shown.close()
 
@@ -201,7 +204,7 @@ class Line(contextlib.AbstractContextManager):
         self.at(part, 1.0, words)
 
 
-def in_turn(name: str, items: Iterable) -> Iterator:
+def in_turn(name: str, items: Iterable[T]) -> Iterator[T]:
     """Yields the items one after another, with a line that shows the number of the current item."""
     items = list(items)
     with Line(name, dict.fromkeys(range(len(items)), 1.0)) as line:

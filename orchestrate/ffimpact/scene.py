@@ -6,9 +6,10 @@ from pathlib import Path
 
 from .failure import BadInput, suggestion
 from .input import parameters
+from .input.parameters import Table
 from .scenes.scene import Scene, read
 
-__all__ = ["SCENES", "absent", "built_in", "load", "read_toml"]
+__all__ = ["SCENES", "Scene", "absent", "built_in", "load", "read_toml"]
 
 SCENES = Path(__file__).resolve().parent / "scenes"
 
@@ -18,7 +19,7 @@ def built_in() -> list[str]:
     return sorted(path.stem for path in SCENES.glob("*.toml"))
 
 
-def read_toml(path: Path, missing: str) -> tuple[str, dict]:
+def read_toml(path: Path, missing: str) -> tuple[str, Table]:
     """Returns the text of a TOML file and its tables. Raises BadInput with the message `missing` if
     there is no such file, or with the reason why the file cannot be read.
     """

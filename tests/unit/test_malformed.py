@@ -89,7 +89,7 @@ def test_path_of_a_scene(capsys, kind):
 SWEEPS = {
     "nothing varies": ('scene = "disc-normal"\n', "product: "), "a range without end": ("[product]\nspeed = { from = 1, points = 3 }\n", "speed: "),
     "an empty zip": ("[[zip]]\n", "zip: "), "a scene that is not there": ('scene = "x.toml"\n[product]\nspeed = [1]\n', "x.toml: "),
-    "coarser": ("[product]\naccuracy = [0.1]\nspeed=[1]\n[refine]\naccuracy = 0.2\n", "refine: "), "deep": ("product = " + "[" * 100_000, "nested too deep"),
+    "coarser": ("[product]\naccuracy = [0.1]\nspeed=[1]\n[refine]\naccuracy = 0.2\n", "refine: "), "no number": ("[product]\nspeed=[1]\n[refine]\naccuracy = \"x\"\n", "accuracy: 'x' is not a number"), "deep": ("product = " + "[" * 100_000, "nested too deep"),
     "a zero in a name": ('scene = "a\\u0000b"\n[product]\nspeed = [1]\n', "sweep.toml: ")}
 
 

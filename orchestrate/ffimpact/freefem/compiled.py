@@ -10,6 +10,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterable
 from pathlib import Path
+from typing import Any
 
 from platformdirs import user_cache_path
 
@@ -19,7 +20,7 @@ __all__ = ["QUIET", "compiled"]
 
 UNFINISHED = "unfinished-"  # prefix of the temporary folders
 LONG = 3600.0  # age [s] of a temporary folder that no process uses any more
-QUIET = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.DEVNULL)
+QUIET: dict[str, Any] = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.DEVNULL)
 
 
 def compiled(name: str, made_of: Iterable[str], make: Callable[[Path], None]) -> Path | None:

@@ -5,6 +5,7 @@ circles.
 import json
 import subprocess
 from pathlib import Path
+from typing import Any
 
 from ..failure import BadInput, NotInstalled
 from . import freefem
@@ -14,13 +15,14 @@ __all__ = ["outline_of"]
 LIMIT = 60  # time limit of a query [s]
 
 
-def outline_of(mesh: Path) -> dict:
+def outline_of(mesh: Path) -> dict[str, Any]:
     """Returns the circles of a mesh file (x, y, radius) [m] and the number of the circle of each of
     its boundary edges, -1 for a straight one: circles, circle_of.
 
     Raises BadInput if edp/program/outline.edp refuses the mesh, and NotInstalled without FreeFem++.
     """
-    return json.loads(_answer("edp/program/outline.edp", "-mesh", str(mesh)))
+    answer: dict[str, Any] = json.loads(_answer("edp/program/outline.edp", "-mesh", str(mesh)))
+    return answer
 
 
 def _answer(script: str, *flags: str) -> str:

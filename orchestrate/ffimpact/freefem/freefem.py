@@ -19,7 +19,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import NamedTuple, TextIO
+from typing import Any, NamedTuple, TextIO
 
 from ..failure import BadInput, NotInstalled, TooLong, signals
 from ..places import INSTALLED, ROOT
@@ -43,7 +43,7 @@ __all__ = [
     "words_of",
 ]
 
-CORES = len(os.sched_getaffinity(0))
+CORES: int = len(os.sched_getaffinity(0))
 # The oldest accepted version, as the banner prints it. Debian's 4.11 prints 4.9.
 OLDEST = (4, 9)
 # Debian installs the plugins in this folder, in which its FreeFem++ does not search for them.
@@ -84,10 +84,8 @@ class At(NamedTuple):
     def read(cls, share: str, entries: str) -> "At":
         """Returns the progress of a line "progress <share> <name>=<value> ..."."""
         texts = dict(entry.split("=") for entry in entries.split())
-        kinds = {"steps": int, "unknowns": int}
-        return cls(
-            float(share), **{name: kinds.get(name, float)(text) for name, text in texts.items()}
-        )
+        kinds: dict[str, Any] = cls.__annotations__
+        return cls(float(share), **{name: kinds[name](text) for name, text in texts.items()})
 
 
 Progress = Callable[[At], None]
@@ -102,7 +100,7 @@ class FreeFem:
     command: str
     version: str
     environment: dict[str, str]
-    description: dict
+    description: dict[str, Any]
     plugin: str = ""  # the command-line word that loads the compiled kernels
 
     def words(self, script: str | Path, *flags: str) -> list[str]:
@@ -128,19 +126,21 @@ class FreeFem:
             for number in re.findall(rf"{OPEN_FILES}(\d+)", self.environment.get("LD_PRELOAD", ""))
         ]
 
-    def call(self, script: str | Path, *flags: str, **options) -> subprocess.CompletedProcess:
+    def call(
+        self, script: str | Path, *flags: str, **options: Any
+    ) -> subprocess.CompletedProcess[str]:
         """Runs a script to its end and returns the completed process. `options` are passed to
         subprocess.run.
         """
-        usual = {
-            "cwd": ROOT,
-            "env": self.environment,
-            "stdin": subprocess.DEVNULL,
-            "capture_output": True,
-            "pass_fds": self.preloaded,
-        }
         return subprocess.run(
-            self.words(script, *flags), **usual | {"text": True, "errors": "replace"} | options
+            self.words(script, *flags),
+            cwd=ROOT,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            errors="replace",
+            pass_fds=self.preloaded,
+            **{"env": self.environment} | options,
         )
 
 
@@ -269,7 +269,7 @@ def quick_clock(environment: Mapping[str, str]) -> dict[str, str]:
     return {"LD_PRELOAD": ":".join([name, *environment.get("LD_PRELOAD", "").split()])}
 
 
-def _probe(command: str, environment: dict[str, str]) -> dict | None:
+def _probe(command: str, environment: dict[str, str]) -> dict[str, Any] | None:
     """Returns the answer of edp/program/describe.edp without a scene, or None if FreeFem++ does not start
     or lacks a plugin that the scenes load. The version is taken from the banner: scripts see it as
     a number, in which 4.10 equals 4.1.
@@ -277,7 +277,8 @@ def _probe(command: str, environment: dict[str, str]) -> dict | None:
     try:
         output = FreeFem(command, "", environment, {}).call(DESCRIBE, "-v", "1", timeout=60).stdout
         banner = BANNER.search(output)
-        return json.loads(output[output.index("{") :]) | ({"version": banner[1]} if banner else {})
+        answer: dict[str, Any] = json.loads(output[output.index("{") :])
+        return answer | ({"version": banner[1]} if banner else {})
     except (OSError, subprocess.TimeoutExpired, ValueError):
         return None
 
@@ -328,7 +329,7 @@ def limited(seconds: float = math.inf, stop: threading.Event | None = None) -> I
 class Process:
     """A running FreeFem++, the file of its stdout (`log`) and the file of its stderr (`errors`)."""
 
-    child: subprocess.Popen
+    child: subprocess.Popen[bytes]
     log: Path
     errors: TextIO
 
@@ -346,8 +347,9 @@ class Process:
                 with suppress(subprocess.TimeoutExpired):
                     code = self.child.wait(POLL)
                 *whole, unread = (unread + lines.read()).split("\n")
-                for match in filter(None, map(SAYS.match, whole if progress else ())):
-                    progress(At.read(*match.groups()))
+                for match in filter(None, map(SAYS.match, whole)):
+                    if progress:
+                        progress(At.read(*match.groups()))
         self.errors.seek(0)
         stderr = self.errors.read()
         with open(self.log, "a") as file:

@@ -87,9 +87,9 @@ def build(command: str, version: str, environment: Mapping[str, str]) -> str:
     if not plugin or re.search(r'["\\\n]', str(plugin)):
         return ""
     # The version of the interface through which the scripts call the kernels.
-    interface = re.search(
+    [interface] = re.findall(
         r"(?m)^load (kernels\d+)$", (ROOT / "edp/program/kernels.idp").read_text()
-    )[1]
+    )
     # FreeFEM puts its own folders before any name, so that the path first leads up to the root.
     return f'-D{interface}="{"../" * 40}{str(plugin.with_suffix("")).lstrip("/")}"'
 

@@ -23,14 +23,16 @@ def turned(moments: np.ndarray, start: np.ndarray, spin: np.ndarray, t: float) -
     (3, 3) is the matrix of inertia in the body's axes, in any unit.
     """
     if _principal(moments, start, spin):
-        return rotation(spin * t) @ start
+        turned: np.ndarray = rotation(spin * t) @ start
+        return turned
     # Solutions are kept for horizons that double, the first of one radian.
     radian = 1 / fastest(moments, start, spin)
     horizon = radian * 2.0 ** max(0, math.ceil(math.log2(max(t / radian, 1))))
     solution = _solution(moments.tobytes(), start.tobytes(), spin.tobytes(), horizon)
-    # the rotation closest to the solution
+    # The result is the rotation closest to the solution.
     left_vectors, _, right_vectors = np.linalg.svd(solution(t).reshape(3, 3))
-    return left_vectors @ right_vectors
+    closest: np.ndarray = left_vectors @ right_vectors
+    return closest
 
 
 def fastest(moments: np.ndarray, start: np.ndarray, spin: np.ndarray) -> float:
@@ -50,7 +52,9 @@ def rotation(turn: np.ndarray) -> np.ndarray:
         return np.eye(3)
     K = _cross(turn / angle)
     matrix = np.eye(3) + math.sin(angle) * K + (1 - math.cos(angle)) * K @ K
-    return np.where(abs(matrix - matrix.round()) < 1e-15, matrix.round(), matrix)
+    rounded = matrix.round()
+    matrix = np.where(abs(matrix - rounded) < 1e-15, rounded, matrix)
+    return matrix
 
 
 def _cross(w: np.ndarray) -> np.ndarray:
@@ -78,8 +82,10 @@ def _solution(moments: bytes, start: bytes, spin: bytes, horizon: float) -> OdeS
 
     def rate(_: float, entries: np.ndarray) -> np.ndarray:
         R = entries.reshape(3, 3)
-        return (_cross(R @ inverse @ R.T @ momentum) @ R).ravel()
+        change: np.ndarray = _cross(R @ inverse @ R.T @ momentum) @ R
+        return change.ravel()
 
-    return solve_ivp(
+    solution: OdeSolution = solve_ivp(
         rate, (0, horizon), R, method="DOP853", rtol=1e-10, atol=1e-10, dense_output=True
     ).sol
+    return solution

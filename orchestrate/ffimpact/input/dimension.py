@@ -5,6 +5,7 @@ y points up in all dimensions.
 
 from dataclasses import dataclass
 
+from .parameter import Table
 from .parameters import Parameter
 
 __all__ = [
@@ -39,10 +40,10 @@ DIMENSIONS = {dimension.name: dimension for dimension in (PLANE_STRAIN, AXISYMME
 SCRIPTS = tuple(dimension.script for dimension in DIMENSIONS.values())
 
 
-def of_scene(content: dict) -> Dimension:
+def of_scene(content: Table) -> Dimension:
     """The dimension of a scene's tables; raises BadInput for an unknown word."""
     rule = Parameter("dimension", "word", PLANE_STRAIN.name, "-", "", words=tuple(DIMENSIONS))
-    return DIMENSIONS[rule.check(content.get("dimension", rule.default))]
+    return DIMENSIONS[str(rule.check(content.get("dimension", rule.default)))]
 
 
 def per_metre(script: str) -> str:

@@ -16,9 +16,21 @@ from ..failure import BadInput, brief, suggestion, unknown
 if TYPE_CHECKING:
     from .dimension import Dimension
 
-__all__ = ["Parameter", "Rule", "Value", "integer", "numbers", "plain", "real", "with_unit", "word"]
+__all__ = [
+    "Parameter",
+    "Rule",
+    "Table",
+    "Value",
+    "integer",
+    "numbers",
+    "plain",
+    "real",
+    "with_unit",
+    "word",
+]
 
 Value = float | int | str
+Table = dict[str, Any]  # a table of a TOML or JSON file
 
 _NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]+)?|\.[0-9]+)([eE][+-]?[0-9]+)?")
 # A number with a unit behind it is recognised for messages. A unit is a prefix and a name; the

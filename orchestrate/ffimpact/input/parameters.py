@@ -5,7 +5,12 @@ import re
 
 from ..failure import BadInput, brief, suggestion
 from ..places import ROOT as ROOT
-from .parameter import Parameter as Parameter, Value as Value, with_unit as with_unit
+from .parameter import (
+    Parameter as Parameter,
+    Table as Table,
+    Value as Value,
+    with_unit as with_unit,
+)
 from .table import PARAMETERS as PARAMETERS
 
 __all__ = [
@@ -15,6 +20,7 @@ __all__ = [
     "PARAMETERS",
     "Parameter",
     "ROOT",
+    "Table",
     "Value",
     "add_set",
     "check",
@@ -91,7 +97,7 @@ def add_set(parser: argparse.ArgumentParser, meaning: str) -> None:
     )
 
 
-def overrides(texts: list[str]) -> dict[str, str]:
+def overrides(texts: list[str]) -> dict[str, Value]:
     """The names and values of --set name=value.
 
     Raises BadInput if a text has another form or a name occurs more than once.

@@ -1,16 +1,18 @@
 """Writes the tables of a scene as the text of a TOML file."""
 
 import re
+from typing import Any
 
 import numpy as np
 import tomli_w
 
 from ..failure import BadInput, brief
+from .parameter import Table
 
 __all__ = ["to_toml"]
 
 
-def to_toml(table: dict) -> str:
+def to_toml(table: Table) -> str:
     """The text of a TOML file with the tables, lists of tables and values of `table`.
 
     Numbers keep all their digits: reading the text gives the same table. Raises BadInput if a text
@@ -19,7 +21,7 @@ def to_toml(table: dict) -> str:
     return tomli_w.dumps(_plain(table))
 
 
-def _plain(value):
+def _plain(value: Any) -> Any:
     """A value with Python's numbers and lists in place of numpy's."""
     if isinstance(value, dict):
         return {_plain(key): _plain(item) for key, item in value.items()}

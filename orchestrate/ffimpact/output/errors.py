@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from ..input.parameters import Table
 from .results import Answers, Record, held_bodies, numbers, read_answers, read_table
 
 __all__ = ["errors", "zero_by_symmetry"]
@@ -96,7 +97,7 @@ def errors(record: Record) -> dict[str, float]:
     return {name: estimates[name] for name in names if name in estimates and name not in zeros}
 
 
-def zero_by_symmetry(summary: Mapping) -> set[str]:
+def zero_by_symmetry(summary: Table) -> set[str]:
     """Returns the names of velocities and spins that are zero by symmetry. They are exactly zero, or
     zero up to the asymmetry of the mesh: velocities along the axes `symmetric_along`, normal to
     mirror planes, and spins about other axes than this normal.

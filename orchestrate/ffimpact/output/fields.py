@@ -6,10 +6,14 @@ more instants.
 """
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .results import reading
+
+if TYPE_CHECKING:
+    import meshio  # slow to load, so it is imported only where it is needed
 
 __all__ = ["RECORDED", "read_arrays", "write_fields"]
 
@@ -114,7 +118,7 @@ def _write_points(path: Path, points: Arrays) -> None:
     _write_mesh(path, meshio.Mesh(reference, [("vertex", vertices)], moved | loads))
 
 
-def _write_mesh(path: Path, mesh) -> None:
+def _write_mesh(path: Path, mesh: "meshio.Mesh") -> None:
     import meshio
 
     arrays = {name: np.ascontiguousarray(values) for name, values in mesh.point_data.items()}
@@ -198,13 +202,15 @@ class _Along:
                 self.first[piece] = np.where(self.piece == piece, pressure, 0.0).argmax()
         origin = np.maximum(self.first[self.piece], 0)
         if self.along is None:
-            return np.linalg.norm(self.positions - self.positions[origin], axis=1)
+            away: np.ndarray = np.linalg.norm(self.positions - self.positions[origin], axis=1)
+            return away
         length, start = self.length[self.piece], self.along[origin]
         if self.symmetric:  # half a body is measured from its axis
             start = np.where(start < length / 2, 0.0, length)
-        s = self.along - start
+        s: np.ndarray = self.along - start
         around = np.where(s > length / 2, -length, np.where(s <= -length / 2, length, 0.0))
-        return s + np.where(self.closed[self.piece], around, 0.0)
+        s += np.where(self.closed[self.piece], around, 0.0)
+        return s
 
 
 def _chains(surface: Arrays) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:

@@ -19,6 +19,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from ..failure import Busy, Unreadable
+from ..input.parameters import Table
 from ..places import shown
 from .results import read_summary, why
 
@@ -113,7 +114,7 @@ def failed_beside(folder: Path) -> Path:
     return folder.with_name(folder.name + ".failed")
 
 
-def finished_in(folder: Path, force: bool) -> dict | None:
+def finished_in(folder: Path, force: bool) -> Table | None:
     """Returns the summary of the finished run in `folder`, None if there is none. Raises Unreadable
     if the folder was not written by this program.
     """
@@ -252,14 +253,15 @@ def checkpoints(stage: Path) -> list[Path]:
     return [path for path in (stage / "checkpoint", *stage.glob("*/checkpoint")) if path.exists()]
 
 
-def unfinished(stage: Path) -> dict | None:
+def unfinished(stage: Path) -> Table | None:
     """Returns the request of the run whose checkpoint is in `stage`, None if there is none. Raises
     Unreadable if the request cannot be read.
     """
     if not checkpoints(stage):
         return None
     try:
-        return json.loads((stage / "checkpoint.json").read_text())
+        request: Table = json.loads((stage / "checkpoint.json").read_text())
+        return request
     except (OSError, ValueError) as error:
         raise Unreadable(
             f"{stage / 'checkpoint.json'} cannot be read: {why(error)}; delete {shown(stage)} to start from the "

@@ -6,8 +6,8 @@ Differences of time histories then do not estimate the errors of these results.
 """
 
 import math
-from collections.abc import Mapping
 
+from ..input.parameters import Table
 from .results import Answers, suffixes
 
 __all__ = ["DOUBLED", "rest_errors"]
@@ -61,12 +61,12 @@ def rest_errors(fine: Answers, coarse: Answers) -> dict[str, float]:
     }
 
 
-def _apart(summary: Mapping, other: Mapping, name: str) -> float:
+def _apart(summary: Table, other: Table, name: str) -> float:
     """The difference of a number, relative to the first."""
     return abs(summary[name] - other[name]) / summary[name] if summary[name] else 0.0
 
 
-def _speed(summary: Mapping, kind: str, components: str | tuple[str, ...]) -> float:
+def _speed(summary: Table, kind: str, components: str | tuple[str, ...]) -> float:
     """The largest size of a velocity of a body; of a spin that of its rim [m/s]."""
     return max(
         math.hypot(*(summary.get(f"{kind}{component}{end}") or 0.0 for component in components))

@@ -14,12 +14,12 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Never, TypeVar
 
 import numpy as np
 
 from ..failure import Unreadable, brief, unknown
-from ..input.parameters import Value
+from ..input.parameters import Table
 from . import former
 
 if TYPE_CHECKING:
@@ -52,6 +52,8 @@ __all__ = [
     "write_json",
 ]
 
+T = TypeVar("T")
+
 # Files of a run that the program reads again.
 WRITTEN = (
     "scene.toml",
@@ -73,17 +75,17 @@ class Record:
     """
 
     folder: Path
-    summary: dict
+    summary: Table
     reused: bool
 
     @cached_property
-    def history(self) -> dict[str, np.ndarray]:
+    def history(self) -> "Contents[np.ndarray]":
         """The columns of history.csv, each (steps,), SI units."""
         return read_history(self.folder)
 
     @cached_property
-    def scene(self) -> dict[str, Value]:
-        """Every parameter as used."""
+    def scene(self) -> "Contents[Any]":
+        """Every parameter as used, as tables."""
         return read_scene(self.folder)
 
 
@@ -99,23 +101,23 @@ def read_record(folder: Path) -> Record:
 # ---- files
 
 
-class Contents(dict):
+class Contents(dict[str, T]):
     """The content of the file `path` of a run by name. A missing name is Unreadable, with a list of
     the names that exist.
     """
 
-    def __init__(self, entries: dict, path: Path):
+    def __init__(self, entries: Mapping[str, T], path: Path):
         super().__init__({name: _contents(value, path) for name, value in entries.items()})
         self.path = path
 
-    def __missing__(self, name: str):
+    def __missing__(self, name: str) -> Never:
         raise Unreadable(brief(f"{self.path}: {unknown(name, self, ', ')}"))
 
-    def __reduce__(self):
+    def __reduce__(self) -> tuple[type, tuple[dict[str, T], Path]]:
         return Contents, (dict(self), self.path)
 
 
-def _contents(value, path: Path):
+def _contents(value: Any, path: Path) -> Any:
     """Returns a value of a file, with the tables in it as Contents."""
     if isinstance(value, list):
         return [_contents(item, path) for item in value]
@@ -198,10 +200,10 @@ def read_table(path: Path, columns: Iterable[str] = ()) -> np.recarray:
         if lacks := [name for name in columns if name not in names]:
             raise ValueError(f"it lacks the columns {', '.join(lacks)}")
         numbers = np.loadtxt(lines, delimiter=",", ndmin=2) if lines else np.empty((0, len(names)))
-        return np.rec.fromarrays(numbers.T, names=names)
+        return np.rec.fromarrays(numbers.T, dtype=[(name, float) for name in names])
 
 
-def read_frame(path: Path, columns: Iterable[str] = (), **options) -> "DataFrame":
+def read_frame(path: Path, columns: Iterable[str] = (), **options: Any) -> "DataFrame":
     """Returns a table that a study or a sweep has written, which may hold words."""
     import pandas as pd
 
@@ -212,7 +214,7 @@ def read_frame(path: Path, columns: Iterable[str] = (), **options) -> "DataFrame
         return table
 
 
-def read_history(folder: Path) -> dict[str, np.ndarray]:
+def read_history(folder: Path) -> Contents[np.ndarray]:
     """Returns the columns of history.csv by name, each (steps,)."""
     path = folder / "history.csv"
     text = content(path)
@@ -237,7 +239,7 @@ def columns_of(text: str) -> dict[str, np.ndarray]:
     return dict(zip(head.split(","), table.T, strict=True))
 
 
-def read_scene(folder: Path) -> dict[str, Value]:
+def read_scene(folder: Path) -> Contents[Any]:
     """Returns scene.toml: every parameter as used, as tables."""
     path = folder / "scene.toml"
     text = content(path)
@@ -250,8 +252,8 @@ class Answers(NamedTuple):
     scene as used, the largest speed of a centre of mass [m/s], and the columns of its history.
     """
 
-    summary: dict
-    used: dict[str, Value]
+    summary: Table
+    used: Table
     speed: float
     history: dict[str, np.ndarray]
 
@@ -291,27 +293,23 @@ def read_answers(folder: Path) -> Answers:
     )
 
 
-def _frame(used: dict, like: np.ndarray, bodies: int) -> np.ndarray | None:
+def _frame(used: Table, like: np.ndarray, bodies: int) -> np.ndarray | None:
     """Returns the velocity of the obstacles of a scene [m/s], None if there are none."""
     if "body" not in used:
         return None if bodies > 1 else np.zeros_like(like)
-    obstacles = [
-        obstacle.get("velocity", np.zeros_like(like)) for obstacle in used.get("obstacle", [])
-    ]
     # For bodies of revolution the velocity is a number, along the axis.
-    return (
-        np.mean(
-            [[0.0, velocity] if np.isscalar(velocity) else velocity for velocity in obstacles],
-            axis=0,
-        )
-        if obstacles
-        else None
-    )
+    velocities = [
+        np.array([0.0, velocity] if np.isscalar(velocity) else velocity)
+        for obstacle in used.get("obstacle", [])
+        for velocity in [obstacle.get("velocity", np.zeros_like(like))]
+    ]
+    return np.mean(velocities, axis=0) if velocities else None
 
 
 def mechanical_energy(history: dict[str, np.ndarray]) -> np.ndarray:
     """Returns the sum of kinetic, elastic and contact energy (steps,) [J, in plane strain J/m]."""
-    return history["kinetic"] + history["elastic"] + history["contact"]
+    total: np.ndarray = history["kinetic"] + history["elastic"] + history["contact"]
+    return total
 
 
 def suffixes(columns: Iterable[str]) -> list[str]:
@@ -326,12 +324,12 @@ def suffixes(columns: Iterable[str]) -> list[str]:
     ] or [""]
 
 
-def body_names(used: dict) -> list[str]:
+def body_names(used: Table) -> list[str]:
     """Returns the names of several bodies of a scene as used, in the order of the suffixes."""
     return [body["name"] for body in used["body"]] if "body" in used else ["disc", "block"]
 
 
-def held_bodies(used: Mapping) -> set[str]:
+def held_bodies(used: Table) -> set[str]:
     """Returns the suffixes of the bodies with a support that holds until the end, for a scene as
     used.
     """
@@ -342,7 +340,7 @@ def held_bodies(used: Mapping) -> set[str]:
     return {f"_{b}" if len(tables) > 1 else "" for b, holds in enumerate(holding, 1) if holds}
 
 
-def read_summary(folder: Path) -> dict:
+def read_summary(folder: Path) -> Table:
     """Returns summary.json of a finished run. Raises Unreadable if it is damaged: if an entry has
     another kind than the program writes, or if it is not as the run has written it.
     """
@@ -363,14 +361,14 @@ def read_summary(folder: Path) -> dict:
         return Contents(summary, path)
 
 
-def _renew_script(provenance: dict) -> None:
+def _renew_script(provenance: Table) -> None:
     """Replaces a script of former versions by the one that has taken its place."""
     script = provenance.get("script")
     if script in former.SCRIPTS:
         provenance["script"] = former.SCRIPTS[script][0]
 
 
-def digest(summary: Mapping) -> str:
+def digest(summary: Table) -> str:
     """Returns the sha256 of all entries of a summary but its provenance."""
     entries = {name: value for name, value in summary.items() if name != "provenance"}
     return hashlib.sha256(json.dumps(entries, sort_keys=True).encode()).hexdigest()
@@ -385,8 +383,11 @@ def _are(values: object, is_of_kind: Callable[[object], bool]) -> bool:
 
 
 def _is_provenance(value: object) -> bool:
-    files = value.get("files", {}) if isinstance(value, dict) else None
-    return isinstance(files, dict) and isinstance(value.get("script", ""), str)
+    return (
+        isinstance(value, dict)
+        and isinstance(value.get("files", {}), dict)
+        and isinstance(value.get("script", ""), str)
+    )
 
 
 # Kinds of the entries of a summary: words for a message, and whether a value is of this kind.
@@ -426,7 +427,7 @@ KINDS_OF: dict[str, Kind] = (
 )
 
 
-def numbers(summary: Mapping) -> list[str]:
+def numbers(summary: Table) -> list[str]:
     """Returns the names of the numbers of a summary."""
     return [
         name
@@ -435,7 +436,7 @@ def numbers(summary: Mapping) -> list[str]:
     ]
 
 
-def read_json(path: Path) -> dict:
+def read_json(path: Path) -> Table:
     """Returns the content of a file, {} if it is missing or damaged."""
     try:
         data = json.loads(path.read_text("utf-8")) if path.is_file() else {}
@@ -444,7 +445,7 @@ def read_json(path: Path) -> dict:
     return data if isinstance(data, dict) else {}
 
 
-def write_json(path: Path, content: dict) -> None:
+def write_json(path: Path, content: Table) -> None:
     path.write_text(json.dumps(content, indent=2) + "\n")
 
 

@@ -67,7 +67,7 @@ class Snapshot:
 
     points: np.ndarray
     triangles: np.ndarray
-    fields: Contents
+    fields: Contents[np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ class Solid:
 
     points: np.ndarray
     tetrahedra: np.ndarray
-    fields: Contents
+    fields: Contents[np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -95,7 +95,8 @@ class Skin:
 
     def at(self, field: np.ndarray) -> np.ndarray:
         """Returns the field (nodes, ...) at the vertices (m, ...)."""
-        return np.einsum("ma,ma...->m...", self.shape, field[self.nodes])
+        values: np.ndarray = np.einsum("ma,ma...->m...", self.shape, field[self.nodes])
+        return values
 
 
 def read(path: Path) -> Snapshot:
@@ -113,19 +114,13 @@ def read(path: Path) -> Snapshot:
         if not len(cells):
             return cut_in_plane(Solid(points, solid, fields), on_plane)
     row = np.cumsum(on_plane) - 1
-    points, cells, fields = (
-        points[on_plane, :2],
-        row[cells],
-        {name: field[on_plane] for name, field in fields.items()},
-    )
+    points, cells = points[on_plane, :2], row[cells]
+    flat = {name: field[on_plane] for name, field in fields.items()}
     if kind != TRIANGLE:
         curved = split(cells.tobytes(), int(np.clip(np.sqrt(MOST / max(1, len(cells))), 2, FINEST)))
-        points, cells, fields = (
-            curved.at(points),
-            curved.triangles,
-            {name: curved.at(field) for name, field in fields.items()},
-        )
-    return Snapshot(points, cells, Contents(fields, path))
+        points, cells = curved.at(points), curved.triangles
+        flat = {name: curved.at(field) for name, field in flat.items()}
+    return Snapshot(points, cells, Contents(flat, path))
 
 
 def read_solid(path: Path) -> Solid | None:
@@ -136,7 +131,7 @@ def read_solid(path: Path) -> Solid | None:
 
 def read_parts(
     path: Path,
-) -> tuple[np.ndarray, str, np.ndarray, dict[str, np.ndarray], np.ndarray]:
+) -> tuple[np.ndarray, str, np.ndarray, Contents[np.ndarray], np.ndarray]:
     """Returns the points, the common type of the cells, their nodes (cells, nodes), the fields, and
     the number of the body of each cell. Raises Unreadable if the file is no snapshot.
     """
@@ -213,7 +208,8 @@ def _in_plane(tetrahedra: np.ndarray, on_plane: np.ndarray, points: np.ndarray) 
     faces = faces[np.unique(np.sort(faces[:, :3], axis=1), axis=0, return_index=True)[1]]
     (ax, ay), (bx, by), (cx, cy) = (points[faces[:, k], :2].T for k in range(3))
     clockwise = (bx - ax) * (cy - ay) < (by - ay) * (cx - ax)
-    return np.where(clockwise[:, None], faces[:, [0, 2, 1, 5, 4, 3]], faces)
+    turned: np.ndarray = np.where(clockwise[:, None], faces[:, [0, 2, 1, 5, 4, 3]], faces)
+    return turned
 
 
 def cut_in_plane(solid: Solid, on_plane: np.ndarray) -> Snapshot:
@@ -239,7 +235,11 @@ def cut_in_plane(solid: Solid, on_plane: np.ndarray) -> Snapshot:
     share = np.divide(
         z[first], z[first] - z[second], out=np.zeros(len(first)), where=first != second
     )
-    at = lambda field: (field[first].T * (1 - share) + field[second].T * share).T  # noqa: E731
+
+    def at(field: np.ndarray) -> np.ndarray:
+        values: np.ndarray = (field[first].T * (1 - share) + field[second].T * share).T
+        return values
+
     (ax, ay), (bx, by), (cx, cy) = (at(solid.points)[triangles[:, k], :2].T for k in range(3))
     area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
     triangles = np.where((area < 0)[:, None], triangles[:, ::-1], triangles)[area != 0]
@@ -260,7 +260,7 @@ def series(pvd: Path) -> list[tuple[float, Path]]:
     with reading(pvd):
         sets = xml.fromstring(text).iterfind("Collection/DataSet")
         return sorted(
-            (float(entry.get("timestep")), pvd.parent / entry.get("file")) for entry in sets
+            (float(entry.attrib["timestep"]), pvd.parent / entry.attrib["file"]) for entry in sets
         )
 
 

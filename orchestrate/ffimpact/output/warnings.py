@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from ..input.parameters import Table
 from .contacts import THRESHOLD, Interval, thresholds
 
 __all__ = [
@@ -77,14 +78,14 @@ class Evidence:
     intervals: Sequence[Interval]
 
     @property
-    def facts(self) -> Mapping[str, Any]:
+    def facts(self) -> Table:
         """The diagnostics of the record."""
-        return self.record["diagnostics"]
+        return dict(self.record["diagnostics"])
 
     @property
-    def bodies(self) -> list[dict[str, Any]]:
+    def bodies(self) -> list[Table]:
         """The bodies of the record."""
-        return self.facts["bodies"]
+        return list(self.facts["bodies"])
 
     @cached_property
     def forces(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -208,9 +209,12 @@ class Evidence:
         """Half the smaller thickness of a pair, or the radius of the obstacle if it is smaller
         [m]."""
         sizes = [
-            self.bodies[k]["thickness"] / 2 for k in (pair["body"], pair["counter_body"]) if k >= 0
+            float(self.bodies[k]["thickness"]) / 2
+            for k in (pair["body"], pair["counter_body"])
+            if k >= 0
         ]
-        return min([*sizes, *([pair["corner_radius"]] if pair["corner_radius"] > 0 else [])])
+        corner = float(pair["corner_radius"])
+        return min([*sizes, corner] if corner > 0 else sizes)
 
     def finer(self, sizes: str, pair: Mapping[str, Any] | None = None) -> str:
         """The advice to refine the bodies of a pair, or all: by `sizes` of the scene, or by the
@@ -500,7 +504,8 @@ def _oscillates(e: Evidence) -> bool:
 
 def _fastest(e: Evidence) -> float:
     """The largest approach velocity of an impact [m/s]."""
-    return max([e.facts["impact_speed"], *(-interval.before.normal for interval in e.intervals)])
+    speeds = [-interval.before.normal for interval in e.intervals]
+    return max([float(e.facts["impact_speed"]), *speeds])
 
 
 def _is_hard(e: Evidence) -> bool:

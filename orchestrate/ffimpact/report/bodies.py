@@ -4,12 +4,17 @@ velocities, forces, and the deformed shapes with the obstacles.
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any, TypeVar
 
+import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.contour import ContourSet
+from matplotlib.figure import Figure
 from matplotlib.transforms import AffineDeltaTransform
 
 from ..input import dimension, models
-from ..input.parameters import Value
+from ..input.parameters import Table
 from ..output import vtu
 from ..output.results import Contents, body_names, mechanical_energy, suffixes
 from ..scenes import obstacles
@@ -42,7 +47,6 @@ from .figures import (
     material,
     over_time,
     per_metre,
-    plt,
     rolling,
     side_by_side,
 )
@@ -65,13 +69,15 @@ __all__ = [
     "width",
 ]
 
+T = TypeVar("T")
+
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, "#56b4e9", "#e69f00")  # of the bodies
 ACROSS = 3  # largest number of panels side by side
 # Of many bodies, titles and legends list this number of the first and of the last ones.
 NAMED = 6
 GRID = 200  # grid points along each side of a picture, at which the gap to obstacles is computed
 DOTS = (0, (1, 1.5))
-ABOVE = {
+ABOVE: dict[str, Any] = {
     "loc": "lower center",
     "bbox_to_anchor": (0.5, 1),
     "handlelength": 1.4,
@@ -79,9 +85,9 @@ ABOVE = {
 }
 
 
-def title(scene: dict[str, Value]) -> str:
+def title(scene: Table) -> str:
     """Returns the title of the scene and the material of each body."""
-    materials = {}
+    materials: dict[str, list[str]] = {}
     for body in scene["body"]:
         materials.setdefault(material(body), []).append(body["name"])
     lines = [
@@ -91,32 +97,34 @@ def title(scene: dict[str, Value]) -> str:
     return "\n".join(lines)
 
 
-def ends(items: list, between=None) -> list:
+def ends(items: list[T], between: T | None = None) -> list[T]:
     """Returns the first and the last of many items, with `between` instead of the others if it is
     not None. Few items are returned unchanged.
     """
     return (
         items
         if len(items) <= 2 * NAMED
-        else [*items[:NAMED], *[between] * (between is not None), *items[-NAMED:]]
+        else [*items[:NAMED], *([] if between is None else [between]), *items[-NAMED:]]
     )
 
 
 def draw(
     history: dict[str, np.ndarray],
     contact: dict[str, np.ndarray],
-    scene: dict[str, Value],
+    scene: Table,
     snapshots: list[tuple[float, Path]],
-) -> dict[str, plt.Figure]:
+) -> dict[str, Figure | None]:
     """Draws the figures of a run and returns them by name. `contact` is the part of the history
     from the onset of contact on.
     """
     impact = impact_of(scene)
-    rubs = impact and history["friction_force"].any()
-    drawn = {"energies": energies(contact, scene), "velocity": velocities(contact, scene)}
+    drawn: dict[str, Figure | None] = {
+        "energies": energies(contact, scene),
+        "velocity": velocities(contact, scene),
+    }
     drawn |= (
         {"force": friction_force(contact, impact), "rolling": rolling(contact, impact)}
-        if rubs
+        if impact and history["friction_force"].any()
         else {"force": forces(contact, scene)}
     )
     # There are no triangles if no body crosses the plane z = 0.
@@ -138,7 +146,7 @@ def width(body: int) -> float:
     return max(1.0, 2.0 - 0.4 * body)
 
 
-def panels(count: int, height: float = 2.4) -> tuple[plt.Figure, list[plt.Axes]]:
+def panels(count: int, height: float = 2.4) -> tuple[Figure, list[Axes]]:
     """Returns a figure with `count` panels over the same time [ms]."""
     columns = min(count, 2 if count == 4 else ACROSS)
     rows = -(-count // columns)
@@ -159,12 +167,12 @@ def panels(count: int, height: float = 2.4) -> tuple[plt.Figure, list[plt.Axes]]
     return figure, list(grid.flat[:count])
 
 
-def columns_of(history: dict[str, np.ndarray], scene: dict[str, Value]) -> dict[str, str]:
+def columns_of(history: dict[str, np.ndarray], scene: Table) -> dict[str, str]:
     """Maps the name of each body to the suffix of its columns in the history."""
     return dict(zip(body_names(scene), suffixes(history)))
 
 
-def energies(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
+def energies(history: dict[str, np.ndarray], scene: Table) -> Figure:
     """Draws energies [J/m] over time. Each of several bodies has a panel. One panel shows all
     bodies, the contact energy, which belongs to no body, and the work of friction, viscosity and
     external forces, so that the dashed sum is constant. The last panel shows the error of this
@@ -245,7 +253,7 @@ def energies(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Fig
     return figure
 
 
-def velocities(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
+def velocities(history: dict[str, np.ndarray], scene: Table) -> Figure:
     """Draws the velocities of the centres of mass [m/s] and the spins [rad/s]: one panel for each
     component that is not zero, one line for each body.
     """
@@ -280,7 +288,7 @@ def velocities(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.F
     return figure
 
 
-def forces(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
+def forces(history: dict[str, np.ndarray], scene: Table) -> Figure:
     """Draws contact forces [kN/m] over time: the normal and friction forces of all contacts, and
     the components of the force on each of several bodies.
     """
@@ -322,9 +330,7 @@ def forces(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figur
 # ---- shapes
 
 
-def shapes(
-    series: list[tuple[float, Path]], scene: dict[str, Value], field: str, label: str
-) -> plt.Figure:
+def shapes(series: list[tuple[float, Path]], scene: Table, field: str, label: str) -> Figure:
     """Draws all bodies with the obstacles at up to SHAPES instants, coloured by a field [MPa]."""
     picked = evenly(series, SHAPES)
     bodies = [deformed(vtu.read(path), is_half(scene), field) for _, path in picked]
@@ -334,7 +340,7 @@ def shapes(
     moves = any(obstacle.moves for obstacle in rigid)
     label += " in the plane z = 0" if scene["script"] == dimension.SOLID.script else ""
 
-    def behind(axes: plt.Axes, times: list[float], places: list[np.ndarray]) -> None:
+    def behind(axes: Axes, times: list[float], places: list[np.ndarray]) -> None:
         for t, at in zip(times, [[shift] for shift in places]) if moves else [(0.0, places)]:
             draw_obstacles(axes, rigid, view, t, at)
 
@@ -343,7 +349,7 @@ def shapes(
     )
 
 
-def obstacles_of(scene: dict[str, Value]) -> list[Obstacle]:
+def obstacles_of(scene: Table) -> list[Obstacle]:
     """Returns the rigid obstacles of a scene as used. Their files are sought beside its scene.toml."""
     scene_dimension = dimension.of_scene(scene)
     return obstacles.read(
@@ -382,12 +388,12 @@ def down_the_slope(
 
 
 def draw_obstacles(
-    axes: plt.Axes,
+    axes: Axes,
     rigid: list[Obstacle],
     view: tuple[float, float, float, float],
     t: float,
     places: Sequence[np.ndarray] = (ORIGIN,),
-) -> list:
+) -> list[ContourSet]:
     """Draws the obstacles at time t [s] in grey within the limits `view` [m], once for each shift
     in `places` [m]. Returns the artists.
     """
@@ -402,10 +408,11 @@ def draw_obstacles(
     ).reshape(points.shape[:2])
     if not gap.min() < 0 < gap.max():
         return []
-    drawn = [
+    drawn: list[ContourSet] = [
         axes.contourf(x, y, gap, levels=[gap.min(), 0], colors=["#d0d0d0"]),
         axes.contour(x, y, gap, levels=[0], colors=[BLACK], linewidths=0.8),
     ]
     for artist in drawn:
-        artist.set(offsets=places, offset_transform=AffineDeltaTransform(axes.transData))
+        shift = AffineDeltaTransform(axes.transData)  # type: ignore[arg-type]  # takes a Transform
+        artist.set(offsets=places, offset_transform=shift)
     return drawn

@@ -7,15 +7,19 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 
-from .. import progress, scene
+from .. import progress
 from ..failure import BadInput, Failure
-from ..input.parameters import add_set, overrides
+from ..input.parameters import Table, add_set, overrides
 from ..output.evaluate import evaluate
 from ..output.folder import result_folder
 from ..output.results import Record, body_names, mechanical_energy, read_record, suffixes
 from ..places import RESULTS, shown
 from ..running.run import run
+from ..scene import load
+from ..scenes.scene import Scene
 from . import report
 from .figures import (
     ABOVE,
@@ -81,9 +85,9 @@ def main(argv: list[str]) -> int:
     return 0
 
 
-def _scene_or_run(name: str) -> scene.Scene | Path:
+def _scene_or_run(name: str) -> Scene | Path:
     """Returns the folder of a finished run, or loads a scene."""
-    return Path(name) if Path(name).is_dir() else scene.load(name)
+    return Path(name) if Path(name).is_dir() else load(name)
 
 
 def _finished(folder: Path) -> Record:
@@ -186,7 +190,7 @@ def draw(results: dict[str, Record], path: Path) -> None:
         save(figure, path)
 
 
-def _contact(axes: plt.Axes, result: Record, colour: str) -> None:
+def _contact(axes: Axes, result: Record, colour: str) -> None:
     """Marks the end of the contact, and the end that follows from the contact time that the paper
     prints for the same impact with the same law.
     """
@@ -212,12 +216,12 @@ def mass_of(result: Record) -> float:
     kg/m].
     """
     if "mass_1" in result.summary:
-        return result.summary["mass_1"]
+        return float(result.summary["mass_1"])
     moves = int(np.argmax(np.abs(result.history["vy"])))
     return float(result.history["momentum_y"][moves] / result.history["vy"][moves])
 
 
-def _material(used: dict) -> str:
+def _material(used: Table) -> str:
     """Returns law, nu and penalty if all bodies have the same, else an empty text."""
     materials = {(body.get("law"), body.get("nu")) for body in used["body"]}
     law, nu = materials.pop()
@@ -226,10 +230,7 @@ def _material(used: dict) -> str:
     return f"{LAWS.get(law, law)}, ν = {nu:g}, k = {report.stiffness(used['contact'])}, "
 
 
-def _key(axes: plt.Axes, lines: dict[str, str]) -> None:
+def _key(axes: Axes, lines: dict[str, str]) -> None:
     """Explains the line styles in a legend above the panel."""
-    handles = [
-        plt.Line2D([], [], color="black", linestyle=line, label=label)
-        for label, line in lines.items()
-    ]
+    handles = [Line2D([], [], color="black", ls=line, label=label) for label, line in lines.items()]
     axes.legend(handles=handles, **ABOVE | {"handlelength": 2.4}, ncols=len(lines))

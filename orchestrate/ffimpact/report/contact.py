@@ -6,15 +6,20 @@ Every panel shows the projected pressure (`projected_pressure` of fields/contact
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
+import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator
 
-from ..input.parameters import Value
+from ..input.parameters import Table
 from ..output.results import read_table
-from .figures import BLACK, BLUE, ORANGE, SMALL, STICKS, evenly, legend, plt
+from .figures import BLACK, BLUE, ORANGE, SMALL, STICKS, evenly, legend
 
 __all__ = [
     "PRESSURE",
@@ -43,7 +48,7 @@ SLIDES = {"sticks": STICKS, "slides": ORANGE}
 FAR = 3
 MAPS = 5  # largest number of instants with a map of the contact area
 ALONG = "along the outline"
-ABOVE = {
+ABOVE: dict[str, Any] = {
     "loc": "lower center",
     "bbox_to_anchor": (0.5, 1),
     "ncols": 3,
@@ -85,10 +90,10 @@ def draw(
     names: list[str],
     half: bool,
     free: np.ndarray,
-    ball: dict[str, Value] | None = None,
+    ball: Table | None = None,
     symmetry: str = "full",
     history: dict[str, np.ndarray] | None = None,
-) -> plt.Figure | None:
+) -> Figure | None:
     """Draws a row of panels for each body: pressure over the outline at three instants; pressure
     over outline and time; with friction stick and slip; with a `history` also contact half-width
     and largest pressure. Returns None without contact. Of two bodies in contact one represents
@@ -105,7 +110,7 @@ def draw(
         return None
     bodies = representatives(table)
     instants = np.union1d(table.t, free[(free > table.t.min()) & (free < table.t.max())])
-    rubs, solid = bool(table.shear.any()), "Z" in table.dtype.names
+    rubs, solid = bool(table.shear.any()), hasattr(table, "Z")
     shown = (
         ["profiles", "pressure"]
         + ["slip"] * rubs
@@ -116,13 +121,14 @@ def draw(
         figsize=(max(2.8 * len(shown), 7.0 if maps else 0), (2.5 + 1.7 * maps) * len(bodies) + 0.6),
         layout="constrained" if maps else None,
     )
+    heights = [2.5, 1.7 * maps] * len(bodies)
     parts = (
-        figure.subfigures(2 * len(bodies), 1, height_ratios=[2.5, 1.7 * maps] * len(bodies))
-        if maps
-        else []
+        figure.subfigures(len(heights), 1, squeeze=False, height_ratios=heights) if maps else None
     )
-    rows = [part.subplots(1, len(shown)) for part in parts[::2]] or figure.subplots(
-        len(bodies), len(shown), squeeze=False
+    rows = (
+        figure.subplots(len(bodies), len(shown), squeeze=False)
+        if parts is None
+        else [part.subplots(1, len(shown)) for part in parts[::2, 0]]
     )
     for k, body in enumerate(bodies):
         points, panels = table[table.body == body], dict(zip(shown, rows[k]))
@@ -149,7 +155,7 @@ def draw(
                 xlabel="time [ms]",
                 ylim=(0, None) if words != ALONG else (None, None),
             )
-        if "history" in shown:
+        if history and "history" in shown:
             suffix, width = (
                 f"_{body}" if len(names) > 1 else "",
                 "contact radius" if ball else "half-width",
@@ -164,8 +170,8 @@ def draw(
             panels["pressure"].set_title(names[body - 1] + on)
         for axes in panels.values():
             axes.xaxis.set_major_locator(MaxNLocator(NUMBERS, steps=(1, 2, 2.5, 5, 10)))
-        if maps:
-            _maps(parts[2 * k + 1], points, rubs, symmetry, len(names) > 1)
+        if parts is not None:
+            _maps(parts[2 * k + 1, 0], points, rubs, symmetry, len(names) > 1)
     return figure
 
 
@@ -202,14 +208,14 @@ def _times_of_profiles(points: np.recarray) -> list[float]:
 
 
 def _columns(**columns: np.ndarray) -> np.recarray:
-    return np.rec.fromarrays(list(columns.values()), names=list(columns))
+    return np.rec.fromarrays(columns.values(), dtype=[(name, float) for name in columns])
 
 
 def _section(points: np.recarray, half: bool) -> tuple[np.recarray, str, dict[str, str]]:
     """Returns the points along the outline: t [s], s [m], pressure [Pa] and state (SLIP: -1, 0, 1).
     In three dimensions these are the points near the plane z = 0.
     """
-    if "Z" in points.dtype.names:
+    if hasattr(points, "Z"):
         away = np.abs(points.Z)
         points = points[away <= max(0.15 * away.max(), away.min())]
     state, sides = (
@@ -226,22 +232,20 @@ def _section(points: np.recarray, half: bool) -> tuple[np.recarray, str, dict[st
             )
             for side in sides
         ]
-    ).view(np.recarray)
+    )
     # Removes duplicate points, which occur on the axis and in self-contact.
-    once = np.unique(np.stack([own.t, own.s]), axis=1, return_index=True)[1]
-    return own[once], ALONG, SLIP
+    once = np.unique(np.stack([own["t"], own["s"]]), axis=1, return_index=True)[1]
+    return own[once].view(np.recarray), ALONG, SLIP
 
 
-def radial(
-    points: np.recarray, ball: dict[str, Value] | None
-) -> tuple[np.recarray, str, dict[str, str]]:
+def radial(points: np.recarray, ball: Table | None) -> tuple[np.recarray, str, dict[str, str]]:
     """Returns the points over their distance s [m] from the axis of a ball, or from the first
     contact point: t [s], s, pressure [Pa], state. For a surface these are averages over rings: the
     load divided by the area of all points that ever bear load; a ring slides if more than half of
     its load slides. The second and third results are the name of the distance and the colours of
     the states.
     """
-    solid = "Z" in points.dtype.names
+    solid = hasattr(points, "Z")
     if ball:
         away, words, states = (
             np.hypot(points.X, points.Z) if solid else points.X,
@@ -288,7 +292,7 @@ def radial(
 
 
 def _history(
-    axes: plt.Axes,
+    axes: Axes,
     history: dict[str, np.ndarray],
     own: np.recarray,
     instants: np.ndarray,
@@ -320,9 +324,7 @@ def _history(
     axes.set(xlabel="time [ms]")
 
 
-def _maps(
-    figure: plt.Figure, points: np.recarray, rubs: bool, symmetry: str, several: bool
-) -> None:
+def _maps(figure: Figure, points: np.recarray, rubs: bool, symmetry: str, several: bool) -> None:
     """Draws the points under load at some instants, each as a square of its area: coloured by
     pressure and, with friction, below by stick and slip. A single body on the plane y = 0 is drawn
     at x, z. Other points are drawn in the reference configuration, along the two principal
@@ -400,22 +402,24 @@ def _in_plane(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return places @ two[0], places @ two[1]
 
 
-def _instants(table: np.recarray, times: Sequence[float]) -> list[tuple[float, np.recarray, tuple]]:
+def _instants(
+    table: np.recarray, times: Sequence[float]
+) -> list[tuple[float, np.recarray, np.ndarray]]:
     """Returns (t, rows, colour) for each of the `times` [s]."""
     colours = plt.get_cmap("plasma")(np.linspace(0, 0.85, len(times)))
     return [(t, table[table.t == t], colour) for t, colour in zip(times, colours)]
 
 
 def draw_profiles(
-    axes: plt.Axes, own: np.recarray, words: str, line: str, times: Sequence[float]
+    axes: Axes, own: np.recarray, words: str, line: str, times: Sequence[float]
 ) -> None:
     """Draws pressure [MPa] over s [mm] at the `times` [s]; `words` is the label of s. With a
     line style `line` the points are joined, except between separate contacts. Without it only the
     points are drawn.
     """
     for t, now, colour in _instants(own, times):
-        now = now[np.argsort(now.s, kind="stable")]
-        gap = _between(now.s)[0] if line else []  # interrupts the line between contacts
+        now = now[now.s.argsort(kind="stable")]
+        gap = _between(now.s)[0] if line else np.empty(0)  # interrupts the line between contacts
         s, values = np.append(now.s, gap), np.append(now.pressure, np.full(len(gap), np.nan))
         order = np.argsort(s, kind="stable")
         values = values[order]
@@ -438,12 +442,11 @@ def draw_profiles(
 def _lone(values: np.ndarray) -> np.ndarray:
     """Returns which of the values (n,) are finite and have no finite neighbour."""
     finite = np.pad(np.isfinite(values), 1)
-    return finite[1:-1] & ~finite[:-2] & ~finite[2:]
+    lone: np.ndarray = finite[1:-1] & ~finite[:-2] & ~finite[2:]
+    return lone
 
 
-def _beside_hertz(
-    axes: plt.Axes, points: np.recarray, ball: dict[str, Value], times: Sequence[float]
-) -> None:
+def _beside_hertz(axes: Axes, points: np.recarray, ball: Table, times: Sequence[float]) -> None:
     """Adds the Hertz pressure for the same force at each instant of the profiles, if the impact of
     the ball is slow (SLOW).
     """
@@ -456,7 +459,7 @@ def _beside_hertz(
     axes.set_xlim(0, None)
 
 
-def hertz(force: float, ball: dict[str, Value]) -> tuple[np.ndarray, np.ndarray]:
+def hertz(force: float, ball: Table) -> tuple[np.ndarray, np.ndarray]:
     """Returns radii [m] and Hertz pressure [Pa] at these radii for a ball that is pressed onto a
     rigid plane by `force` [N]: a^3 = 3 F R / (4 E*), p_0 = 3 F / (2 pi a^2).
     """
@@ -476,7 +479,7 @@ def _between(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _over_time(
-    axes: plt.Axes, own: np.recarray, instants: np.ndarray, values: np.ndarray, **colours
+    axes: Axes, own: np.recarray, instants: np.ndarray, values: np.ndarray, **colours: Any
 ) -> QuadMesh:
     """Draws the values of the points over the instants [s] and the positions of the points. Points
     without load are left blank.
@@ -490,10 +493,10 @@ def _over_time(
     )
 
 
-def _colours(states: dict[str, str]) -> dict:
+def _colours(states: dict[str, str]) -> dict[str, Any]:
     """Returns the colour scale for the three states -1, 0, 1 or the two states 0, 1."""
     return dict(cmap=ListedColormap(list(states.values())), vmin=1.5 - len(states), vmax=1.5)
 
 
-def _keys(states: dict[str, str]) -> tuple[list, list[str]]:
-    return [plt.Rectangle((0, 0), 1, 1, color=colour) for colour in states.values()], list(states)
+def _keys(states: dict[str, str]) -> tuple[list[Rectangle], list[str]]:
+    return [Rectangle((0, 0), 1, 1, color=colour) for colour in states.values()], list(states)

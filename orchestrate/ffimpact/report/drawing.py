@@ -7,7 +7,7 @@ from textwrap import wrap
 import numpy as np
 
 from ..failure import Unreadable
-from ..input.parameters import Value
+from ..input.parameters import Table
 from ..output import vtu
 from ..output.folder import FIGURES
 from ..output.results import Contents, body_names, check_files, read_history, read_json, read_scene
@@ -35,14 +35,14 @@ def draw(folder: Path) -> list[Path]:
     target.mkdir(exist_ok=True)
     touches, names, impact = history["normal_force"] > 0, body_names(scene), impact_of(scene)
     # without free flight
-    contact = Contents({name: column[max(0, int(np.argmax(touches)) - 1):] for name, column in history.items()}, history.path)
+    contact = Contents[np.ndarray]({name: column[max(0, int(np.argmax(touches)) - 1):] for name, column in history.items()}, history.path)
     with styled():
         drawn = bodies.draw(history, contact, scene, snapshots)
         if (folder / "fields/contact.csv").exists():
             table = contacts.read(folder)
             ball, free = impact if impact and impact["kind"] in BODY and is_half(scene) else None, history["t"][~touches]
             drawn["contact"] = contacts.draw(table, names, is_half(scene), free, ball, scene.get("symmetry", "full"), history)
-            if snapshots and "Z" in table.dtype.names:
+            if snapshots and hasattr(table, "Z"):
                 drawn["solid"] = solid.draw(snapshots, table, scene)
         if (folder / "contacts.csv").exists():
             bounces, rigid = impacts.read(folder), [as_written(obstacle["name"]) for obstacle in scene.get("obstacle", [])] or ["plane"]
@@ -50,17 +50,17 @@ def draw(folder: Path) -> list[Path]:
             drawn["height"] = impacts.heights(history, bounces, names) if scene.get("until") == "rest" else None
         if (folder / "modes.csv").exists():
             drawn["vibration"] = impacts.vibration(impacts.read_modes(folder), history, per_metre(scene))
-        drawn = {name: figure for name, figure in drawn.items() if figure}
-        for name, figure in reversed(drawn.items()):
+        figures = {name: figure for name, figure in drawn.items() if figure}
+        for name, figure in reversed(figures.items()):
             figure.suptitle(wrapped(title(scene), figure.get_figwidth()))
             save(figure, target / f"{name}.png")
     # Figures that this version does not draw; `solid` stays, for which a library may be missing.
-    for name in set(FIGURES) - {*drawn, "solid"}:
+    for name in set(FIGURES) - {*figures, "solid"}:
         (target / f"{name}.png").unlink(missing_ok=True)
-    return [target / f"{name}.png" for name in drawn]
+    return [target / f"{name}.png" for name in figures]
 
 
-def title(scene: dict[str, Value]) -> str:
+def title(scene: Table) -> str:
     """Returns the title of a run: that of its scene, and the material of each body; of the impact of
     a disc or ball its speed and angle, linear elements, and the friction law if there is friction.
     """

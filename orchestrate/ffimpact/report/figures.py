@@ -6,19 +6,22 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any, TypeVar
 from warnings import catch_warnings, filterwarnings
 
 import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.collections import TriMesh
+from matplotlib.figure import Figure
 from matplotlib.ticker import AutoLocator, MaxNLocator, NullLocator
 from matplotlib.transforms import ScaledTranslation
 from matplotlib.tri import LinearTriInterpolator, Triangulation
 
 from ..geometry.outlines import rotation
 from ..input import dimension
-from ..input.parameters import Value
+from ..input.parameters import Table, Value
 from ..mesh import mesh
 from ..output import vtu
 from . import literature
@@ -77,6 +80,8 @@ __all__ = [
     "touched",
 ]
 
+T = TypeVar("T")
+
 LAWS = {
     "svk": "St. Venant–Kirchhoff",
     "neohookean": "neo-Hookean",
@@ -100,7 +105,7 @@ END_FORCES = ("newmark", "bdf2", "backward-euler")
 SMALL = 7.5
 # Two settings make drawing quicker: text.hinting keeps the outlines of letters unchanged, and
 # axes.titley fixes the height of titles.
-STYLE = {
+STYLE: dict[str, Any] = {
     "font.size": 9,
     "axes.titlesize": 9,
     "legend.fontsize": SMALL,
@@ -123,16 +128,16 @@ STRESS = "von Mises stress [MPa]"
 COLOURED = {"shapes": ("von_mises", STRESS), "pressure": ("pressure", "pressure −tr(σ)/3 [MPa]")}
 SHAPES = 9  # largest number of shapes in one picture
 # A legend above its panel.
-ABOVE = {
+ABOVE: dict[str, Any] = {
     "loc": "lower center",
     "bbox_to_anchor": (0.5, 1),
     "handlelength": 1.6,
     "columnspacing": 1.4,
 }
 # A legend below its panel, below the tick labels and the label of the axis.
-BELOW = {"loc": "upper center", "bbox_to_anchor": (0.5, 0), "borderaxespad": 5.5}
+BELOW: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, 0), "borderaxespad": 5.5}
 # Removes the ticks of a panel without axes, which matplotlib would lay out even if they are hidden.
-BARE = {"xticks": [], "yticks": []}
+BARE: dict[str, Any] = {"xticks": [], "yticks": []}
 BAND = "#c8c8c8"  # colour of a wide line or an area behind other curves
 VISCOUS = "#8c510a"
 DASHED = (0, (4, 2))
@@ -146,13 +151,13 @@ def styled() -> Iterator[None]:
     """Figures in the STYLE of the program. The first figure of a process loads the backend, and that
     of a notebook makes matplotlib interactive, which must outlive the style.
     """
-    with plt.rc_context(STYLE):
+    with plt.style.context(STYLE):
         yield
         interactive = plt.isinteractive()
     matplotlib.interactive(interactive)
 
 
-def save(figure: plt.Figure, path: Path) -> None:
+def save(figure: Figure, path: Path) -> None:
     """Writes the figure to a file and closes it."""
     if not figure.get_layout_engine():
         figure.set_layout_engine("constrained")
@@ -167,7 +172,7 @@ def save(figure: plt.Figure, path: Path) -> None:
     plt.close(figure)
 
 
-def material(body: dict[str, Value]) -> str:
+def material(body: Table) -> str:
     """Returns the law of a body with its parameters, E, nu, density and viscosities. For a rigid
     body it returns mass or density.
     """
@@ -196,12 +201,12 @@ def as_written(text: str) -> str:
     return "".join(letter if letter.isprintable() else " " for letter in text).replace("$", r"\$")
 
 
-def per_metre(scene: dict[str, Value]) -> str:
+def per_metre(scene: Table) -> str:
     """Returns the suffix for the units of forces and energies of a scene."""
     return dimension.per_metre(scene.get("script", ""))
 
 
-def amid(history: dict[str, np.ndarray], scene: dict[str, Value]) -> np.ndarray:
+def amid(history: dict[str, np.ndarray], scene: Table) -> np.ndarray:
     """Returns the times [ms] at which forces of a history are drawn. Forces are means over a step
     and are drawn in its middle, except for the integrators of END_FORCES.
     """
@@ -210,7 +215,7 @@ def amid(history: dict[str, np.ndarray], scene: dict[str, Value]) -> np.ndarray:
     )
 
 
-def touched(summary: dict) -> tuple[float, float] | None:
+def touched(summary: Table) -> tuple[float, float] | None:
     """Returns the begin and the end of the contact [s], both interpolated within their steps.
     Returns None without contact or if the contact has not ended.
     """
@@ -219,9 +224,7 @@ def touched(summary: dict) -> tuple[float, float] | None:
     return summary["contact_start"], summary["contact_start"] + summary["contact_time"]
 
 
-def over_time(
-    panels: list[plt.Axes], history: dict[str, np.ndarray], scene: dict[str, Value]
-) -> None:
+def over_time(panels: list[Axes], history: dict[str, np.ndarray], scene: Table) -> None:
     """Sets the limits of the time axis [ms]. It begins at 0, unless the run begins with a long
     flight. A dotted line marks the end of the contact if the run continues after it for longer than
     the longest pause between two contacts. The legend of the first panel lists this line.
@@ -240,14 +243,14 @@ def over_time(
             )
 
 
-def published(axes: plt.Axes, scene: dict[str, Value]) -> None:
+def published(axes: Axes, scene: Table) -> None:
     """Draws a line at the end of the contact by the paper's contact time of the same impact, if the
     paper prints one.
     """
-    begin, _ = scene.get("touched") or (None, None)
-    for _, seconds, words in (
-        numbers_of_the_paper(scene, "contact_time", any_law=True) if begin is not None else []
-    ):
+    if not scene.get("touched"):
+        return
+    begin, _ = scene["touched"]
+    for _, seconds, words in numbers_of_the_paper(scene, "contact_time", any_law=True):
         axes.axvline(
             1e3 * (begin + seconds),
             color=BLACK,
@@ -259,7 +262,7 @@ def published(axes: plt.Axes, scene: dict[str, Value]) -> None:
 
 
 def numbers_of_the_paper(
-    scene: dict[str, Value], key: str, over: str = "", any_law: bool = False
+    scene: Table, key: str, over: str = "", any_law: bool = False
 ) -> list[tuple[Value | None, float, str]]:
     """Returns all numbers `key` (as in summary.json, SI) that the paper prints for this scene, or
     for this scene with another value of the parameter `over`: (value of `over`, number, words).
@@ -278,7 +281,7 @@ def numbers_of_the_paper(
     return numbers
 
 
-def legend(axes: plt.Axes, shown: Callable[[list], list] = list, **how) -> None:
+def legend(axes: Axes, shown: Callable[[list[Any]], list[Any]] = list, **how: Any) -> None:
     """Draws the legend of a panel. `shown` selects from the lists of artists and names. Without
     named artists there is no legend.
     """
@@ -287,7 +290,7 @@ def legend(axes: plt.Axes, shown: Callable[[list], list] = list, **how) -> None:
         axes.legend(shown(artists), shown(names), **how)
 
 
-def balance_error(axes: plt.Axes, history: dict[str, np.ndarray], energy: float) -> None:
+def balance_error(axes: Axes, history: dict[str, np.ndarray], energy: float) -> None:
     """Draws the error of the energy balance over time [ms], relative to `energy` [J/m]."""
     error = np.abs(history["balance"]) / energy
     axes.semilogy(
@@ -307,9 +310,7 @@ def least(values: np.ndarray, largest: float) -> str:
     return f" (up to {float(f'{peak:.1g}'):g})" if 0 < peak < 0.01 * largest else ""
 
 
-def end_of_contact(
-    panels: list[plt.Axes], history: dict[str, np.ndarray], scene: dict[str, Value]
-) -> None:
+def end_of_contact(panels: list[Axes], history: dict[str, np.ndarray], scene: Table) -> None:
     """Sets up the time axes of panels. The end of the contact and the paper's contact time are
     listed above the first panel.
     """
@@ -318,7 +319,7 @@ def end_of_contact(
     legend(panels[0], **ABOVE, ncols=2)
 
 
-def friction_force(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
+def friction_force(history: dict[str, np.ndarray], scene: Table) -> Figure:
     """Draws normal and friction force [kN/m] over time (figure 5). If stick and slip alternate, a
     second column enlarges the interval in which they alternate most.
 
@@ -368,7 +369,7 @@ def friction_force(history: dict[str, np.ndarray], scene: dict[str, Value]) -> p
 def _enlarge(
     grid: np.ndarray,
     history: dict[str, np.ndarray],
-    scene: dict[str, Value],
+    scene: Table,
     window: tuple[int, int],
 ) -> None:
     """Draws the right panels of figure 5 in the interval `window` of rows, which is marked in the
@@ -439,7 +440,7 @@ def _liveliest(history: dict[str, np.ndarray]) -> tuple[int, int] | None:
     )
 
 
-def rolling(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figure:
+def rolling(history: dict[str, np.ndarray], scene: Table) -> Figure:
     """Draws the velocities of the centre and of the rim [m/s], which are equal in rolling, and the
     fractions of the load that stick and slide. For a disc that starts on the plane it adds the
     velocities of a rigid disc.
@@ -481,7 +482,7 @@ def rolling(history: dict[str, np.ndarray], scene: dict[str, Value]) -> plt.Figu
     return figure
 
 
-def rigid_rolling(t: np.ndarray, scene: dict[str, Value]) -> tuple[np.ndarray, np.ndarray] | None:
+def rigid_rolling(t: np.ndarray, scene: Table) -> tuple[np.ndarray, np.ndarray] | None:
     """Returns v_x and -omega R [m/s], each (steps,), of a rigid disc that slides until both
     velocities are equal and then rolls.
 
@@ -489,7 +490,10 @@ def rigid_rolling(t: np.ndarray, scene: dict[str, Value]) -> tuple[np.ndarray, n
     initial velocity v0 and no spin, it slides with v0 - mu_d g t and rolls from t = v0/(3 mu_d g)
     on with 2/3 v0.
     """
-    value = lambda name: scene.get(name, 0)  # noqa: E731
+
+    def value(name: str) -> float:
+        return float(scene.get(name, 0))
+
     pull = value("friction_dynamic") * value("gravity")
     if (
         pull <= 0
@@ -514,17 +518,17 @@ class Pose:
     diameter: np.ndarray
 
 
-def goes_along(history: dict[str, np.ndarray], scene: dict[str, Value]) -> bool:
+def goes_along(history: dict[str, np.ndarray], scene: Table) -> bool:
     """Returns whether the body moves along the plane or rotates, so that its path is more
     informative than its shapes.
     """
     along = max(np.abs(history["vx"]).max(), scene["radius"] * np.abs(history["spin"]).max())
-    return along > 1e-3 * max(np.abs(history["vy"]).max(), along)
+    return bool(along > 1e-3 * max(np.abs(history["vy"]).max(), along))
 
 
 def flight(
-    history: dict[str, np.ndarray], scene: dict[str, Value], series: list[tuple[float, Path]]
-) -> plt.Figure:
+    history: dict[str, np.ndarray], scene: Table, series: list[tuple[float, Path]]
+) -> Figure:
     """Draws the path of the centre of the body and the body at some instants (figure 4b). A
     material diameter shows the rotation.
 
@@ -532,8 +536,12 @@ def flight(
     motion is continued as that of a rigid body (parabola, constant spin); this part is dashed and
     labelled.
     """
-    row = lambda t: int(np.argmin(np.abs(history["t"] - t)))  # noqa: E731
+
+    def row(t: float) -> int:
+        return int(np.argmin(np.abs(history["t"] - t)))
+
     impact = history["vy"][0] < 0 or scene.get("height", 0) > 0
+    picked: list[tuple[tuple[float, Path], str, Any]]  # with the colour
     if impact:
         lowest = min(series, key=lambda state: history["y"][row(state[0])])
         picked = [
@@ -596,12 +604,12 @@ def flight(
 
 
 def _draw_flight(
-    axes: plt.Axes,
+    axes: Axes,
     pose: Pose,
     sign: int,
     row: int,
     history: dict[str, np.ndarray],
-    scene: dict[str, Value],
+    scene: Table,
     colour: str,
 ) -> None:
     """Draws two outlines after (`sign` 1) or before (`sign` -1) the pose, in rigid motion with the
@@ -649,16 +657,14 @@ def diameter(snapshot: vtu.Snapshot) -> np.ndarray:
     low, high = snapshot.points.min(axis=0), snapshot.points.max(axis=0)
     x = np.full(41, (low[0] + high[0]) / 2)
     y = np.linspace(high[1], low[1], 43)[1:-1]  # without the end points: the outline is a polygon
-    grid = Triangulation(*snapshot.points.T, snapshot.triangles)
+    grid = Triangulation(snapshot.points[:, 0], snapshot.points[:, 1], snapshot.triangles)
     moved = snapshot.points + snapshot.fields["displacement"][:, :2]
-    return np.ma.compress_rows(
-        np.ma.stack([LinearTriInterpolator(grid, values)(x, y) for values in moved.T], axis=1)
-    )
+    # Points outside the mesh are masked.
+    columns = [LinearTriInterpolator(grid, values)(x, y).compressed() for values in moved.T]
+    return np.stack(columns, axis=1)
 
 
-def fly(
-    pose: Pose, wait: float, row: int, history: dict[str, np.ndarray], scene: dict[str, Value]
-) -> Pose:
+def fly(pose: Pose, wait: float, row: int, history: dict[str, np.ndarray], scene: Table) -> Pose:
     """Returns the pose after another `wait` seconds (before, if negative) of rigid flight with the
     velocities in `row` of the history.
     """
@@ -674,13 +680,13 @@ def fly(
     return Pose(pose.t + wait, centre, outline, diameter)
 
 
-def _draw_pose(axes: plt.Axes, pose: Pose, colour, line, label: str | None) -> None:
+def _draw_pose(axes: Axes, pose: Pose, colour: Any, line: Any, label: str | None) -> None:
     axes.plot(*pose.outline.T, color=colour, linestyle=line, linewidth=1.1, label=label)
     axes.plot(*pose.diameter.T, color=colour, linewidth=0.7)
     axes.plot(*pose.diameter[0], color=colour, marker="o", markersize=4)
 
 
-def evenly(items: Sequence, limit: int) -> list:
+def evenly(items: Sequence[T], limit: int) -> list[T]:
     """Returns up to `limit` of the items, evenly spaced from the first to the last."""
     return [items[k] for k in np.unique(np.linspace(0, len(items) - 1, limit).round().astype(int))]
 
@@ -690,9 +696,9 @@ def side_by_side(
     times: list[float],
     view: tuple[float, float, float, float],
     columns: int,
-    behind: Callable,
+    behind: Callable[[Axes, list[float], list[np.ndarray]], None],
     label: str,
-) -> plt.Figure:
+) -> Figure:
     """Draws the bodies in rows, each at its time [s] within the limits `view` [m]. The function
     behind(axes, times, places) draws the background. The bodies are coloured by their stress, with
     `label` at the colour bar. All share one panel, because drawing a panel takes as long as drawing
@@ -718,9 +724,8 @@ def side_by_side(
     behind(axes, times, places)
     for body, t, shift in zip(bodies, times, places):
         picture = draw_body(axes, body, ends, shift)
-        axes.text(
-            *shift + ((x_min + x_max) / 2, y_max), f"{1e3 * t:.2f} ms", ha="center", va="bottom"
-        )
+        x, y = shift + ((x_min + x_max) / 2, y_max)
+        axes.text(x, y, f"{1e3 * t:.2f} ms", ha="center", va="bottom")
     scale_bar(axes, 0.25 / columns)
     figure.colorbar(
         picture,
@@ -731,7 +736,7 @@ def side_by_side(
     return figure
 
 
-def scale_bar(axes: plt.Axes, share: float = 0.25) -> None:
+def scale_bar(axes: Axes, share: float = 0.25) -> None:
     """Draws a scale bar below axes in m without ticks. Its length is 1, 2 or 5 times a power of ten
     and at most `share` of the width.
     """
@@ -777,7 +782,7 @@ class Body:
     stress: np.ndarray
 
 
-def is_half(scene: dict[str, Value]) -> bool:
+def is_half(scene: Table) -> bool:
     """Returns whether only the part to the right of the axis was computed: half of the body or of
     its meridian plane, or a quarter of a body in three dimensions.
     """
@@ -802,14 +807,14 @@ def deformed(snapshot: vtu.Snapshot, half: bool, field: str = "von_mises") -> Bo
 
 
 def draw_body(
-    axes: plt.Axes, body: Body, ends: tuple[float, float], shift: np.ndarray = ORIGIN
+    axes: Axes, body: Body, ends: tuple[float, float], shift: np.ndarray = ORIGIN
 ) -> TriMesh:
     """Draws the body, shifted by `shift` [m], and coloured by its stress on a scale with the given
     `ends` [MPa].
     """
-    picture = axes.tripcolor(
-        *(body.points + shift).T,
-        body.triangles,
+    x, y = (body.points + shift).T
+    picture: TriMesh = axes.tripcolor(
+        Triangulation(x, y, body.triangles),
         body.stress,
         shading="gouraud",
         cmap="viridis",

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import pandas as pd
+from matplotlib.axes import Axes
 
 from ..failure import Failure, Unreadable
 from ..freefem import freefem
@@ -45,14 +46,15 @@ def main(argv: list[str]) -> int:
             help=f"{parameters.PARAMETERS[name].help} (default: {value:g})",
         )
     options = parser.parse_args(argv)
-    values = parameters.check({name: getattr(options, name) for name in VALUES})
+    checked = parameters.check({name: getattr(options, name) for name in VALUES})
+    values = {name: float(value) for name, value in checked.items()}
     folder = result_folder(options.out)
     draw(tabulate(folder, values), values, folder / "friction-laws.png")
     print(f"{shown(folder)}/friction-laws.png")
     return 0
 
 
-def tabulate(folder: Path, values: dict[str, parameters.Value]) -> pd.DataFrame:
+def tabulate(folder: Path, values: dict[str, float]) -> pd.DataFrame:
     """Returns the table that edp/friction-laws.edp writes: panel, law, side, v [m/s], ratio [-],
     slope [s/m]. The script describes the columns. Raises Unreadable if the folder cannot
     be written, else Failure.
@@ -130,7 +132,7 @@ def draw(laws: pd.DataFrame, values: dict[str, float], path: Path) -> None:
 
 
 def _curve(
-    axes: plt.Axes, points: pd.DataFrame, colour: str, line: str, label: str, width: float
+    axes: Axes, points: pd.DataFrame, colour: str, line: str, label: str, width: float
 ) -> None:
     """Draws one law. The sticking and the sliding sides are separate lines; a dotted line marks a
     jump between them.

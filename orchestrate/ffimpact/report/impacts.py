@@ -5,10 +5,12 @@ of the force.
 
 from pathlib import Path
 
+import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.figure import Figure
 
 from ..output.results import Contents, read_table
-from .figures import BLUE, GREEN, GREY, ORANGE, legend, plt
+from .figures import BLUE, GREEN, GREY, ORANGE, legend
 
 __all__ = [
     "HIGHEST",
@@ -77,7 +79,7 @@ def several(table: np.recarray) -> list[np.recarray]:
     return impacts if any(len(rows) > 1 for rows in impacts) else []
 
 
-def draw(table: np.recarray, names: list[str], rigid: list[str]) -> plt.Figure | None:
+def draw(table: np.recarray, names: list[str], rigid: list[str]) -> Figure | None:
     """Draws normal and tangential restitution over the impacts of each contact pair, and below them
     the speeds before each impact. Returns None if there are not several impacts. `names` are those
     of the bodies, `rigid` those of the obstacles.
@@ -148,7 +150,7 @@ def draw(table: np.recarray, names: list[str], rigid: list[str]) -> plt.Figure |
     return figure
 
 
-def with_flights(history: dict[str, np.ndarray]) -> Contents:
+def with_flights(history: Contents[np.ndarray]) -> Contents[np.ndarray]:
     """Returns the history with INSIDE + 1 additional rows in each flight, for which a run has one
     row only.
 
@@ -184,7 +186,7 @@ def with_flights(history: dict[str, np.ndarray]) -> Contents:
     return Contents(filled, history.path)
 
 
-def heights(history: dict[str, np.ndarray], table: np.recarray, names: list[str]) -> plt.Figure:
+def heights(history: dict[str, np.ndarray], table: np.recarray, names: list[str]) -> Figure:
     """Draws the height of each body's centre above its final position [mm] over time [s], with the
     instants of the impacts and the first restitutions. It is meant for a run until rest, with the
     history of with_flights().
@@ -243,10 +245,11 @@ def spectrum(
     turns = np.exp(-2j * np.pi * np.outer(frequencies, t - dt / 2)) * np.sinc(
         np.outer(frequencies, dt)
     )
-    return np.abs(turns @ (force * dt))
+    amplitudes: np.ndarray = np.abs(turns @ (force * dt))
+    return amplitudes
 
 
-def vibration(table: np.recarray, history: dict[str, np.ndarray], per: str) -> plt.Figure | None:
+def vibration(table: np.recarray, history: dict[str, np.ndarray], per: str) -> Figure | None:
     """Draws the energy of each mode over its frequency and, above, the spectrum of the force up to
     the last mode. Returns None without modes or energies. `per` is "/m" in plane strain.
     """

@@ -4,7 +4,7 @@ import tomllib
 from collections.abc import Container
 from pathlib import Path
 
-from ..input.parameters import Value
+from ..input.parameters import Table
 from .impact import impact_of
 
 __all__ = ["REFERENCE", "published", "references"]
@@ -14,11 +14,11 @@ REFERENCE = Path(__file__).resolve().parent / "reference"
 UNDAMPED = dict.fromkeys(("viscosity", "bulk_viscosity", "relaxation_modulus", "loss"), 0)
 
 
-def references(scene: dict[str, Value]) -> dict[str, list[dict]]:
+def references(scene: Table) -> dict[str, list[Table]]:
     """Returns the published numbers whose conditions this scene fulfils: for each key of
     summary.json a list of {value, [error], source, [note]}.
     """
-    numbers: dict[str, list[dict]] = {}
+    numbers: dict[str, list[Table]] = {}
     for run in published(scene):
         for key, number in run["numbers"].items():
             numbers.setdefault(key, []).append(
@@ -27,7 +27,7 @@ def references(scene: dict[str, Value]) -> dict[str, list[dict]]:
     return numbers
 
 
-def published(scene: dict[str, Value], whatever: Container[str] = ()) -> list[dict]:
+def published(scene: Table, whatever: Container[str] = ()) -> list[Table]:
     """Returns the runs with published numbers whose conditions this scene fulfils as an impact. The
     entries in `whatever` may have any value. Each run has kind (impact.KINDS), when (its entries),
     numbers by key of summary.json, source and [note].

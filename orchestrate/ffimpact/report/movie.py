@@ -12,6 +12,8 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.animation import FFMpegWriter, PillowWriter
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
 from .. import progress, scene
@@ -104,7 +106,8 @@ def write(film: Path, result: Record, frames: int) -> None:
     with styled():
         stage = stage_of(result)
         part = film.with_suffix(f".part{film.suffix}")
-        writer = (FFMpegWriter if film.suffix == ".mp4" else PillowWriter)(fps=frames / SECONDS)
+        kind = FFMpegWriter if film.suffix == ".mp4" else PillowWriter
+        writer = kind(fps=frames / SECONDS)  # type: ignore[arg-type]  # takes fractions, too
         try:
             with writer.saving(stage.figure, part, DPI):
                 for t in progress.in_turn(
@@ -129,8 +132,8 @@ class Motion:
     """The snapshots of a run and the body at any time between them. Positions and stresses are
     interpolated linearly in time.
 
-    `times` (s,) in s; `bodies`, one Body for each time, which contains all bodies; `diameters` (s,
-    m, 2) in m, None if half a body was computed or if there are `several`.
+    `times` (s,) in s; `bodies`, one Body for each time, which contains all bodies; `diameters`,
+    (m, 2) in m for each time, None if half a body was computed or if there are `several`.
     """
 
     def __init__(self, pvd: Path, half: bool, several: bool = False):
@@ -140,9 +143,7 @@ class Motion:
         snapshots = [vtu.read(path) for _, path in series]
         self.times = np.array([t for t, _ in series])
         self.bodies = [deformed(snapshot, half) for snapshot in snapshots]
-        self.diameters = (
-            None if half or several else np.array([diameter(snapshot) for snapshot in snapshots])
-        )
+        self.diameters = None if half or several else [diameter(snapshot) for snapshot in snapshots]
 
     def at(self, t: float) -> tuple[Body, np.ndarray | None]:
         """Returns the body and its diameter (m, 2) [m] at time t [s]."""
@@ -162,9 +163,14 @@ class Stage:
     """
 
     times: np.ndarray
-    figure: plt.Figure
+    figure: Figure
+    above: Axes
 
-    def _lay_out(self, result: Record, width: float, height: float) -> plt.Axes:
+    def move(self, t: float) -> None:
+        """Updates the body to time t [s]."""
+        raise NotImplementedError
+
+    def _lay_out(self, result: Record, width: float, height: float) -> Axes:
         """Makes the figure with its title and forces, and returns the panel of the body."""
         self.figure, (self.above, below) = plt.subplots(
             2,
@@ -176,7 +182,7 @@ class Stage:
         self._draw_force(below, result.history, per_metre(result.scene))
         return self.above
 
-    def _draw_force(self, axes: plt.Axes, history: dict[str, np.ndarray], per: str) -> None:
+    def _draw_force(self, axes: Axes, history: dict[str, np.ndarray], per: str) -> None:
         """Draws the normal force and, if it is not zero, the friction force [kN/m] over the time of
         the film.
         """
@@ -209,7 +215,7 @@ class Stage:
 
     def show(self, t: float) -> None:
         """Updates all moving parts to time t [s]."""
-        self._move(t)
+        self.move(t)
         self.above.set_title(f"t = {1e3 * t:.2f} ms")
         self.now.set_xdata([1e3 * t] * 2)
         for name, dot in self.dots.items():
@@ -248,7 +254,7 @@ class PlaneStage(Stage):
             ]
         self._settle()
 
-    def _move(self, t: float) -> None:
+    def move(self, t: float) -> None:
         body, line = self.motion.at(t)
         if any(obstacle.moves for obstacle in self.rigid):
             for artist in self.drawn:
@@ -256,7 +262,7 @@ class PlaneStage(Stage):
             self.drawn = bodies.draw_obstacles(self.above, self.rigid, self.view, t)
         self.picture.remove()
         self.picture = draw_body(self.above, body, (0, self.largest))
-        if self.marks:
+        if line is not None:
             self.marks[0].set_data(*line.T)
             self.marks[1].set_data(*line[:1].T)
 
@@ -287,7 +293,7 @@ class SolidStage(Stage):
             )
         self._settle()
 
-    def _move(self, t: float) -> None:
+    def move(self, t: float) -> None:
         for picture, image in zip(self.pictures, self.views.render(self.views.at(t))):
             picture.set_data(image)
 

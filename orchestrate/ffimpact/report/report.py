@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from itertools import zip_longest
 
 from ..input import dimension
-from ..input.parameters import Value
+from ..input.parameters import Table
 from ..output import notes
 from ..output.errors import errors, zero_by_symmetry
 from ..output.results import Record, body_names, suffixes
@@ -36,7 +36,7 @@ def _never(result: Record, key: str) -> bool:
 
 
 def _nonzero(result: Record, key: str) -> bool:
-    return abs(result.summary[key]) >= EXACT_ZERO
+    return bool(abs(result.summary[key]) >= EXACT_ZERO)
 
 
 def _moves(result: Record, key: str) -> bool:
@@ -72,9 +72,8 @@ class Quantity:
         """Returns the value, or several values in one row, with error estimates (all in SI units)
         and the unit.
         """
-        values, errors = (
-            numbers if isinstance(numbers, list) else [numbers] for numbers in (value, error)
-        )
+        values = value if isinstance(value, list) else [value]
+        errors = error if isinstance(error, list) else [error]
         texts = (
             f"{self.factor * number:{self.digits}}"
             + ("" if bar is None else f" ± {self.factor * bar:.2g}")
@@ -82,7 +81,7 @@ class Quantity:
         )
         return f"{', '.join(texts)} {self.unit}".rstrip()
 
-    def beside(self, number: dict) -> str:
+    def beside(self, number: Table) -> str:
         """Returns a published number with its error bar, if it has one, and its source."""
         error = f" ± {self.factor * number['error']:.1g}" if "error" in number else ""
         source = "; ".join(number[key] for key in ("source", "note") if key in number)
@@ -194,19 +193,19 @@ def draw(result: Record) -> None:
         print(f"ffimpact: the figures could not be drawn: {why}", file=sys.stderr)
 
 
-def stiffness(contact: dict[str, Value]) -> str:
+def stiffness(contact: Table) -> str:
     """Returns the penalty k of a contact t_N = k p^m (10) with its unit."""
-    m = contact["exponent"]
-    return f"{contact['penalty']:.4g} Pa/m" + f"^{m:g}" * (m != 1)
+    k, m = contact["penalty"], contact["exponent"]
+    return f"{k:.4g} Pa/m^{m:g}" if m != 1 else f"{k:.4g} Pa/m"
 
 
-def _partners(pair: dict[str, Value]) -> str:
+def _partners(pair: Table) -> str:
     """Returns the names of the two partners of a contact pair."""
     first, second = pair["bodies"]
     return f"{first} with itself" if first == second else f"{first} and {second}"
 
 
-def _scene(scene: dict[str, Value], summary: dict) -> list[str]:
+def _scene(scene: Table, summary: Table) -> list[str]:
     """Returns lines that describe the scene: bodies, speed and contact."""
     contact = scene["contact"]
     pull = f"gravity {scene['gravity']:g} m/s2, " if scene.get("gravity") else ""
@@ -226,7 +225,7 @@ def _scene(scene: dict[str, Value], summary: dict) -> list[str]:
     ]
 
 
-def _size(summary: dict, k: int, bodies: int) -> list[str]:
+def _size(summary: Table, k: int, bodies: int) -> list[str]:
     """Returns the extents and the mass of body k."""
     end = f"_{k}" if bodies > 1 else ""
     extents = [summary.get(f"extent_{axis}{end}") for axis in "xyz"]
@@ -235,13 +234,13 @@ def _size(summary: dict, k: int, bodies: int) -> list[str]:
     return [f"{sides} m", f"{summary[f'mass{end}']:.4g} {unit}"] if sides else []
 
 
-def _material(body: dict[str, Value]) -> str:
+def _material(body: Table) -> str:
     if body.get("rigid"):
         return "rigid" if "mass" in body else f"rigid, density = {body['density']:g} kg/m3"
     return f"{body['law']}, young = {body['young']:g} Pa, nu = {body['nu']:g}, density = {body['density']:g} kg/m3"
 
 
-def _gases(summary: dict) -> list[str]:
+def _gases(summary: Table) -> list[str]:
     """Returns a line for each gas: its state at the start."""
     unit = "m2" if dimension.per_metre(summary["provenance"]["script"]) else "m3"
     return [
@@ -253,7 +252,7 @@ def _gases(summary: dict) -> list[str]:
     ]
 
 
-def _friction(contact: dict[str, Value]) -> str:
+def _friction(contact: Table) -> str:
     friction = contact.get("friction_static")
     return (
         f", friction {friction:g} static, {contact['friction_dynamic']:g} dynamic"
@@ -262,7 +261,7 @@ def _friction(contact: dict[str, Value]) -> str:
     )
 
 
-def warning_lines(summary: dict, verbose: bool = False) -> list[str]:
+def warning_lines(summary: Table, verbose: bool = False) -> list[str]:
     """Returns a line for each warning, if `verbose` in full sentences."""
     return [_sentence("warning", sentence, verbose) for sentence in summary["warnings"]]
 
@@ -272,7 +271,7 @@ def _sentence(kind: str, sentence: str, verbose: bool) -> str:
     return start + sentence if verbose else notes.line(start, sentence)
 
 
-def _of_bodies(quantity: Quantity, scene: dict[str, Value], summary: dict) -> list[Quantity]:
+def _of_bodies(quantity: Quantity, scene: Table, summary: Table) -> list[Quantity]:
     """Returns a row for each of several bodies if the summary has the number for each body."""
     body_suffixes = suffixes(summary)
     if f"{quantity.key}{body_suffixes[0]}" not in summary or body_suffixes == [""]:

@@ -10,15 +10,19 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
 
-from ..input.parameters import Value
+from ..input.parameters import Table
 from ..output import vtu
+from ..output.results import Contents
 from ..places import shown
 from .bodies import obstacles_of
 from .contact import PRESSURE
-from .figures import STRESS, evenly, plt
+from .figures import STRESS, evenly
 
 __all__ = [
     "AXES",
@@ -94,13 +98,16 @@ def whole(solid: vtu.Solid, axes: tuple[int, ...]) -> vtu.Solid:
         on_plane = np.abs(points[:, axis]) < 1e-9 * np.ptp(points, axis=0).max()
         twin = np.where(on_plane, np.arange(n), n + np.cumsum(~on_plane) - 1)
         flip = np.where(np.arange(3) == axis, -1.0, 1.0)
-        both = lambda field, sign=1.0: np.concatenate([field, sign * field[~on_plane]])  # noqa: B023, E731
+        image = points[~on_plane] * flip
+        moved, stress = solid.fields["displacement"], solid.fields["von_mises"]
         fields = {
-            "displacement": both(solid.fields["displacement"], flip),
-            "von_mises": both(solid.fields["von_mises"]),
+            "displacement": np.concatenate([moved, flip * moved[~on_plane]]),
+            "von_mises": np.concatenate([stress, stress[~on_plane]]),
         }
         solid = vtu.Solid(
-            both(points, flip), np.vstack([solid.tetrahedra, twin[solid.tetrahedra]]), fields
+            np.concatenate([points, image]),
+            np.vstack([solid.tetrahedra, twin[solid.tetrahedra]]),
+            Contents(fields, solid.fields.path),
         )
     return solid
 
@@ -110,7 +117,8 @@ def in_front(solid: vtu.Solid, axes: tuple[int, ...]) -> np.ndarray:
     quarter with its mirror images, only those with x > 0 and z > 0 are removed.
     """
     middle = solid.points[solid.tetrahedra[:, :4]].mean(axis=1)
-    return (middle[:, 2] > 0) & ((middle[:, 0] > 0) | (0 not in axes))
+    front: np.ndarray = (middle[:, 2] > 0) & ((middle[:, 0] > 0) | (0 not in axes))
+    return front
 
 
 # ---- the pressure on the surface
@@ -189,11 +197,9 @@ class Views:
     contact (more than 5 % of the largest pressure).
     """
 
-    def __init__(
-        self, series: list[tuple[float, Path]], table: np.recarray, scene: dict[str, Value]
-    ):
-        axes = AXES.get(scene.get("symmetry"), ())
-        solids = [whole(vtu.read_solid(path), axes) for _, path in series]
+    def __init__(self, series: list[tuple[float, Path]], table: np.recarray, scene: Table):
+        axes = AXES.get(scene.get("symmetry", "full"), ())
+        solids = [whole(solid, axes) for _, path in series if (solid := vtu.read_solid(path))]
         points, tetrahedra = solids[0].points, solids[0].tetrahedra
         self.cut, self.outside = skin(tetrahedra[~in_front(solids[0], axes)]), skin(tetrahedra)
         self.times = np.array([t for t, _ in series])
@@ -228,10 +234,11 @@ class Views:
     def at(self, t: float) -> Sight:
         """Returns the data of a view at time t [s], linearly interpolated between snapshots."""
         return Sight(
+            t,
             *(
                 vtu.between(self.times, [getattr(sight, name) for sight in self.sights], t)
-                for name in Sight.__dataclass_fields__
-            )
+                for name in ("cut", "stress", "outside", "pressure")
+            ),
         )
 
     def render(self, sight: Sight) -> tuple[np.ndarray, np.ndarray]:
@@ -313,14 +320,13 @@ class Views:
             plotter.camera.parallel_scale = 0.38 * np.linalg.norm(size)
             plotter.enable_anti_aliasing("ssaa")
             plotter.background_color = "white"
-            return plotter.screenshot(None, return_img=True)
+            image: np.ndarray = plotter.screenshot(None, return_img=True)
+            return image
         finally:
             plotter.close()
 
 
-def draw(
-    series: list[tuple[float, Path]], table: np.recarray, scene: dict[str, Value]
-) -> plt.Figure | None:
+def draw(series: list[tuple[float, Path]], table: np.recarray, scene: Table) -> Figure | None:
     """Draws the body at up to INSTANTS times with contact: in the upper row cut open, with its
     stress; in the lower row from below, with the contact pressure. Returns None for a body in the
     plane, without contact, and if nothing can be rendered.
@@ -345,7 +351,7 @@ def draw(
 def bars(views: Views) -> list[tuple[ScalarMappable, str]]:
     """Returns the colour scales and the labels of stress and pressure."""
     return [
-        (ScalarMappable(plt.Normalize(0, largest), COLOURS[name]), label)
+        (ScalarMappable(Normalize(0, largest), COLOURS[name]), label)
         for name, largest, label in (
             ("stress", views.stress, STRESS),
             ("pressure", views.pressure, PRESSURE),

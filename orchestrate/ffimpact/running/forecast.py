@@ -169,7 +169,7 @@ def _time_of(entries: Entries, plan: Plan) -> str:
 def _automatic(scene: Scene, plan_with: PlanWith) -> Iterator[Change]:
     """Yields the entries for steps and sizes that the scene sets, made automatic."""
     steps: list[Entries] = []
-    if float(scene.values["dt"]) > 0:
+    if scene.number("dt") > 0:
         steps.append({"dt": 0})
     if scene.values["integrator"] == "central-difference":
         steps.append({"integrator": "auto"})
@@ -188,7 +188,7 @@ def _coarser(scene: Scene, seconds: float, plan_with: PlanWith) -> Iterator[Chan
     """Yields a larger accuracy, and another one that follows from the power of the accuracy that
     the first one has shown.
     """
-    accuracy, power, before = float(scene.values["accuracy"]), POWER, math.inf
+    accuracy, power, before = scene.number("accuracy"), POWER, math.inf
     for _ in range(2):
         proposed = min(COARSEST, _rounded(accuracy * (seconds / SHORT) ** (1 / power)))
         if proposed <= accuracy or proposed == before:
@@ -204,7 +204,7 @@ def _coarser(scene: Scene, seconds: float, plan_with: PlanWith) -> Iterator[Chan
 
 def _ended_earlier(scene: Scene, seconds: float, plan_with: PlanWith) -> Iterator[Change]:
     """Yields an earlier end_time if the scene has one."""
-    end = float(scene.values["end_time"])
+    end = scene.number("end_time")
     if end > 0:
         earlier = float(f"{end * max(EARLIEST, SHORT / seconds):.1g}")
         cost = f"without what happens after {earlier:g} s"

@@ -9,6 +9,7 @@ import math
 import re
 import tempfile
 import time
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -123,7 +124,7 @@ class Plan:
         low, high = self.bounds
         return f"{self.timed_steps} steps were timed; in brackets: {low:.1g} and {high:.2g} times the values"
 
-    def _about(self, value: float, words=lambda value: f"{value:.0f}") -> str:
+    def _about(self, value: float, words: Callable[[float], str] = "{:.0f}".format) -> str:
         """Returns a number with its bounds in words."""
         if self.bounds == (1.0, 1.0):
             return words(value)

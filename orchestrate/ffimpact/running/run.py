@@ -20,7 +20,7 @@ from pathlib import Path
 from .. import __version__
 from ..failure import BadInput, Failure, TooLong, Unreadable
 from ..freefem import freefem
-from ..input.parameters import Value
+from ..input.parameters import Table, Value
 from ..input.toml_text import to_toml
 from ..mesh import mesh
 from ..output import estimate as estimates, notes
@@ -125,15 +125,18 @@ def run(
         try:
             with Solver(program, scene, stage, lock, line, pair=estimate) as solve:
                 solve({}, stage)
-                settled = (
-                    stage,
-                    scene.values | scene.sizes,
-                    solve.own_mesh,
-                    solve,
-                    read_answers,
-                    solve.scaled,
+                estimated = (
+                    estimates.settle(
+                        stage,
+                        scene.values | scene.sizes,
+                        solve.own_mesh,
+                        solve,
+                        read_answers,
+                        solve.scaled,
+                    )
+                    if estimate
+                    else {}
                 )
-                estimated = estimates.settle(*settled) if estimate else {}
         except Failure as failure:
             # A script that reaches its end, with success or failure, removes its checkpoint.
             if checkpoints(stage):
@@ -148,7 +151,7 @@ def run(
             "git": commit(),
             "mesh": _sha256(stage / scene.mesh_name),
         }
-        _tell_accuracy(stage / "scene.toml", scene.values["accuracy"])
+        _tell_accuracy(stage / "scene.toml", scene.number("accuracy"))
         _finish(stage, scene, estimated | {"total_seconds": time.monotonic() - started}, provenance)
         _put(stage, folder, scene)
     return Record(folder, read_summary(folder), reused=False)
@@ -200,7 +203,7 @@ def _tell_accuracy(path: Path, accuracy: float) -> None:
         )
 
 
-def _finish(stage: Path, scene: Scene, estimated: dict, provenance: dict) -> None:
+def _finish(stage: Path, scene: Scene, estimated: Table, provenance: Table) -> None:
     """Adds the results `estimated` of the error estimate and the provenance to summary.json. The
     complete file is put in place by a rename, as the last step.
     """
@@ -228,7 +231,7 @@ def _finish(stage: Path, scene: Scene, estimated: dict, provenance: dict) -> Non
     os.replace(stage / "summary.json.part", stage / "summary.json")
 
 
-def _keep_failed(stage: Path, failure: Failure, scene: Scene, provenance: dict) -> None:
+def _keep_failed(stage: Path, failure: Failure, scene: Scene, provenance: Table) -> None:
     """Writes failure.json with the entries that the script wrote, or else with status and message
     of the failure. Removes summary.json.
     """
@@ -255,17 +258,17 @@ def reusable(scene: Scene, folder: Path, estimate: bool = False) -> Record | Non
     this program.
     """
     summary = finished_in(folder, force=False)
-    same = (
+    if (
         summary
         and (folder / "history.csv").exists()
         and summary.get("provenance", {}).get("code") == code_hash()
         and (summary["provenance"].get("estimate") == _hash(ESTIMATING) or not estimate)
         and read_scene(folder)
         and _same_scene(folder, scene)
-    )
-    if same:
+    ):
         check_files(folder)
-    return Record(folder, summary, reused=True) if same else None
+        return Record(folder, summary, reused=True)
+    return None
 
 
 def code_hash() -> str:
@@ -322,7 +325,7 @@ def _same_scene(folder: Path, scene: Scene) -> bool:
         same_script, request = provenance["script"] == scene.script, provenance["asked"]
     except (FileNotFoundError, ValueError, KeyError, TypeError):  # it has no such record
         return False
-    return same_mesh and same_script and request == scene.decisive_entries
+    return bool(same_mesh and same_script and request == scene.decisive_entries)
 
 
 # ---- provenance

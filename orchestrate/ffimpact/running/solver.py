@@ -3,14 +3,13 @@
 import os
 import shutil
 import threading
-from collections.abc import Mapping
 from contextlib import AbstractContextManager, ExitStack, suppress
 from functools import partial
 from pathlib import Path
 
 from ..failure import Failure
 from ..freefem import freefem
-from ..input.parameters import Value
+from ..input.parameters import Table
 from ..output import estimate
 from ..output.evaluate import RECORD, evaluate
 from ..output.results import write_json
@@ -28,7 +27,7 @@ __all__ = ["USED", "Solver"]
 USED = "scene.used"
 
 
-class Solver(AbstractContextManager):
+class Solver(AbstractContextManager["Solver", None]):
     """Runs a scene with given values in given folders, one run after the other. If `pair` is set
     and a core is free, the coarser runs start at the same time as the main run. In a thread other
     than the main thread they do not, because a study already has a run on every core.
@@ -52,10 +51,10 @@ class Solver(AbstractContextManager):
         self.own_mesh = not scene.of_files
         self.number = 0
         # The coarser runs that have started, by folder, with the entries that they override.
-        self.beside: dict[Path, tuple[dict[str, Value], freefem.Process]] = {}
+        self.beside: dict[Path, tuple[Table, freefem.Process]] = {}
         self.leaving = ExitStack()
 
-    def __exit__(self, *_) -> None:
+    def __exit__(self, *_: object) -> None:
         """Ends the coarser runs. Removes their folders if the main run has neither a summary nor a
         checkpoint.
         """
@@ -64,7 +63,7 @@ class Solver(AbstractContextManager):
             for name in estimate.LEVELS:
                 shutil.rmtree(self.stage / name, ignore_errors=True)
 
-    def __call__(self, overrides: dict[str, Value], where: Path) -> None:
+    def __call__(self, overrides: Table, where: Path) -> None:
         """Runs the scene, with `overrides`, in the folder `where`: from its checkpoint if there is
         one, and not at all if it has finished. Raises Failure.
         """
@@ -100,7 +99,7 @@ class Solver(AbstractContextManager):
 
     def _started(
         self,
-        overrides: dict[str, Value],
+        overrides: Table,
         where: Path,
         leaving: ExitStack,
         display: "Display | None" = None,
@@ -131,7 +130,7 @@ class Solver(AbstractContextManager):
             self._start_beside(used)
         return process
 
-    def _start_beside(self, used: Mapping) -> None:
+    def _start_beside(self, used: Table) -> None:
         """Starts the coarser runs as estimate.settle() will request them. A Failure is ignored
         here; settle() then raises it again.
         """
@@ -142,7 +141,7 @@ class Solver(AbstractContextManager):
                 with suppress(Failure):
                     self.beside[where] = overrides, self._started(overrides, where, self.leaving)
 
-    def _taken(self, overrides: dict[str, Value], where: Path) -> freefem.Process | None:
+    def _taken(self, overrides: Table, where: Path) -> freefem.Process | None:
         """Returns the process of the coarser run if the request is for this run, else None. If the
         request is for other sizes, the coarser runs are ended and their folders removed.
         """

@@ -202,6 +202,10 @@ class Scene:
             shutil.copyfile(path, where / copy)
         return table | {"file": copy.as_posix()}
 
+    def number(self, name: str) -> float:
+        """The value of a parameter of the run or of [contact] that is a number."""
+        return float((self.values | self.contact)[name])
+
     @property
     def numbers(self) -> list[str]:
         """The names of the numbers of summary.json."""

@@ -20,12 +20,13 @@ import pandas as pd
 from .. import scene
 from ..failure import BadInput, Busy, Failure, Unreadable
 from ..freefem import freefem
-from ..input.parameters import Value
+from ..input.parameters import Table, Value
 from ..mesh import mesh
 from ..output.folder import failed_beside
 from ..output.results import read_json
 from ..progress import Line, forward
 from ..running import run
+from ..scenes.scene import Scene
 
 __all__ = [
     "CORES",
@@ -88,13 +89,11 @@ def study(
     return pd.DataFrame([point | rows[where] for where, point in zip(places, points)])
 
 
-def outcomes(
-    points: list[Point], folder: Path, base: Point, loaded: scene.Scene
-) -> dict[Path, dict]:
+def outcomes(points: list[Point], folder: Path, base: Point, loaded: Scene) -> dict[Path, Table]:
     """Returns, by folder, the outcomes of points that need no run: those that are in the folder
     already, and those that the scene `loaded` refuses.
     """
-    rows = {}
+    rows: dict[Path, Table] = {}
     for point in points:
         where = place(folder, point)
         try:
@@ -116,7 +115,7 @@ def place(folder: Path, point: Point) -> Path:
 
 
 def side_by_side(
-    acts: Mapping[Key, Callable], cores: int, name: str, before: int = 0
+    acts: Mapping[Key, Callable[[], Any]], cores: int, name: str, before: int = 0
 ) -> Iterator[tuple[Key, Any]]:
     """Calls the functions `acts`, `cores` at a time, each in a thread, which mostly waits for its
     FreeFem++.
@@ -155,7 +154,7 @@ def side_by_side(
             pool.shutdown(cancel_futures=True)
 
 
-def _work(key: Key, act: Callable, stop: threading.Event, shares: dict[Key, float]) -> Any:
+def _work(key: Key, act: Callable[[], Any], stop: threading.Event, shares: dict[Key, float]) -> Any:
     """Calls one function in its thread. Its progress goes into `shares`, and its FreeFem++ ends
     once `stop` is set.
     """
@@ -163,7 +162,7 @@ def _work(key: Key, act: Callable, stop: threading.Event, shares: dict[Key, floa
         return act()
 
 
-def _outcome_of(future: Future) -> Any:
+def _outcome_of(future: Future[Any]) -> Any:
     """Returns the result of a function. If it raised an error that it does not expect, this prints
     the error and returns a Failure.
     """
@@ -176,7 +175,7 @@ def _outcome_of(future: Future) -> Any:
     return Failure(f"{type(error).__name__}: {error}")
 
 
-def there(folder: Path, requested: scene.Scene) -> dict | None:
+def there(folder: Path, requested: Scene) -> Table | None:
     """Returns the outcome that is in `folder` already, None if there is none: a finished run, or a
     failure of the same scene and code, which would be repeated.
     """
@@ -193,10 +192,10 @@ def there(folder: Path, requested: scene.Scene) -> dict | None:
         result = run.reusable(requested, folder)
     except Failure:  # the run reports it
         return None
-    return result and _row(0, result.summary["message"], True, result.summary)
+    return _row(0, result.summary["message"], True, result.summary) if result else None
 
 
-def outcome_of(folder: Path, requested: scene.Scene, limit: float) -> dict | None:
+def outcome_of(folder: Path, requested: Scene, limit: float) -> Table | None:
     """Runs a scene, unless its outcome is there already, and returns the row of the table: exit
     code, message, warnings, reused, and the numbers of the summary, as far as the run came in
     `limit` seconds. None if another process is computing this run.
@@ -216,7 +215,7 @@ def outcome_of(folder: Path, requested: scene.Scene, limit: float) -> dict | Non
         return _row(Unreadable.code, f"{error.filename or folder}: {error.strerror}", False, {})
 
 
-def _row(code: int, message: str, reused: bool, summary: dict) -> dict:
+def _row(code: int, message: str, reused: bool, summary: Table) -> Table:
     numbers = {
         name: value
         for name, value in summary.items()
@@ -258,7 +257,7 @@ def table(frame: pd.DataFrame, formats: dict[str, str]) -> str:
     )
 
 
-def cell(value, form: str) -> str:
+def cell(value: Any, form: str) -> str:
     """Returns a value as text in a format, "" for a missing value."""
     return "" if pd.isna(value) else format(value, form)
 

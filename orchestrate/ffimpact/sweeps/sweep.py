@@ -25,9 +25,10 @@ import fcntl
 import itertools
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any, TypeVar
 
 import numpy as np
 import pandas as pd
@@ -35,13 +36,16 @@ import pandas as pd
 from .. import scene
 from ..failure import BadInput, Busy, Failure, Unreadable, brief, suggestion, unknown
 from ..input import dimension, parameters
-from ..input.parameters import Value
+from ..input.parameters import Table, Value
 from ..output import columns
 from ..output.folder import result_folder
 from ..places import RESULTS, shown
+from ..scenes.scene import Scene
 from . import study, sweep_figures
 
 __all__ = ["Sweep", "built_in", "collect", "load", "main", "report", "table"]
+
+T = TypeVar("T")
 
 SWEEPS = Path(__file__).resolve().parent  # the folder of the built-in sweeps
 LIMIT = 600.0  # default of the largest run time of a run [s]
@@ -72,8 +76,8 @@ class Sweep:
     refine: study.Point
     collect: list[str]
     limit: float
-    figure: dict
-    sample: scene.Scene
+    figure: Table
+    sample: Scene
     text: str
 
     @property
@@ -208,7 +212,7 @@ def load(name: str) -> Sweep:
         raise error.within(str(path)) from None
 
 
-def _sweep(path: Path, content: dict, text: str) -> Sweep:
+def _sweep(path: Path, content: Table, text: str) -> Sweep:
     for key in content:
         if key not in KEYS:
             raise BadInput(
@@ -224,6 +228,7 @@ def _sweep(path: Path, content: dict, text: str) -> Sweep:
         name = os.path.join(path.parent.resolve(), name)
     loaded = scene.load(name)
     base, refine = (loaded.check(_flat(tables[key])) for key in ("set", "refine"))
+    loaded.tables(refine)
     axes = _crossed(_flat(tables["product"]), base, loaded)
     axes += [
         _together(_flat(_is(group, dict, "zip", "tables [[zip]]")), loaded) for group in groups
@@ -288,20 +293,17 @@ def _sweep(path: Path, content: dict, text: str) -> Sweep:
     )
 
 
-def _sample(loaded: scene.Scene, base: study.Point, points: list[study.Point]) -> scene.Scene:
+def _sample(loaded: Scene, base: study.Point, points: list[study.Point]) -> Scene:
     """Returns the scene of the first point that is accepted. A point that is refused does not stop
     the runs of others. If all are refused, the BadInput of the first point is raised.
     """
-    refused = None
     for point in points:
-        try:
+        with suppress(BadInput):
             return loaded.override(base | point)
-        except BadInput as error:
-            refused = refused or error
-    raise refused
+    return loaded.override(base | points[0])
 
 
-def _finer(refine: study.Point, values: study.Point, points: list[study.Point]) -> None:
+def _finer(refine: Table, values: Table, points: list[Table]) -> None:
     """Raises BadInput if `refine` changes nothing, or makes a size larger that it should make
     smaller.
     """
@@ -321,24 +323,24 @@ def _finer(refine: study.Point, values: study.Point, points: list[study.Point]) 
             )
 
 
-def _is(value, kind: type, name: str, words: str):
+def _is(value: Any, kind: type[T], name: str, words: str) -> T:
     if not isinstance(value, kind):
         raise BadInput(f"{brief(name)}: '{brief(value)}' is not accepted (accepted: {words})")
     return value
 
 
-def _flat(table: dict, path: str = "") -> dict:
+def _flat(table: Table, path: str = "") -> Table:
     """Returns the entries of a table by dotted names. TOML reads body.2.young as nested tables
     unless the name is in quotes.
     """
-    entries = {}
+    entries: Table = {}
     for name, value in table.items():
         nested = isinstance(value, dict) and not set(value) & set(RANGE)
         entries |= _flat(value, f"{path}{name}.") if nested else {f"{path}{name}": value}
     return entries
 
 
-def _crossed(product: dict, base: study.Point, loaded: scene.Scene) -> list[list[study.Point]]:
+def _crossed(product: Table, base: study.Point, loaded: Scene) -> list[list[study.Point]]:
     """Returns the axes of [product]. Raises BadInput for a value that is refused by its own rule.
 
     What only a whole scene refuses is left to the runs of the points.
@@ -352,7 +354,7 @@ def _crossed(product: dict, base: study.Point, loaded: scene.Scene) -> list[list
     return axes
 
 
-def _values(name: str, axis: list | dict, loaded: scene.Scene) -> list[Value]:
+def _values(name: str, axis: Any, loaded: Scene) -> list[Value]:
     """Returns the checked values of an axis of a sweep over the scene `loaded`, from a list or a
     range.
     """
@@ -372,11 +374,9 @@ def _values(name: str, axis: list | dict, loaded: scene.Scene) -> list[Value]:
             raise BadInput(
                 f"{brief(name)}: a range needs a parameter that is a number, from and to numbers"
             )
-        low, high = (loaded.check({name: number})[name] for number in (low, high))
+        low, high = (float(loaded.check({name: number})[name]) for number in (low, high))
         if spacing == "log" and min(low, high) <= 0:
-            raise BadInput(
-                f"{brief(name)}: from {brief(low)} to {brief(high)} (accepted for log: above 0)"
-            )
+            raise BadInput(f"{brief(name)}: from {low:g} to {high:g} (accepted for log: above 0)")
         if type(points) is not int or not 2 <= points <= MOST_RUNS:
             raise BadInput(f"{brief(name)}: points = {brief(points)} (accepted: 2 to {MOST_RUNS})")
         axis = [
@@ -392,7 +392,7 @@ def _values(name: str, axis: list | dict, loaded: scene.Scene) -> list[Value]:
     return values
 
 
-def _single(name: str, value, loaded: scene.Scene) -> Value:
+def _single(name: str, value: Any, loaded: Scene) -> Value:
     """Returns a checked value of an axis: a number or a word."""
     if isinstance(value, list | dict):
         raise BadInput(
@@ -401,7 +401,7 @@ def _single(name: str, value, loaded: scene.Scene) -> Value:
     return loaded.check({name: value})[name]
 
 
-def _together(group: dict, loaded: scene.Scene) -> list[study.Point]:
+def _together(group: Table, loaded: Scene) -> list[study.Point]:
     """Returns the points of a [[zip]], whose parameters vary together."""
     columns = {
         name: [

@@ -13,19 +13,26 @@ y of lines and colour are numbers that are collected. The x of lines is logarith
 span a decade and are spaced logarithmically.
 """
 
+from __future__ import annotations
+
 import itertools
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullLocator
 
 from ..failure import BadInput, brief, suggestion, unknown
 from ..input import models, parameters
+from ..input.parameters import Table
 from ..output.results import read_history
 from ..report import report
 from ..report.figures import (
@@ -44,6 +51,9 @@ from ..report.figures import (
     styled,
 )
 from . import study
+
+if TYPE_CHECKING:
+    from .sweep import Sweep
 
 __all__ = [
     "FALLS",
@@ -84,7 +94,7 @@ SPAN = 1e3  # ratio of the largest to the smallest value above which the axis y 
 COLOURS, MARKERS = (BLUE, ORANGE, GREEN, PURPLE, GREY), "osd^v"
 
 
-def check(entries: dict, points: list[dict], collected: list[str], columns: list[str]) -> dict:
+def check(entries: Table, points: list[Table], collected: list[str], columns: list[str]) -> Table:
     """Returns the [figure] of a sweep with defaults, empty if there is none. `columns` are those of
     its histories. Raises BadInput if it cannot be drawn or does not distinguish all points.
     """
@@ -133,14 +143,14 @@ def check(entries: dict, points: list[dict], collected: list[str], columns: list
     return figure
 
 
-def _name(key: str, name, accepted: list[str]) -> None:
+def _name(key: str, name: Any, accepted: list[str]) -> None:
     if not isinstance(name, str) or name not in accepted:
         raise BadInput(
             f"figure: {key} {'is missing' if name is None else f'= {brief(repr(name))}'} (accepted: {', '.join(accepted)})"
         )
 
 
-def _check_map(figure: dict, points: list[dict]) -> None:
+def _check_map(figure: Table, points: list[Table]) -> None:
     """Raises BadInput if an axis of a map has fewer than two numbers, or if level or band is out of
     range.
     """
@@ -160,7 +170,7 @@ def _check_map(figure: dict, points: list[dict]) -> None:
         )
 
 
-def draw(sweep, rows: pd.DataFrame, out: Path) -> None:
+def draw(sweep: Sweep, rows: pd.DataFrame, out: Path) -> None:
     """Draws DIR/sweep.png, if the sweep has a figure."""
     if not sweep.figure:
         return
@@ -173,7 +183,7 @@ def draw(sweep, rows: pd.DataFrame, out: Path) -> None:
             save(figure, part)
 
 
-def constants(sweep) -> str:
+def constants(sweep: Sweep) -> str:
     """Returns the parameters that are the same in all runs, in words: law, nu, speed, contact
     stiffness and, with friction, the slip velocity.
     """
@@ -187,7 +197,7 @@ def constants(sweep) -> str:
     return words.replace("Pa/m^m", "Pa/m") if used.get("exponent", 1) == 1 else words
 
 
-def findings(sweep, rows: pd.DataFrame, out: Path) -> list[str]:
+def findings(sweep: Sweep, rows: pd.DataFrame, out: Path) -> list[str]:
     """Returns what the figure shows, in words: trends over x, the set for which a number has its
     level, or the distances of time histories.
     """
@@ -244,7 +254,7 @@ def _unit(name: str, per: str) -> str:
     return f" {_quantity(name, per).unit}".rstrip()
 
 
-def _value(name: str, value) -> str:
+def _value(name: str, value: Any) -> str:
     """Returns a value of a parameter in words, with its unit."""
     if value == "auto":
         return f"{_words(name)} auto"
@@ -261,7 +271,7 @@ def unit_of(name: str) -> str:
     return parameter.unit if parameter and parameter.unit else "-"
 
 
-def _groups(sweep, rows: pd.DataFrame, key: str) -> Iterator[tuple[str, pd.DataFrame]]:
+def _groups(sweep: Sweep, rows: pd.DataFrame, key: str) -> Iterator[tuple[str, pd.DataFrame]]:
     """Yields (words, rows) for each value of the parameter that [figure] names as `key`, or all
     rows at once if there is no such key.
     """
@@ -276,7 +286,7 @@ def _groups(sweep, rows: pd.DataFrame, key: str) -> Iterator[tuple[str, pd.DataF
 # ---- lines
 
 
-def draw_lines(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
+def draw_lines(sweep: Sweep, rows: pd.DataFrame, out: Path) -> Figure:
     x, names = sweep.figure["x"], sweep.figure["y"]
     figure, grid = plt.subplots(
         len(names),
@@ -336,14 +346,14 @@ def draw_lines(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
     # Curves come before other marks in the legend.
     handles = sorted(
         zip(*grid[0, 0].get_legend_handles_labels()),
-        key=lambda handle: isinstance(handle[0], plt.Line2D),
+        key=lambda handle: isinstance(handle[0], Line2D),
     )
     if handles:
         grid[0, 0].legend(*zip(*handles))
     return figure
 
 
-def _published(axes: plt.Axes, sweep, x: str, y: str) -> None:
+def _published(axes: Axes, sweep: Sweep, x: str, y: str) -> None:
     """Draws the numbers of the paper for y: a star at their x, or a line over all x if the paper
     does not state x.
 
@@ -360,7 +370,7 @@ def _published(axes: plt.Axes, sweep, x: str, y: str) -> None:
         for scene in scenes
         for number in numbers_of_the_paper(scene, name, over=x.rpartition(".")[2])
     ):
-        style = dict(color=BLACK, label=f"{words}: {factor * value:.3g}{unit}")
+        style: Table = dict(color=BLACK, label=f"{words}: {factor * value:.3g}{unit}")
         if at is None:
             axes.axhline(factor * value, linestyle="-.", linewidth=0.9, **style)
         else:
@@ -380,9 +390,9 @@ def _is_logarithmic(values: pd.Series) -> bool:
         or values.max() < 10 * values.min()
     ):
         return False
-    spread = lambda steps: steps.std() / steps.mean()  # noqa: E731
     ordered = np.sort(values.unique())
-    return spread(np.diff(np.log(ordered))) < spread(np.diff(ordered))
+    steps, ratios = np.diff(ordered), np.diff(np.log(ordered))
+    return bool(ratios.std() / ratios.mean() < steps.std() / steps.mean())
 
 
 @dataclass(frozen=True)
@@ -422,7 +432,7 @@ class Trend:
         """Whether the last value is below the first by more than two error bars, whatever is
         between.
         """
-        return self.first - self.last > 2 * np.nan_to_num(self.bar)
+        return bool(self.first - self.last > 2 * np.nan_to_num(self.bar))
 
 
 def bars(group: pd.DataFrame, y: str) -> np.ndarray:
@@ -433,12 +443,14 @@ def bars(group: pd.DataFrame, y: str) -> np.ndarray:
     """
     if f"{y}_error" not in group:
         return np.full(len(group), np.nan)
-    own = group[f"{y}_error"].to_numpy(dtype=float)
+    own: np.ndarray = group[f"{y}_error"].to_numpy(dtype=float, copy=True)
     finite = own[np.isfinite(own)]
-    return np.fmax(own, np.sqrt(np.mean(finite**2))) if len(finite) else own
+    if len(finite):
+        np.fmax(own, np.sqrt(np.mean(finite**2)), out=own)
+    return own
 
 
-def bars_of_all(sweep, rows: pd.DataFrame, y: str) -> pd.Series:
+def bars_of_all(sweep: Sweep, rows: pd.DataFrame, y: str) -> pd.Series:
     """Returns the error bars (bars()) of every row of the table, each in its own curve or map of
     the figure; nan where a run failed. Without a figure all points are one curve.
     """
@@ -468,7 +480,10 @@ def course(values: np.ndarray, errors: np.ndarray) -> str:
     """
     errors, ends = np.nan_to_num(errors), (0, len(values) - 1)
     low, high = int(np.argmin(values)), int(np.argmax(values))
-    above = lambda i, j: values[i] - values[j] > 2 * np.hypot(errors[i], errors[j])  # noqa: E731
+
+    def above(i: int, j: int) -> bool:
+        return bool(values[i] - values[j] > 2 * np.hypot(errors[i], errors[j]))
+
     first_low, last_low = (not above(end, low) for end in ends)
     first_high, last_high = (not above(high, end) for end in ends)
     if not above(high, low):
@@ -550,14 +565,14 @@ def _extremes(curve: Trend, x: str, factor: float) -> str:
 # ---- maps
 
 
-def _maps(sweep, rows: pd.DataFrame) -> Iterator[tuple[str, pd.DataFrame]]:
+def _maps(sweep: Sweep, rows: pd.DataFrame) -> Iterator[tuple[str, pd.DataFrame]]:
     """Yields (words, rows) of each map, row by row."""
     for panel, part in _groups(sweep, rows, "panel"):
         for words, group in _groups(sweep, part, "by"):
             yield ", ".join(filter(None, (panel, words))), group
 
 
-def _map(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
+def _map(sweep: Sweep, rows: pd.DataFrame, out: Path) -> Figure:
     entries = sweep.figure
     x, y, colour = (entries[key] for key in ("x", "y", "colour"))
     maps, height = list(_maps(sweep, rows)), len(list(_groups(sweep, rows, "panel")))
@@ -633,7 +648,7 @@ def _tick(value: float) -> str:
     return f"$10^{{{int(power)}}}$" if factor == "1.0" else f"${factor}\\cdot 10^{{{int(power)}}}$"
 
 
-def level_set(figure: dict, group: pd.DataFrame) -> dict[float, list[tuple[float, float]]]:
+def level_set(figure: Table, group: pd.DataFrame) -> dict[float, list[tuple[float, float]]]:
     """Returns for each value of x the ranges of y in which colour has its level, within the sum of
     band and error bar. Between points colour is interpolated linearly in the logarithm of y.
     """
@@ -662,7 +677,7 @@ def _typical(group: pd.DataFrame, name: str) -> float:
     return float(np.nanmin(errors)) if np.isfinite(errors).any() else 0.0
 
 
-def level_set_words(figure: dict, words: str, group: pd.DataFrame) -> list[str]:
+def level_set_words(figure: Table, words: str, group: pd.DataFrame) -> list[str]:
     """Returns the level set in words, a line for each value of x."""
     if figure["level"] is None:
         return []
@@ -689,7 +704,7 @@ def spans(ranges: list[tuple[float, float]]) -> str:
 # ---- histories
 
 
-def _histories(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
+def _histories(sweep: Sweep, rows: pd.DataFrame, out: Path) -> Figure:
     panels, names = list(_groups(sweep, rows, "panel")), sweep.figure["y"]
     figure, grid = plt.subplots(
         len(names),
@@ -723,7 +738,7 @@ def _histories(sweep, rows: pd.DataFrame, out: Path) -> plt.Figure:
 
 
 def _history(
-    sweep, row: pd.Series, out: Path, y: str, refined: bool
+    sweep: Sweep, row: pd.Series, out: Path, y: str, refined: bool
 ) -> tuple[np.ndarray, np.ndarray]:
     """Returns (t, values) of the run of a point. Forces are means over a step, so their t is the
     middle of the step.
@@ -743,7 +758,7 @@ def force(
 
 
 def distances(
-    sweep, rows: pd.DataFrame, out: Path
+    sweep: Sweep, rows: pd.DataFrame, out: Path
 ) -> Iterator[tuple[str, str, str, str, float, float]]:
     """Yields (panel, y, a, b, distance, error) for each line b of a panel and its first line a. The
     distance is ||y_b - y_a|| / ||y_a|| over time. The error is the larger such distance between a
