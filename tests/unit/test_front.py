@@ -46,12 +46,22 @@ def test_a_face_on_a_plane_is_a_flat_strike(tmp_path):
     assert fronts(scene_of(BLOCK, tmp_path, accuracy=0.01))[0].tau == pytest.approx(strike.tau / 2)
 
 
-@pytest.mark.parametrize("entries", [dict(body__1__angle=1.0, body__1__position=[0, 0.0518]), dict(end_time=1.0), dict(body__1__velocity=[0.3, 0], gravity=9.81,
-                         end_time=0.01), dict(until="rest", gravity=9.81, viscosity=10.0)], ids=["tilted", "long", "set down", "to rest"])
+@pytest.mark.parametrize("entries", [dict(body__1__angle=1.0, body__1__position=[0, 0.0518]), dict(body__1__velocity=[0.3, 0], gravity=9.81,
+                         end_time=0.01), dict(until="rest", gravity=9.81, viscosity=10.0)], ids=["tilted", "set down", "to rest"])
 def test_what_is_no_flat_strike(entries, tmp_path):
-    """A face that lands on a corner first, a body that is set down, and a run that continues long
-    after the strike."""
+    """A face that lands on a corner first, a body that is set down, and a run to rest."""
     assert fronts(scene_of(BLOCK, tmp_path, **entries)) == []
+
+
+def test_a_strike_is_the_same_however_long_it_is_followed(tmp_path):
+    """Front, elements and penalty do not depend on end_time. A body that gravity alone makes land is
+    set down, in a run of any length; one that falls for some transits strikes."""
+    brief, long = (fronts(scene_of(BLOCK, tmp_path, end_time=end))[0] for end in (0.0, 1.0))
+    assert (brief.tau, brief.transit, brief.sizes) == (long.tau, long.transit, long.sizes)
+    slow = dict(gravity=9.81, end_time=1.0)
+    for closing, strikes in ((0.9, 0), (1.1, 1)):
+        at = dict(body__1__velocity=[0, -closing * 9.81 * 0.1 / C])
+        assert len(fronts(scene_of(BLOCK, tmp_path, **slow, **at))) == strikes
 
 
 PAD = """

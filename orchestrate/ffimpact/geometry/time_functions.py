@@ -4,11 +4,14 @@ t [s] or a table.
 Each becomes a piecewise cubic Hermite polynomial, which the scripts evaluate
 (edp/program/input/conditions.idp). A table is interpolated monotonically and with a continuous slope
 (Fritsch and Carlson 1980). An expression is interpolated with an error of CLOSE times its largest
-value, which enclosures of its derivatives guarantee (enclosures.py).
+value so far, which enclosures of its derivatives guarantee (enclosures.py). What a function is up to
+a time does not depend on end_time: a table counts as a whole, and the knots of an expression lie on
+a grid that is finer at earlier times.
 """
 
 import ast
 import csv
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -23,6 +26,7 @@ from . import implicit
 from .enclosures import crossing, enclosure
 
 __all__ = [
+    "NOTHING",
     "TimeFunction",
     "constant",
     "displacements",
@@ -34,13 +38,16 @@ __all__ = [
     "of_table",
 ]
 
-# Largest error of the interpolation, relative to the largest value of the expression; that which is
-# accepted if CLOSE takes more than MOST intervals.
+# Largest error of the interpolation, relative to the largest value of the expression so far; that
+# which is accepted if CLOSE takes more than MOST intervals.
 CLOSE, ROUGH = 1e-8, 1e-6
+NOTHING = 1e-20  # value [m, rad, Pa] that is round-off
 STEEPEST = 1e30  # largest slope, per second; larger slopes are refused
-FEWEST, MOST = 16, 2**17  # smallest and largest number of intervals
+# Intervals between two powers of two, before they are divided; the exponent of the first one; the
+# largest number of intervals.
+FEWEST, FIRST, MOST = 4, -40, 2**17
 KINK = 2.0**-44  # distance of the two knots of a kink, relative to its time
-SHORTEST = 2.0**-44  # shortest interval that is divided, relative to end_time
+SHORTEST = 2.0**-44  # shortest interval that is divided, relative to its time
 SHARP = 1e-9  # change of the slope, relative to its largest values, that is a kink
 
 
@@ -80,14 +87,14 @@ class TimeFunction:
             return slopes[0] + 0 * t
         return self._spline(np.clip(t, times[0], times[-1]), 1)
 
-    def integral(self, begin: np.ndarray | float, end: np.ndarray | float) -> np.ndarray:
-        """The integral from `begin` to `end` [s], exactly."""
-        return self._integral_to(end) - self._integral_to(begin)
-
     @property
     def largest_value(self) -> float:
         """The largest absolute value from the first to the last knot."""
         return float(abs(self(self.extreme_times)).max())
+
+    def largest_until(self, t: float) -> float:
+        """The largest absolute value at the knots up to the time t [s]."""
+        return float(abs(self.knots[self.knots[:, 0] <= t, 1]).max(initial=0.0))
 
     @property
     def largest_slope(self) -> float:
@@ -98,11 +105,6 @@ class TimeFunction:
             vertex = self.knots[:-1, 0] - second / (3 * third)
         inside = (vertex > self.knots[:-1, 0]) & (vertex < self.knots[1:, 0]) & ~self._at_kink
         return float(abs(np.append(self.knots[:, 2], self.slope(vertex[inside]))).max())
-
-    @property
-    def largest_integral(self) -> float:
-        """The largest absolute value of the integral from the first knot to any other one."""
-        return float(abs(self._sums).max())
 
     @cached_property
     def extreme_times(self) -> np.ndarray:
@@ -121,14 +123,10 @@ class TimeFunction:
         times, _, slopes = self.knots.T
         return np.column_stack([times[:-1], abs(np.diff(slopes))])[self._at_kink]
 
-    def between(self, begin: float, end: float) -> "TimeFunction":
-        """The function with knots from `begin` to `end` [s] only, where it is the same."""
-        times = self.knots[:, 0]
-        inside = (times > begin) & (times < end)
-        ends = np.array([begin, end])
-        slopes = self.slope(ends)
-        first, last = ([ends[k], float(self(ends[k])), slopes[k]] for k in (0, 1))
-        return TimeFunction(np.vstack([first, self.knots[inside], last]))
+    def since(self, begin: float) -> "TimeFunction":
+        """The function with knots from `begin` [s] on only, where it is the same."""
+        first = [begin, float(self(begin)), float(self.slope(begin))]
+        return TimeFunction(np.vstack([first, self.knots[self.knots[:, 0] > begin]]))
 
     def scaled(self, factor: float) -> "TimeFunction":
         """The function times a factor."""
@@ -161,22 +159,6 @@ class TimeFunction:
         second = (3 * secant - 2 * slopes[:-1] - slopes[1:]) / width
         third = (slopes[:-1] + slopes[1:] - 2 * secant) / width**2
         return width, np.array([slopes[:-1], second, third])
-
-    @cached_property
-    def _sums(self) -> np.ndarray:
-        """The integrals (n,) from the first knot to each knot."""
-        times, values, slopes = self.knots.T
-        width = np.diff(times)
-        parts = width * (values[:-1] + values[1:]) / 2 - width**2 * np.diff(slopes) / 12
-        return np.append(0.0, np.cumsum(parts))
-
-    def _integral_to(self, t: np.ndarray | float) -> np.ndarray:
-        """The integral from the first knot to times t [s]."""
-        t = np.asarray(t, dtype=float)
-        k = np.clip(np.searchsorted(self.knots[:, 0], t, side="right") - 1, 0, len(self.knots) - 1)
-        begin, value, slope = self.knots[k].T
-        # Simpson's rule is exact for cubics, and beyond the ends for linear functions.
-        return self._sums[k] + (t - begin) / 6 * (value + 4 * self((begin + t) / 2) + self(t))
 
 
 def constant(value: float) -> TimeFunction:
@@ -316,15 +298,13 @@ def functions(
 
     The entry is a list of numbers, expressions and tables {t, x} of single components, a single one
     for a single component, or a table {t, ...} with a column for each component, also as the name
-    of a CSV file in `folder`. Their knots are between 0 and `end_time` [s], if that is not 0.
+    of a CSV file in `folder`. Their knots begin at 0; expressions are used up to `end_time` [s].
     Raises BadInput, with the name of the entry, for anything else.
     """
     if is_csv(definition):
         definition = of_csv(entry, folder / str(definition), names)
     components = _components(entry, definition, names, end_time)
-    if end_time > 0:
-        components = [function.between(0.0, end_time) for function in components]
-    return tuple(components)
+    return tuple(function.since(0.0) for function in components)
 
 
 def _components(entry: str, definition: object, names: str, end_time: float) -> list[TimeFunction]:
@@ -375,7 +355,7 @@ def displacements(
 def farthest(
     translation: Sequence[TimeFunction], until: float = np.inf
 ) -> tuple[np.ndarray, float]:
-    """The largest displacement (axes,) from t = 0 to `until` [s], and the time [s] of it.
+    """The largest displacement (axes,) from t = 0 to `until` [s], and the first time [s] of it.
 
     `translation` contains the functions of the components. Each has its extremes among the times
     that are examined.
@@ -384,72 +364,81 @@ def farthest(
     latest = min(until, float(times.max()))
     times = np.unique([0.0, *times[(times > 0) & (times < latest)], max(0.0, latest)])
     moved = np.array([function(times) for function in translation]).T
-    k = int(np.linalg.norm(moved, axis=1).argmax())
+    ways = np.linalg.norm(moved, axis=1)
+    k = int((ways >= (1 - 1e-6) * ways.max()).argmax())  # whatever the round-off of later ones
     return moved[k], float(times[k])
 
 
 def _sampled(entry: str, expression: str, program: tuple[float, ...], end: float) -> np.ndarray:
-    """The knots (n, 3) of an expression from 0 to `end` [s].
+    """The knots (n, 3) of an expression from 0 to the end of the grid's interval that contains `end`
+    [s], or to `end` if it is not defined everywhere in it.
+    """
+    grid = _grid(end)
+    try:
+        return _on_grid(entry, expression, program, grid)
+    except BadInput:
+        return _on_grid(entry, expression, program, np.append(grid[:-1], end))
+
+
+def _on_grid(
+    entry: str, expression: str, program: tuple[float, ...], grid: np.ndarray
+) -> np.ndarray:
+    """The knots (n, 3) of an expression: the ends of the intervals of a grid and of their parts.
 
     Intervals are divided, at kinks or in their middle, until the polynomial in each certainly
     agrees with the expression to CLOSE. Raises BadInput if this takes more than MOST intervals, or
     if the expression has no bound or jumps.
     """
-    largest = _largest(entry, expression, program, end)
     for close in (CLOSE, ROUGH):
-        intervals = _divided(entry, expression, program, end, close * largest)
+        intervals = _divided(entry, expression, program, grid, close)
         if intervals is not None:
             return _knots(entry, expression, program, *intervals)
     raise BadInput(
-        f"{entry}: '{brief(expression)}' changes too often up to end_time = {end:g} s "
+        f"{entry}: '{brief(expression)}' changes too often up to end_time = {grid[-1]:g} s "
         f"(accepted: what {MOST} cubic polynomials follow)"
     )
 
 
-def _largest(entry: str, expression: str, program: tuple[float, ...], end: float) -> float:
-    """A lower bound of the largest absolute value of an expression from 0 to `end` [s], at least
-    half of it. Intervals that may have larger values are halved.
+def _grid(end: float) -> np.ndarray:
+    """The times (n,) [s] from 0 to `end` or the first one after it, that are the same for all
+    `end`: FEWEST intervals between each two powers of two.
     """
-    edges, largest = np.linspace(0, end, FEWEST + 1), 0.0
-    begin, until = edges[:-1], edges[1:]
-    while len(begin) and begin[0] + SHORTEST * end < until[0]:
-        middle = (begin + until) / 2
-        values, _ = _evaluated(entry, expression, program, np.concatenate([begin, middle, until]))
-        largest = max(largest, float(abs(values).max()))
-        (low, high), _ = enclosure(program, begin, until)
-        larger = np.maximum(-low[0], high[0]) > 2 * largest
-        if larger.sum() > MOST:
-            break
-        begin, middle, until = begin[larger], middle[larger], until[larger]
-        begin, until = np.append(begin, middle), np.append(middle, until)
-    return largest
+    octaves = 2.0 ** np.arange(FIRST, max(FIRST, math.frexp(end)[1]) + 1)
+    grid = np.concatenate([[0.0], *(octaves * (1 + k / FEWEST) for k in range(FEWEST))])
+    grid.sort()
+    return grid[: np.searchsorted(grid, end) + 1]
 
 
 def _divided(
-    entry: str, expression: str, program: tuple[float, ...], end: float, error: float
+    entry: str, expression: str, program: tuple[float, ...], grid: np.ndarray, close: float
 ) -> tuple[np.ndarray, np.ndarray] | None:
-    """The intervals (n,), (n,) from 0 to `end` [s] in each of which a cubic Hermite polynomial has
-    at most this error; None if they are more than MOST. Kinks lie between intervals.
+    """The intervals (n,), (n,) of a grid and their parts, in each of which a cubic Hermite polynomial
+    has at most the error `close`, relative to the largest value so far; None if they are more than
+    MOST. Kinks lie between intervals.
     """
-    edges = np.linspace(0, end, FEWEST + 1)
-    begin, until, done = edges[:-1], edges[1:], []
+    begin, until, done = grid[:-1], grid[1:], []
+    largest = np.full(len(grid) - 1, NOTHING)  # in each interval of the grid
     while len(begin):
-        width = until - begin
+        width, middle = until - begin, (begin + until) / 2
+        place = np.searchsorted(grid, middle) - 1
+        value, _ = _evaluated(entry, expression, program, middle)
+        np.maximum.at(largest, place, abs(value))
         (low, high), kinks = enclosure(program, begin, until)
         with np.errstate(all="ignore"):
             # the error is at most h^4/384 times the fourth derivative, and h (max f' - min f')
             off = width**4 / 16 * np.maximum(-low[4], high[4])
             off = np.fmin(off, width * (high[1] - low[1]))
-        coarse = ~(off <= error)
+        at_once = (until <= grid[1]) & np.isfinite(off)  # in the first interval
+        coarse = ~((off <= close * np.maximum.accumulate(largest)[place]) | at_once)
         done.append((begin[~coarse], until[~coarse]))
-        stuck = coarse & (width <= SHORTEST * end)
+        stuck = coarse & (width <= SHORTEST * until)
         if stuck.any():
             raise BadInput(
                 f"{entry}: '{brief(expression)}' jumps, or has no limit, at "
-                f"t = {begin[stuck][0]:.6g} s, or changes there within {SHORTEST * end:.1g} s "
+                f"t = {begin[stuck][0]:.6g} s, or changes there within {width[stuck][0]:.1g} s "
                 f"(accepted: a continuous function)"
             )
-        first, last = (begin + until) / 2, (begin + until) / 2
+        first, last = middle, middle.copy()
         whole = coarse.copy()  # not divided at a kink yet
         for argument, crossed in kinks:
             here = crossed & whole

@@ -117,8 +117,11 @@ class Load:
 
     @property
     def largest(self) -> float:
-        """The largest stress of the load [Pa]."""
-        return max([abs(self.gas[0]), *(function.largest_value for function in self.functions)])
+        """The largest stress of the load [Pa], without round-off, because a mesh changes with every
+        digit.
+        """
+        largest = max([abs(self.gas[0]), *(function.largest_value for function in self.functions)])
+        return float(f"{largest:.6g}")
 
 
 def csv_renamed(content: dict, rename: Callable[[str, str], str]) -> dict:

@@ -37,7 +37,6 @@ ACROSS = 2.2
 LONGER = 10.0  # largest ratio of the lengths of an element across and along the normal
 STEEPNESS = 1.5  # transit of the front through an element over its rise time
 LONGEST = 0.02  # largest rise time of the front over its transit across the body
-BRIEF = 30.0  # transits after a strike: in longer runs the front does not matter
 # By the number of axes: the largest number of unknowns of a body that a front may require; the
 # unknowns of a body of area (volume) V with quadratic elements of size h, over V/h^2 (V/h^3); the
 # area (volume) of an element over h^2 (h^3).
@@ -84,9 +83,9 @@ class Front:
 
 
 def fronts(scene: Scene, onsets: list[Onset]) -> list[Front]:
-    """Returns the flat strikes among the onsets of contact `onsets`. A strike is left out if the run
-    continues for more than BRIEF transits after it, or if it is the first contact of neither body:
-    the one before changes whether and how they meet.
+    """Returns the flat strikes among the onsets of contact `onsets`. A strike is left out if it is
+    the first contact of neither body: the one before changes whether and how they meet. A body that
+    is set down, slower than constant forces make it in a transit, has no front.
     """
     if scene.values["until"] == "rest":
         return []
@@ -105,8 +104,9 @@ def fronts(scene: Scene, onsets: list[Onset]) -> list[Front]:
     plane = [k for k in range(len(scene.bodies)) if _stays_plane(scene, k, onsets, landings)]
     if plane:
         landings = [front for old in landings if (front := _front(scene, old.onset, plane))]
-    end = scene.values["end_time"]
-    return [front for front in landings if end <= front.onset.time + BRIEF * front.transit]
+    return [
+        front for front in landings if front.onset.closing > front.onset.pressing * front.transit
+    ]
 
 
 def stretch_of(k: int, strikes: list[Front], size: float) -> float:

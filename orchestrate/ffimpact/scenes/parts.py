@@ -8,7 +8,7 @@ import numpy as np
 
 from ..failure import BadInput, brief
 from ..geometry.outlines import rotation
-from ..geometry.time_functions import TimeFunction
+from ..geometry.time_functions import NOTHING, TimeFunction
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
 from ..mesh import mesh
 from ..mesh.mesh import Mesh
@@ -64,7 +64,7 @@ def sections(
         if obstacle.drive
     ]
     kinks = sorted(
-        (time, change / function.largest_value)
+        (time, change / max(function.largest_until(time), NOTHING))
         for function in functions
         for time, change in function.kinks.tolist()
     )
@@ -97,8 +97,8 @@ def _drive_row(drive: Drive, dimension: Dimension, functions: list[TimeFunction]
 
 
 def _line(function: TimeFunction) -> tuple:
-    """The line of a time function: number of knots, the largest of integral, value and slope, knots."""
-    largest = function.largest_integral, function.largest_value, function.largest_slope
+    """The line of a time function: number of knots, the largest value and slope, knots."""
+    largest = function.largest_value, function.largest_slope
     return len(function.knots), *largest, *function.knots.ravel().tolist()
 
 
