@@ -24,7 +24,7 @@ rubber = ff.MooneyRivlin(
     young=2 * shear * (1 + nu),
     nu=nu,
     density=1150,
-    law_parameters="0.2",
+    share=0.2,
     relaxation_modulus=10e6,
     relaxation_time=1 / 920,
 )

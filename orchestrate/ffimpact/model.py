@@ -11,6 +11,7 @@ as one BadInput with a line for each error: the dotted name of the entry (body.1
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Self
@@ -24,7 +25,7 @@ from .input.dimension import AXISYMMETRIC, DIMENSIONS, PLANE_STRAIN, SOLID, Dime
 from .input.models import Body, Contact, Obstacle
 from .input.parameter import plain
 from .input.toml_text import to_toml
-from .scenes import scene as reading
+from .scenes import conditions, scene as reading
 
 __all__ = ["Scene"]
 
@@ -103,10 +104,16 @@ class Scene(models.Top):
         return reading.read(self.table(), self.folder, name)
 
     def save(self, path: str | Path) -> Path:
-        """Writes the scene to a TOML file and returns its path."""
+        """Writes the scene to a TOML file and returns its path. Its files stay where they are; the
+        paths in the scene lead there from the new file.
+        """
         path = Path(path)
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(to_toml(self.table()), "utf-8")
+
+        def seen_from_there(label: str, name: str) -> str:
+            return os.path.relpath(self.folder / name, path.parent)
+
+        path.write_text(to_toml(conditions.files_renamed(self.table(), seen_from_there)), "utf-8")
         return path
 
     @classmethod

@@ -130,11 +130,20 @@ def test_a_force_is_filtered(result):
     plt.close("all")
 
 
-def test_states_are_grids(result):
+def test_states_are_arrays(result):
+    """The lowest point, followed by probe(), moves as the states say."""
+    states = result.fields
+    assert len(states) == len(states.times) and states[-1].von_mises.max() > 0
+    lowest = states[0].positions[:, 1].argmin()
+    path = result.probe(0, -0.05)
+    moves = [state.positions[lowest, 1] for state in states]
+    assert path.y.to_numpy() == pytest.approx(np.array(moves), abs=1e-6)
+
+
+def test_a_state_is_a_grid(result):
     pytest.importorskip("pyvista")
-    assert (
-        len(result.fields) == len(result.fields.times) and result.fields[-1]["von_mises"].max() > 0
-    )
+    grid = result.fields[-1].to_pyvista()
+    assert grid["von_mises"].max() == result.fields[-1].von_mises.max()
 
 
 def test_a_player_is_one_file(result, tmp_path):

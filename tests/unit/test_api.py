@@ -47,6 +47,67 @@ def test_an_entry_set_to_none_is_left_to_the_program():
         drop().set({"body.1.velocity.2": None})
 
 
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        (lambda scene: setattr(scene.bodies[0], "radius", -1), ("radius", "-1", "1e-09")),
+        (lambda scene: setattr(scene.bodies[0], "radis", 1), ("radis", "radius")),
+        (lambda scene: setattr(scene, "accuracy", 3), ("accuracy", "3", "0.4")),
+        (lambda scene: setattr(scene, "bodies", []), ("body", "missing")),
+        (lambda scene: setattr(scene.contact, "penalty", "stiff"), ("penalty", "stiff", "auto")),
+        (lambda scene: setattr(scene, "contact", ff.Contact(friction_static=0.1, friction_dynamic=0.2)),
+         ("contact.friction_dynamic", "0.2", "0.1")),
+    ],
+)  # fmt: skip
+def test_an_entry_is_checked_when_it_is_set(change, words):
+    """What is refused changes nothing."""
+    scene = drop()
+    with pytest.raises(ff.BadInput) as caught:
+        change(scene)
+    assert all(word in str(caught.value) for word in words) and scene == drop()
+
+
+def test_an_entry_that_is_set_is_that_of_the_scene():
+    scene = drop()
+    scene.bodies[0].velocity, scene.accuracy = (0, np.float64(-4)), 0.02
+    assert scene == drop(accuracy=0.02).set({"body.1.velocity.2": -4})
+
+
+def test_a_dumped_scene_is_whole():
+    """model_dump() has the shapes of bodies, and gives the scene again."""
+    dumped = drop().model_dump()
+    assert dumped == drop().table() and dumped["body"][0]["radius"] == 0.05
+    assert ff.Scene.from_tables(json.loads(json.dumps(dumped))) == drop()
+
+
+def test_a_scene_saved_elsewhere_finds_its_files(tmp_path):
+    """Meshes, surfaces and tables of a scene are found from the new file."""
+    (tmp_path / "away").mkdir()
+    table = tmp_path / "away/motion.csv"
+    table.write_text("t,x,y\n0,0,0\n1,0,-0.001\n")
+    scene = ff.Scene(
+        bodies=[ff.Disc(radius=0.05, material=RUBBER, position=(0, 0.051))],
+        obstacles=[ff.Plane(motion="motion.csv")], folder=tmp_path / "away", end_time=1,
+    )  # fmt: skip
+    loaded = ff.Scene.load(scene.save(tmp_path / "it's/new.toml"))
+    assert (loaded.folder / loaded.obstacles[0].motion).samefile(table)
+    assert loaded.checked().obstacles[0].driven
+
+
+MATERIAL = {"young": 7e6, "nu": 0.45, "density": 1722}
+
+
+def test_numbers_of_a_law_have_names():
+    """They are `law_parameters` in a file."""
+    mooney = ff.MooneyRivlin(share=0.3, **MATERIAL)
+    ogden = ff.Ogden(alpha=[1.3, 5, -2], shares=[0.5, 0.2, 0.3], **MATERIAL)
+    assert mooney.table() == {"law": "mooney-rivlin", "law_parameters": "0.3"} | MATERIAL
+    assert ogden.table()["law_parameters"] == "1.3,0.5,5.0,0.2,-2.0,0.3"
+    assert ff.MooneyRivlin(law_parameters="0.3", **MATERIAL).table() == mooney.table()
+    disc = ff.Disc(radius=1, position=(0, 1), material=mooney)
+    assert disc.law_parameters == "0.3" and disc.material.table() == mooney.table()
+
+
 def test_a_body_may_be_given_as_the_table_of_a_file():
     table = drop().table()
     made = ff.Scene(bodies=table["body"], obstacles=table["obstacle"], contact=drop().contact)
@@ -83,6 +144,18 @@ def test_all_that_is_wrong_with_a_scene_is_told_at_once():
         (lambda: ff.Scene.load("disc-norml"), ("disc-norml", "disc-normal")),
         (lambda: ff.NeoHookean(youngs=2e6, nu=0.4, density=1), ("youngs", "young")),
         (lambda: ff.Disc(radius=True, position=(0, 0)), ("radius", "true")),
+        (lambda: ff.NeoHookean(law="svk", **MATERIAL), ("law", "svk", "SaintVenantKirchhoff")),
+        (lambda: ff.Ogden(**MATERIAL), ("alpha", "missing")),
+        (lambda: ff.Ogden(alpha=[2], **MATERIAL), ("shares", "missing")),
+        (lambda: ff.Ogden(alpha=[2, 3], shares=[1], **MATERIAL), ("shares", "[1]", "2 of alpha")),
+        (lambda: ff.Ogden(alpha=[2], shares=[-1], **MATERIAL), ("shares", "-1", "0 to 1")),
+        (lambda: ff.MooneyRivlin(share=1.2, **MATERIAL), ("share", "1.2", "0 to 1")),
+        (lambda: ff.Material(), ("law", "missing", "svk")),
+        (
+            lambda: drop(contact=ff.Contact(friction_static=0.1, friction_dynamic=0.2)),
+            ("contact.friction_dynamic", "0.2"),
+        ),
+        (lambda: drop().set({"body.1.velocity": [0, 0]}), ("velocity", "nothing would ever move")),
         (lambda: ff.Disc(radius="5 cm", position=(0, 0)), ("radius", "5 cm", "unit")),
         (
             lambda: ff.Scene(

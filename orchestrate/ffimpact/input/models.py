@@ -12,12 +12,14 @@ from functools import partial
 from inspect import Parameter as Keyword, Signature
 from typing import Annotated, Any, ClassVar, Self
 
+import numpy as np
 from pydantic import (
     BaseModel,
     BeforeValidator,
     ConfigDict,
     PrivateAttr,
     ValidationError,
+    model_serializer,
     model_validator,
 )
 from pydantic.fields import FieldInfo
@@ -31,6 +33,7 @@ from .rules import (
     Function,
     InSpace,
     Name,
+    Numbers,
     Partners,
     Place,
     Points,
@@ -95,6 +98,7 @@ __all__ = [
     "listed",
     "of_table",
     "read",
+    "rule_of",
     "rule_of_body",
     "several",
     "shared",
@@ -166,8 +170,8 @@ class _Made(type(BaseModel)):  # type: ignore[misc]
 
 def _keyword(name: str, field: FieldInfo) -> Keyword:
     """The entry of a model as a keyword of its constructor."""
-    rules = [rule for rule in field.metadata if isinstance(rule, Rule)]
-    text = rules[0].meaning if rules else field.description or ""
+    rule = next((rule for rule in field.metadata if isinstance(rule, Rule)), None)
+    text = rule.meaning if rule else field.description or ""
     default = Keyword.empty if field.is_required() else field.get_default()
     annotation = text or Keyword.empty
     return Keyword(name, Keyword.KEYWORD_ONLY, default=default, annotation=annotation)
@@ -176,12 +180,32 @@ def _keyword(name: str, field: FieldInfo) -> Keyword:
 class Entries(BaseModel, metaclass=_Made):
     """The common base of all tables of a scene."""
 
-    model_config = ConfigDict(extra="forbid", defer_build=True)  # built at the first use
+    # defer_build: built at the first use
+    model_config = ConfigDict(extra="forbid", defer_build=True, validate_assignment=True)
     nested: ClassVar[dict[str, type[Entries]]] = {}  # the models of nested tables, by entry
     only: ClassVar[dict[str, tuple[Dimension, ...]]] = {}  # entries of some dimensions alone
     heading: ClassVar[tuple[str, ...]] = ()  # the entry that selects the model: shape or kind
     _entry: str = PrivateAttr("")  # the name of the table in the scene: body.2
     _given: dict[str, Any] = PrivateAttr(default_factory=dict)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        """Sets an entry if it is accepted as it would be when the table is made. Raises BadInput."""
+        if name.startswith("_"):
+            return super().__setattr__(name, value)
+        before = dict(self.__dict__)
+        try:
+            super().__setattr__(name, plain(value))
+        except (ValidationError, BadInput) as error:
+            self.__dict__.update(before)
+            if isinstance(error, BadInput):
+                raise
+            raise BadInput(*_lines(type(self), error, type(self).__name__, ": ", None)) from None
+        self._given = {**self._given, name: value}
+
+    @model_serializer(mode="plain")
+    def _dumped(self) -> dict[str, Any]:
+        """model_dump() is table(): nothing of a body's shape is lost."""
+        return self.table()
 
     def __repr_args__(self) -> list[tuple[str | None, Any]]:
         return [
@@ -332,11 +356,11 @@ def _refusal(
     holder: type[Entries], problem: Any, name: str, table: str, dimension: Dimension | None
 ) -> str:
     """The message about an error, behind the name of the entry; `table` is the enclosing table."""
-    if problem["type"] == "extra_forbidden":
+    if problem["type"] in ("extra_forbidden", "no_such_attribute"):
         return holder.refused(name, problem["input"], dimension)
     if problem["type"] == "missing":
-        rules = [rule for rule in holder.model_fields[name].metadata if isinstance(rule, Rule)]
-        return f": is missing (accepted: {rules[0].accepted_in(dimension) if rules else 'a table'})"
+        rule = rule_of(holder, name)
+        return f": is missing (accepted: {rule.accepted_in(dimension) if rule else 'a table'})"
     if problem["type"] == "value_error":
         return str(problem["ctx"]["error"])
     text = brief(problem["input"])
@@ -379,6 +403,19 @@ class Material(OfMaterial):
     nu: Annotated[float, shared("nu")]
     density: Annotated[float, shared("density")]
 
+    @model_validator(mode="after")
+    def _is_its_law(self) -> Self:
+        own = type(self).model_fields["law"]
+        if not own.is_required() and self.law != own.default:
+            name = type(self).__name__
+            other = LAWS[self.law].__name__ if self.law in LAWS else "Material"
+            raise BadInput(f"{name}: law: '{self.law}' is another law (accepted: {other})")
+        return self
+
+    def table(self) -> dict[str, Any]:
+        """The entries of the material, the numbers of its law among them as `law_parameters`."""
+        return {name: value for name, value in super().table().items() if name in MATERIAL}
+
 
 class SaintVenantKirchhoff(Material):
     """St. Venant-Kirchhoff law, S = lambda tr(E) I + 2 mu E, paper (5)."""
@@ -400,21 +437,51 @@ class Incompressible(Material):
 
 
 class MooneyRivlin(Material):
-    """Mooney-Rivlin law; law_parameters = "s".
-
-    s is the share of the second invariant in the shear modulus.
-    """
+    """Mooney-Rivlin law, W = mu/2 ((1 - s) I1 + s I2) and terms of det F; law_parameters = "s" in files."""
 
     law: Annotated[str, shared("law")] = "mooney-rivlin"
+    share: Annotated[
+        float | None, number(0.0, 1.0, "", "s of the second invariant in the shear modulus")
+    ] = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_numbers(cls, entries: Any) -> Any:
+        return _with_parameters(cls, entries, ("share",))
 
 
 class Ogden(Material):
-    """Ogden's law of one to three terms.
+    """Ogden's law of one to three terms, each with an exponent and its share in the shear modulus.
 
-    law_parameters = "alpha_1, s_1, alpha_2, s_2 ..." are the exponents and shares of the terms.
+    In files law_parameters = "alpha_1, s_1, alpha_2, s_2 ...".
     """
 
     law: Annotated[str, shared("law")] = "ogden"
+    alpha: Annotated[list[float] | None, Numbers(-30.0, 30.0, 3, "exponents, not 0")] = None
+    shares: Annotated[list[float] | None, Numbers(0.0, 1.0, 3, "of the terms, sum 1")] = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_numbers(cls, entries: Any) -> Any:
+        return _with_parameters(cls, entries, ("alpha", "shares"))
+
+
+def _with_parameters(law: type[Material], entries: Any, names: tuple[str, ...]) -> Any:
+    """The entries of a law with its numbers, given by `names`, as `law_parameters`, too."""
+    values = [entries.get(name) for name in names] if isinstance(entries, dict) else []
+    if not isinstance(entries, dict) or None in values and "law_parameters" in entries:
+        return entries
+    if missing := [name for name, value in zip(names, values) if value is None]:
+        rule = rule_of(law, missing[0])
+        raise BadInput(f"{law.__name__}: {missing[0]}: is missing (accepted: {rule.accepted})")
+    columns = [np.atleast_1d(plain(value)) for value in values]
+    if len({len(column) for column in columns}) > 1:
+        raise BadInput(
+            f"{law.__name__}: {names[-1]}: '{brief(values[-1])}' beside {len(columns[0])} of {names[0]} "
+            f"(accepted: as many)"
+        )
+    text = ",".join(f"{value}" for row in zip(*columns) for value in row)
+    return {**entries, "law_parameters": text}
 
 
 LAWS: dict[str, type[Material]] = {
@@ -1069,14 +1136,18 @@ def of_table(
     return models[name].read(entry, own, dimension)
 
 
+def rule_of(model: type[Entries], name: str) -> Rule | None:
+    """The rule of an entry of a model, None for an entry that has none and for a table."""
+    field = model.model_fields.get(name)
+    return (
+        next((rule for rule in field.metadata if isinstance(rule, Rule)), None) if field else None
+    )
+
+
 def rule_of_body(name: str) -> Parameter | None:
     """The rule of a number among the entries of bodies, None if no body has such a number."""
-    for model in BODIES.values():
-        field = model.model_fields.get(name)
-        rules = [rule for rule in field.metadata if isinstance(rule, Parameter)] if field else []
-        if rules:
-            return rules[0]
-    return None
+    rules = (rule_of(model, name) for model in BODIES.values())
+    return next((rule for rule in rules if isinstance(rule, Parameter)), None)
 
 
 def full_name(content: dict[str, Any], name: str, dimension: Dimension) -> str:

@@ -21,6 +21,7 @@ __all__ = [
     "InSpace",
     "LONGEST",
     "Name",
+    "Numbers",
     "Partners",
     "Place",
     "Points",
@@ -119,6 +120,30 @@ class Vector(Rule):
             "minItems": self.count or 2,
             "maxItems": self.count or 3,
         }
+
+
+@dataclass(frozen=True)
+class Numbers(Rule):
+    """A list of up to `largest_count` numbers between two bounds."""
+
+    low: float
+    high: float
+    largest_count: int
+    meaning: str = ""
+
+    @property
+    def accepted(self) -> str:  # type: ignore[override]
+        return f"1 to {self.largest_count} numbers, each {self.low:g} to {self.high:g}"
+
+    def checked(self, value: Any, dimension: Dimension | None) -> Any:
+        if not isinstance(value, list) or not 1 <= len(value) <= self.largest_count:
+            raise BadInput(f": '{brief(value)}' is no list of numbers (accepted: {self.accepted})")
+        component = number(self.low, self.high, "")
+        return [float(component.checked(item, dimension)) for item in value]
+
+    def schema(self) -> dict[str, Any]:
+        component = {"type": "number", "minimum": self.low, "maximum": self.high}
+        return {"type": "array", "items": component, "minItems": 1, "maxItems": self.largest_count}
 
 
 @dataclass(frozen=True)

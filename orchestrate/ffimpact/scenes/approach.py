@@ -407,9 +407,8 @@ def turned(scene: Scene) -> Scene:
 
 
 def refuse_nothing(scene: Scene, onsets: list[Onset]) -> None:
-    """Raises BadInput if nothing ever moves, or if a run whose end is automatic would have none: a
-    body is driven, no bodies ever come into contact, or a body set down on an obstacle does not
-    leave it.
+    """Raises BadInput if a run whose end is automatic would have none: a body is driven, no bodies
+    ever come into contact, or a body set down on an obstacle does not leave it.
     """
     driven = [
         f"{kind}.{k}"
@@ -422,20 +421,6 @@ def refuse_nothing(scene: Scene, onsets: list[Onset]) -> None:
             f"end_time: {scene.values['end_time']:g} with until = '{scene.values['until']}', but "
             f"{driven[0]} is moved or loaded from the start, which has no end of its own "
             f"(accepted: an end_time > 0, until = 'impact')"
-        )
-    moving = [
-        *(surface.velocity for surface in [*scene.bodies, *scene.obstacles]),
-        *(np.atleast_1d(body.spin) for body in scene.bodies),
-    ]
-    forces = [scene.values.get(name, 0.0) for name in ("gravity", "body_force_x", "body_force_y")]
-    if (
-        not any(np.any(motion) for motion in moving)
-        and not any([*forces, *driven])
-        and not any(body.supports or body.loads for body in scene.bodies)
-    ):
-        raise BadInput(
-            "velocity: 0 of every body, without spin, gravity, body force, moved support or "
-            "obstacle, or load: nothing would ever move (accepted: one of them)"
         )
     if (
         scene.values["end_time"] == 0

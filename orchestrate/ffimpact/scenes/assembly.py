@@ -362,11 +362,6 @@ def contact_values(
             values["slip_velocity"] = slow.slip_velocity
     if contact["friction_dynamic"] == "auto":
         values["friction_dynamic"] = contact["friction_static"]
-    if values["friction_dynamic"] > values["friction_static"]:
-        raise BadInput(
-            f"{path}.friction_dynamic: {values['friction_dynamic']:g} is larger than friction_static "
-            f"{values['friction_static']:g} (accepted: 0 to friction_static)"
-        )
     return values
 
 

@@ -21,7 +21,7 @@ from ..input.dimension import Dimension
 from ..input.models import listed
 from ..input.rules import ALIAS, number
 
-__all__ = ["Load", "Part", "Support", "csv_renamed", "read_loads", "read_supports"]
+__all__ = ["Load", "Part", "Support", "files_renamed", "read_loads", "read_supports"]
 
 NEVER = 1e300  # release [s] of a support that holds until the end
 AMBIENT = 101325.0  # default pressure [Pa] outside of a cavity with gas: standard atmosphere
@@ -124,13 +124,14 @@ class Load:
         return float(f"{largest:.6g}")
 
 
-def csv_renamed(content: dict, rename: Callable[[str, str], str]) -> dict:
-    """Returns the tables of a scene with rename(label, name) in place of the names of CSV files of
-    supports, loads and driven obstacles. A label is unique in the scene.
+def files_renamed(content: dict, rename: Callable[[str, str], str]) -> dict:
+    """Returns the tables of a scene with rename(label, name) in place of the names of all files: of
+    bodies and obstacles, and of CSV files of supports, loads and driven obstacles. A label is unique
+    in the scene.
     """
     bodies = []
     for b, body in enumerate(listed(content, "body"), 1):
-        changed = dict(body)
+        changed = _with_file(f"body{b}", body, rename)
         for key, names in (("support", ("motion",)), ("load", ("traction", "pressure"))):
             if key in body:
                 changed[key] = [
@@ -139,7 +140,12 @@ def csv_renamed(content: dict, rename: Callable[[str, str], str]) -> dict:
                 ]
         bodies.append(changed)
     obstacles = [
-        _csv_renamed(f"obstacle-{k}", table, ("motion", "rotation"), rename)
+        _csv_renamed(
+            f"obstacle-{k}",
+            _with_file(f"obstacle{k}", table, rename),
+            ("motion", "rotation"),
+            rename,
+        )
         for k, table in enumerate(listed(content, "obstacle"), 1)
     ]
     return (
@@ -147,6 +153,12 @@ def csv_renamed(content: dict, rename: Callable[[str, str], str]) -> dict:
         | ({"body": bodies} if bodies else {})
         | ({"obstacle": obstacles} if obstacles else {})
     )
+
+
+def _with_file(label: str, table: dict, rename: Callable[[str, str], str]) -> dict:
+    if "file" not in table:
+        return dict(table)
+    return table | {"file": rename(table.get("name", label), str(table["file"]))}
 
 
 def _csv_renamed(

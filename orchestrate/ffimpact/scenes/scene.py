@@ -153,13 +153,8 @@ class Scene:
         """The entries that decide the results, apart from the script, and the sha256 of files. Two
         scenes for which they are equal are the same run.
         """
-        files = [
-            str(table["file"])
-            for key in ("body", "obstacle")
-            for table in self.content.get(key, [])
-            if "file" in table
-        ]
-        conditions.csv_renamed(self.content, lambda _, name: files.append(name) or name)
+        files: list[str] = []
+        conditions.files_renamed(self.content, lambda _, name: files.append(name) or name)
         meshes = {
             name: hashlib.sha256((self.folder / name).read_bytes()).hexdigest() for name in files
         }
@@ -175,32 +170,17 @@ class Scene:
         A scene.toml in `where` then finds the files wherever the folder is moved. A .geo file that
         includes other files is not copied: its path becomes relative to `where`.
         """
-        changed = dict(tables)
-        for key, named in (("body", self.bodies), ("obstacle", self.obstacles)):
-            if tables.get(key):
-                changed[key] = [
-                    self._with_copy(where, surface.name, table) if "file" in table else table
-                    for surface, table in zip(named, tables[key])
-                ]
 
         def copied(label: str, name: str) -> str:
-            copy = Path("body-files", f"{label}.csv")
-            (where / copy).parent.mkdir(exist_ok=True)
-            shutil.copyfile(self.folder / name, where / copy)
-            return copy.as_posix()
-
-        return conditions.csv_renamed(changed, copied)
-
-    def _with_copy(self, where: Path, name: str, table: dict) -> dict:
-        """Copies the file of a table into `where` and returns the table with the new path."""
-        path = self.folder / table["file"]
-        copy = Path("body-files", f"{name}{path.suffix}")
-        if takes_in_others(path):
-            copy = Path(os.path.relpath(path, where))
-        else:
+            path = self.folder / name
+            if takes_in_others(path):
+                return Path(os.path.relpath(path, where)).as_posix()
+            copy = Path("body-files", f"{label}{path.suffix}")
             (where / copy).parent.mkdir(exist_ok=True)
             shutil.copyfile(path, where / copy)
-        return table | {"file": copy.as_posix()}
+            return copy.as_posix()
+
+        return conditions.files_renamed(tables, copied)
 
     def number(self, name: str) -> float:
         """The value of a parameter of the run or of [contact] that is a number."""
@@ -340,7 +320,9 @@ def read(content: dict, folder: Path, name: str) -> Scene:
     )
     _apart(scene)
     needs.refuse(scene)
+    _refuse_friction(scene)
     _refuse_start(scene)
+    _refuse_rest(scene)
     for k, body in enumerate(all_bodies, 1):
         _refuse_nu(f"body.{k}.nu" if len(all_bodies) > 1 else "nu", body.nu, body.law)
     mirror.copies(scene)
@@ -355,6 +337,41 @@ def _refuse_nu(entry: str, nu: float, law: str) -> None:
         raise BadInput(f"{entry}: {nu:g} of law = incompressible (accepted: 0.5)")
     if 0.4999 < nu < 0.5:
         raise BadInput(f"{entry}: {nu:g} is out of range (accepted: 0 to 0.4999, or 0.5: J = 1)")
+
+
+def _refuse_friction(scene: Scene) -> None:
+    """Raises BadInput if a dynamic coefficient is larger than the static one, in [contact] or in a
+    pair, which inherits what it does not set.
+    """
+    common = scene.contact
+    for path, own in [("contact", common), *((pair.path, pair.values) for pair in scene.pairs)]:
+        static = own.get("friction_static", common["friction_static"])
+        inherited = "auto" if "friction_static" in own else common["friction_dynamic"]
+        dynamic = own.get("friction_dynamic", inherited)
+        if dynamic != "auto" and dynamic > static:
+            raise BadInput(
+                f"{path}.friction_dynamic: {dynamic:g} is larger than friction_static {static:g} "
+                "(accepted: 0 to friction_static)"
+            )
+
+
+def _refuse_rest(scene: Scene) -> None:
+    """Raises BadInput if nothing ever moves."""
+    surfaces = [*scene.bodies, *scene.obstacles]
+    moving = [
+        *(surface.velocity for surface in surfaces),
+        *(body.spin for body in scene.bodies),
+        *(scene.values.get(name, 0.0) for name in ("gravity", "body_force_x", "body_force_y")),
+    ]
+    if (
+        not any(np.any(motion) for motion in moving)
+        and not any(surface.driven for surface in surfaces)
+        and not any(body.supports or body.loads for body in scene.bodies)
+    ):
+        raise BadInput(
+            "velocity: 0 of every body, without spin, gravity, body force, moved support or "
+            "obstacle, or load: nothing would ever move (accepted: one of them)"
+        )
 
 
 def _refuse_start(scene: Scene) -> None:
