@@ -57,10 +57,11 @@ def write(
     if not path:
         return
     path.parent.mkdir(parents=True, exist_ok=True)
+    source = commands.measured(command)  # before the tables change the source tree
     for name, table in tables.items():
         table.to_csv(place(path, name), index=False, float_format="%.6g")
     draw(path, command[0])
-    parts = [commands.measured(command), " ".join(verdict.split()), f"![{title}]({path.stem}.svg)"]
+    parts = [source, " ".join(verdict.split()), f"![{title}]({path.stem}.svg)"]
     parts += [markdown(tables[name]) for name in inline if not tables[name].empty]
     links = [f"[{place(path, name).name}]({place(path, name).name})" for name in tables]
     parts.append(f"{'Table' if len(links) == 1 else 'Tables'}: {', '.join(links)}.")
