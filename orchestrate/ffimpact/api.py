@@ -7,9 +7,9 @@ from __future__ import annotations
 import hashlib
 import itertools
 import json
+import math
 import re
 from collections.abc import Mapping, Sequence
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,8 +17,9 @@ import numpy as np
 import pandas as pd
 
 from . import scene as files
-from .failure import BadInput, Busy, Failure, brief, unknown
+from .failure import BadInput, brief, unknown
 from .freefem import freefem
+from .input.parameter import plain
 from .model import Scene
 from .places import RESULTS
 from .progress import muted
@@ -26,7 +27,7 @@ from .report import report
 from .result import Result
 from .running import run as running
 from .running.plan import Plan
-from .sweeps.study import side_by_side
+from .sweeps.study import place, study
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -130,23 +131,8 @@ class Study:
     where the run failed.
     """
 
-    def __init__(
-        self,
-        axes: list[str],
-        points: list[dict[str, Any]],
-        results: list[Result | None],
-        failures: list[Failure | None],
-    ):
-        self.axes, self.results = axes, results
-        rows = []
-        for point, result, failure in zip(points, results, failures):
-            numbers = {name: result[name] for name in result.keys()} if result else {}
-            rows.append(
-                point
-                | {"exit": failure.code if failure else 0, "message": str(failure or "")}
-                | numbers
-            )
-        self.table = pd.DataFrame(rows)
+    def __init__(self, axes: list[str], table: pd.DataFrame, results: list[Result | None]):
+        self.axes, self.table, self.results = axes, table, results
 
     def __repr__(self) -> str:
         return repr(self.table)
@@ -214,35 +200,38 @@ def sweep(
     one per core).
 
     `entries` and keywords are set in all runs; `force` and `estimate` have the meaning they have in
-    run(). Each run has its own folder below `out`. A finished run is not run again. A run that
-    fails is a row with its exit code and message. Raises BadInput before the first run if a
-    combination is not accepted.
+    run(). Each run has a folder below `out` that is named by its values, as those of a sweep file.
+    A finished run is not run again: a sweep that was interrupted or has more values goes on. A run
+    that fails, or that is not accepted, is a row with its exit code and message. Raises BadInput if
+    no combination is accepted.
     """
     _check(values, workers)
     overrides = _overrides(entries, more)
     loaded, default_folder = _loaded(scene, overrides)
-    points = [dict(zip(values, combination)) for combination in itertools.product(*values.values())]
-    varied = {name: list(choices) for name, choices in values.items()}
-    folder = (
-        Path(out)
-        if out
-        else default_folder.with_name(f"{default_folder.name}-sweep-{_digits([varied, overrides])}")
-    )
-    # Raises BadInput before the first run.
-    scenes = [loaded.override(overrides | point) for point in points]
-    folder.mkdir(parents=True, exist_ok=True)
-    acts = {
-        k: partial(_point, point_scene, folder / f"{k:03d}", force, estimate)
-        for k, point_scene in enumerate(scenes, 1)
-    }
-    finished = dict(side_by_side(acts, workers or freefem.CORES, folder.name))
-    outcomes = [finished[k] for k in acts]
-    return Study(
-        list(values),
-        points,
-        [outcome if isinstance(outcome, Result) else None for outcome in outcomes],
-        [outcome if isinstance(outcome, Failure) else None for outcome in outcomes],
-    )
+    points = [
+        dict(zip(values, map(plain, combination)))
+        for combination in itertools.product(*values.values())
+    ]
+    own = f"{default_folder.name}-sweep-{_digits([sorted(values), overrides])}"
+    folder = Path(out) if out else default_folder.with_name(own)
+    _refuse_all(loaded, [overrides | point for point in points])
+    places = [place(folder, point) for point in points]
+    cores = workers or freefem.CORES
+    table = study(points, folder, overrides, math.inf, loaded, cores, estimate, force)
+    results = [Result(where) if code == 0 else None for where, code in zip(places, table.exit)]
+    return Study(list(values), table, results)
+
+
+def _refuse_all(loaded: Any, points: list[dict[str, Any]]) -> None:
+    """Raises the BadInput of the first point if the scene accepts none of them."""
+    refusals = []
+    for point in points:
+        try:
+            loaded.override(point)
+            return
+        except BadInput as error:
+            refusals.append(error)
+    raise refusals[0]
 
 
 def _check(values: Any, workers: Any) -> None:
@@ -267,17 +256,3 @@ def _listed(name: str, value: Any) -> list[Any]:
     if isinstance(value, str) or not hasattr(value, "__len__"):
         raise BadInput(f"sweep: {name}: '{value}' is no list of values (accepted: [1, 2, 3])")
     return list(value)
-
-
-def _point(scene: Any, folder: Path, force: bool, estimate: bool) -> Result | Failure | None:
-    """Returns the result of one run, its failure, or None if another program is writing the
-    folder.
-    """
-    try:
-        return Result(
-            running.run(scene, out=folder, force=force, estimate=estimate, progress=False)
-        )
-    except Busy:
-        return None
-    except Failure as failure:
-        return failure

@@ -3,6 +3,7 @@ a row of a table.
 """
 
 import hashlib
+import math
 import os
 import threading
 import time
@@ -22,8 +23,9 @@ from ..failure import BadInput, Busy, Failure, Unreadable
 from ..freefem import freefem
 from ..input.parameters import Table, Value
 from ..mesh import mesh
+from ..output.errors import errors
 from ..output.folder import failed_beside
-from ..output.results import read_json
+from ..output.results import Record, read_json
 from ..progress import Line, forward
 from ..running import run
 from ..scenes.scene import Scene
@@ -55,23 +57,25 @@ def study(
     points: list[Point],
     folder: Path,
     base: Point,
-    limit: float,
-    name: str = "disc-normal",
+    limit: float = math.inf,
+    of: Scene | str = "disc-normal",
     cores: int = CORES,
+    estimate: bool = False,
+    force: bool = False,
 ) -> pd.DataFrame:
     """Runs all `points` and returns a row for each, in their order: its parameters, exit, message,
-    warnings (joined by "; "), reused, and the numbers of its summary.
+    warnings (joined by "; "), reused, and the numbers of its summary; with `estimate` also their
+    errors, <name>_error.
 
-    Every run is the scene `name` with `base` and the parameters of the point, in folder/runs/, and
-    may take `limit` seconds. `cores` runs are computed at a time; none estimates its error.
-    Finished runs in the folder, and failures of the same scene and code, are not repeated. A run
-    that fails is a row like any other, with its exit code and message. NotInstalled is raised if
-    FreeFem++ is missing. Several studies may share a folder: each leaves out the runs that another
-    one is computing.
+    Every run is the scene `of` with `base` and the parameters of the point, in folder/runs/, and
+    may take `limit` seconds. `cores` runs are computed at a time. Finished runs in the folder, and
+    failures of the same scene and code, are not repeated unless `force` is set. A run that fails is
+    a row like any other, with its exit code and message. NotInstalled is raised if FreeFem++ is missing. Several studies
+    may share a folder: each leaves out the runs that another one is computing.
     """
     places = [place(folder, point) for point in points]
-    loaded = scene.load(name)
-    rows = outcomes(points, folder, base, loaded)
+    loaded = scene.load(of) if isinstance(of, str) else of
+    rows = outcomes(points, folder, base, loaded, estimate, force)
     tasks = {
         where: loaded.override(base | point)
         for where, point in zip(places, points)
@@ -82,22 +86,31 @@ def study(
         # The folder is made here, because an interrupted run removes the folders that it made.
         (folder / "runs").mkdir(parents=True, exist_ok=True)
     acts = {
-        where: partial(outcome_of, where, requested, limit) for where, requested in tasks.items()
+        where: partial(outcome_of, where, requested, limit, estimate, force)
+        for where, requested in tasks.items()
     }
     for where, outcome in side_by_side(acts, cores, "/".join(folder.parts[-2:]), len(rows)):
         rows[where] = _row(1, str(outcome), False, {}) if isinstance(outcome, Failure) else outcome
     return pd.DataFrame([point | rows[where] for where, point in zip(places, points)])
 
 
-def outcomes(points: list[Point], folder: Path, base: Point, loaded: Scene) -> dict[Path, Table]:
+def outcomes(
+    points: list[Point],
+    folder: Path,
+    base: Point,
+    loaded: Scene,
+    estimate: bool = False,
+    force: bool = False,
+) -> dict[Path, Table]:
     """Returns, by folder, the outcomes of points that need no run: those that are in the folder
-    already, and those that the scene `loaded` refuses.
+    already (with `force` none), and those that the scene `loaded` refuses.
     """
     rows: dict[Path, Table] = {}
     for point in points:
         where = place(folder, point)
         try:
-            outcome = there(where, loaded.override(base | point))
+            requested = loaded.override(base | point)
+            outcome = None if force else there(where, requested, estimate)
         except BadInput as error:
             outcome = _row(error.code, str(error), False, {})
         rows |= {where: outcome} if outcome else {}
@@ -175,9 +188,10 @@ def _outcome_of(future: Future[Any]) -> Any:
     return Failure(f"{type(error).__name__}: {error}")
 
 
-def there(folder: Path, requested: Scene) -> Table | None:
-    """Returns the outcome that is in `folder` already, None if there is none: a finished run, or a
-    failure of the same scene and code, which would be repeated.
+def there(folder: Path, requested: Scene, estimate: bool = False) -> Table | None:
+    """Returns the outcome that is in `folder` already, None if there is none: a finished run, where
+    asked for with its error estimate, or a failure of the same scene and code, which would be
+    repeated.
     """
     for candidate in (folder, failed_beside(folder)):
         failed = read_json(candidate / "failure.json")
@@ -189,23 +203,25 @@ def there(folder: Path, requested: Scene) -> Table | None:
         ):
             return _row(failed["exit_code"], str(failed.get("message")), True, failed)
     try:
-        result = run.reusable(requested, folder)
+        result = run.reusable(requested, folder, estimate)
+        return _finished(result, estimate) if result else None
     except Failure:  # the run reports it
         return None
-    return _row(0, result.summary["message"], True, result.summary) if result else None
 
 
-def outcome_of(folder: Path, requested: Scene, limit: float) -> Table | None:
-    """Runs a scene, unless its outcome is there already, and returns the row of the table: exit
+def outcome_of(
+    folder: Path, requested: Scene, limit: float, estimate: bool = False, force: bool = False
+) -> Table | None:
+    """Runs a scene, unless its outcome is there already and `force` is not set, and returns the row of the table: exit
     code, message, warnings, reused, and the numbers of the summary, as far as the run came in
     `limit` seconds. None if another process is computing this run.
     """
-    if row := there(folder, requested):
+    if row := None if force else there(folder, requested, estimate):
         return row
     try:
         with freefem.limited(limit):
-            result = run.run(requested, out=folder, estimate=False, progress=False)
-        return _row(0, result.summary["message"], result.reused, result.summary)
+            result = run.run(requested, out=folder, force=force, estimate=estimate, progress=False)
+        return _finished(result, estimate)
     except Busy:
         return None
     except Failure as failure:
@@ -213,6 +229,13 @@ def outcome_of(folder: Path, requested: Scene, limit: float) -> Table | None:
         return _row(failure.code, str(failure), False, record)
     except OSError as error:  # a full disk
         return _row(Unreadable.code, f"{error.filename or folder}: {error.strerror}", False, {})
+
+
+def _finished(result: Record, estimate: bool) -> Table:
+    """The row of a finished run, with the errors of its numbers where they are estimated."""
+    row = _row(0, result.summary["message"], result.reused, result.summary)
+    named = errors(result) if estimate else {}
+    return row | {f"{name}_error": error for name, error in named.items()}
 
 
 def _row(code: int, message: str, reused: bool, summary: Table) -> Table:

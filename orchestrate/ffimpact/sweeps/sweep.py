@@ -4,6 +4,7 @@ figure to draw.
     scene = "disc-normal"                       # a built-in scene, or a scene file beside this one
     collect = ["contact_time", "rebound_vy"]    # numbers of summary.json; default: all of them
     limit = 600                                 # largest run time of each run [s]
+    estimate = true                             # error bars by error estimates; default: none
     [set]                                       # for every run; in a scene of bodies any entry:
     law = "svk"                                 # body.2.young, contact.penalty ...
     [product]                                   # all combinations of lists or ranges
@@ -51,7 +52,18 @@ SWEEPS = Path(__file__).resolve().parent  # the folder of the built-in sweeps
 LIMIT = 600.0  # default of the largest run time of a run [s]
 MOST_RUNS = 20_000  # runs of a sweep; more are taken for a mistake in the file
 RANGE = ("from", "to", "points", "spacing")
-KEYS = ("title", "scene", "collect", "limit", "set", "product", "zip", "refine", "figure")
+KEYS = (
+    "title",
+    "scene",
+    "collect",
+    "limit",
+    "estimate",
+    "set",
+    "product",
+    "zip",
+    "refine",
+    "figure",
+)
 SHOWN = 8  # number of collected columns in the printed table; sweep.csv has all
 # Exit codes that are results: finished, no further step, breakdown of the material.
 RECORDED = (0, 11, 12)
@@ -64,8 +76,8 @@ class Sweep:
     """A sweep as read from its file.
 
     `points` are the parameters in which the rows differ, `base` those of every run. `refine` holds
-    the entries of the refined runs, and is empty without error bars. `limit` is the largest run
-    time of a run [s]. `sample` is the scene of one point, `text` the text of the file.
+    the entries of the refined runs. With `estimate` each run estimates its errors. `limit` is the
+    largest run time of a run [s]. `sample` is the scene of one point, `text` the text of the file.
     """
 
     name: str
@@ -76,6 +88,7 @@ class Sweep:
     refine: study.Point
     collect: list[str]
     limit: float
+    estimate: bool
     figure: Table
     sample: Scene
     text: str
@@ -121,7 +134,9 @@ def main(argv: list[str]) -> int:
     names = {study.place(out, point).name: point for point in sweep.runs}
     if options.list or options.open:
         there = (
-            study.outcomes([*names.values()], out, sweep.base, scene.load(sweep.scene))
+            study.outcomes(
+                [*names.values()], out, sweep.base, scene.load(sweep.scene), sweep.estimate
+            )
             if options.open
             else {}
         )
@@ -141,6 +156,7 @@ def main(argv: list[str]) -> int:
                 sweep.base,
                 sweep.limit,
                 sweep.scene,
+                estimate=sweep.estimate,
             ).iloc[0]
             print(f"{options.run}: {row.message or 'finished'}")
             return 0 if row.exit in LASTING else int(row.exit)
@@ -268,9 +284,10 @@ def _sweep(path: Path, content: Table, text: str) -> Sweep:
             raise BadInput(
                 f"collect: '{brief(number)}' is given twice (accepted: {', '.join(accepted)})"
             )
-    limit = content.get("limit", LIMIT)
-    if type(limit) not in (int, float) or not 1 <= limit <= 1e6:
-        raise BadInput(f"limit: {brief(limit)} (accepted: 1 to 1e6 seconds)")
+    limit = _limit(content)
+    estimate = _is(content.get("estimate", False), bool, "estimate", "true, false")
+    if estimate and refine:
+        raise BadInput("estimate: true beside [refine] (accepted: one of them)")
     figure = (
         sweep_figures.check(tables["figure"], points, collected, loaded.columns)
         | {"per": dimension.per_metre(loaded.script)}
@@ -286,11 +303,19 @@ def _sweep(path: Path, content: Table, text: str) -> Sweep:
         points,
         refine,
         collected,
-        float(limit),
+        limit,
+        estimate,
         figure,
         sample,
         text,
     )
+
+
+def _limit(content: Table) -> float:
+    limit = content.get("limit", LIMIT)
+    if type(limit) not in (int, float) or not 1 <= limit <= 1e6:
+        raise BadInput(f"limit: {brief(limit)} (accepted: 1 to 1e6 seconds)")
+    return float(limit)
 
 
 def _sample(loaded: Scene, base: study.Point, points: list[study.Point]) -> Scene:
@@ -439,16 +464,19 @@ def table(sweep: Sweep, out: Path) -> pd.DataFrame:
 
     Columns: the parameters that vary, exit, message, warnings, the collected numbers, and seconds.
     With `refine` the numbers are those of the refined run, and <name>_error [same unit] is |refined
-    - plain|. If a run of a point failed, the row has the exit code and message of that run, and no
+    - plain|; with `estimate` it is the estimated error. If a run of a point failed, the row has the exit code and message of that run, and no
     numbers.
     """
-    runs = study.study(sweep.runs, out, sweep.base, sweep.limit, sweep.scene)
-    for name in sweep.collect:  # a number that no run has becomes an empty column
+    runs = study.study(
+        sweep.runs, out, sweep.base, sweep.limit, sweep.scene, estimate=sweep.estimate
+    )
+    estimated = [f"{name}_error" for name in sweep.collect if sweep.estimate]
+    for name in sweep.collect + estimated:  # what no run has becomes an empty column
         if name not in runs:
             runs[name] = np.nan
     n = len(sweep.points)
     plain, fine = runs[:n], runs[-n:].set_axis(runs.index[:n])
-    rows = fine[sweep.axes + ["exit", "message", "warnings"] + sweep.collect].copy()
+    rows = fine[sweep.axes + ["exit", "message", "warnings"] + sweep.collect + estimated].copy()
     if sweep.refine:
         worse = (plain.exit != 0) & (fine.exit == 0)
         rows.loc[worse, ["exit", "message", "warnings"]] = plain.loc[
@@ -482,7 +510,7 @@ def report(sweep: Sweep, rows: pd.DataFrame, out: Path) -> str:
         text = rows[sweep.axes].copy()
         for name in sweep.collect[:SHOWN]:
             text[name] = ["" if np.isnan(value) else f"{value:.5g}" for value in rows[name]]
-            if sweep.refine:
+            if f"{name}_error" in rows:
                 errors = sweep_figures.bars_of_all(sweep, rows, name)
                 text[name] += ["" if np.isnan(error) else f" ± {error:.2g}" for error in errors]
         lines += [

@@ -436,7 +436,7 @@ class Trend:
 
 
 def bars(group: pd.DataFrame, y: str) -> np.ndarray:
-    """Returns the error bars of the points of a curve (n,), nan without [refine].
+    """Returns the error bars of the points of a curve (n,), nan without them.
 
     Each is the larger of the point's own error and the root mean square of all, because one
     difference of two runs can be small by chance.
@@ -539,7 +539,7 @@ def trend(group: pd.DataFrame, x: str, y: str, words: str, per: str = "/m") -> s
     if curve.course in (FALLS, RISES):
         text += f"; of {curve.steps} steps {curve.against} {'rise' if curve.falls else 'fall'}"
     if np.isnan(curve.typical):
-        return text + " (no error bars: no [refine], or no finished refined run)"
+        return text + " (no error bars: no estimate or [refine], or no finished run)"
     if curve.course in (FALLS, RISES):
         text += f", {curve.beyond} of them by more than their error bar, {curve.established} by more than twice that"
         if curve.largest > 0:
@@ -672,7 +672,7 @@ def ranges(values: np.ndarray, holds: np.ndarray) -> list[tuple[float, float]]:
 
 
 def _typical(group: pd.DataFrame, name: str) -> float:
-    """Returns the typical error bar of a column, 0 without [refine]."""
+    """Returns the typical error bar of a column, 0 without error bars."""
     errors = bars(group[group.exit == 0], name)
     return float(np.nanmin(errors)) if np.isfinite(errors).any() else 0.0
 
