@@ -58,7 +58,7 @@ def study(
     folder: Path,
     base: Point,
     limit: float = math.inf,
-    of: Scene | str = "disc-normal",
+    run_scene: Scene | str = "disc-normal",
     cores: int = CORES,
     estimate: bool = False,
     force: bool = False,
@@ -67,14 +67,14 @@ def study(
     warnings (joined by "; "), reused, and the numbers of its summary; with `estimate` also their
     errors, <name>_error.
 
-    Every run is the scene `of` with `base` and the parameters of the point, in folder/runs/, and
+    Every run is the scene `run_scene` with `base` and the parameters of the point, in folder/runs/, and
     may take `limit` seconds. `cores` runs are computed at a time. Finished runs in the folder, and
     failures of the same scene and code, are not repeated unless `force` is set. A run that fails is
     a row like any other, with its exit code and message. NotInstalled is raised if FreeFem++ is missing. Several studies
     may share a folder: each leaves out the runs that another one is computing.
     """
     places = [place(folder, point) for point in points]
-    loaded = scene.load(of) if isinstance(of, str) else of
+    loaded = scene.load(run_scene) if isinstance(run_scene, str) else run_scene
     rows = outcomes(points, folder, base, loaded, estimate, force)
     tasks = {
         where: loaded.override(base | point)
@@ -234,8 +234,8 @@ def outcome_of(
 def _finished(result: Record, estimate: bool) -> Table:
     """The row of a finished run, with the errors of its numbers where they are estimated."""
     row = _row(0, result.summary["message"], result.reused, result.summary)
-    named = errors(result) if estimate else {}
-    return row | {f"{name}_error": error for name, error in named.items()}
+    by_name = errors(result) if estimate else {}
+    return row | {f"{name}_error": error for name, error in by_name.items()}
 
 
 def _row(code: int, message: str, reused: bool, summary: Table) -> Table:

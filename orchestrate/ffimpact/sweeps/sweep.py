@@ -464,8 +464,8 @@ def table(sweep: Sweep, out: Path) -> pd.DataFrame:
 
     Columns: the parameters that vary, exit, message, warnings, the collected numbers, and seconds.
     With `refine` the numbers are those of the refined run, and <name>_error [same unit] is |refined
-    - plain|; with `estimate` it is the estimated error. If a run of a point failed, the row has the exit code and message of that run, and no
-    numbers.
+    - plain|; with `estimate` it is the estimated error. If a run of a point failed, the row has the
+    exit code and message of that run, and no numbers.
     """
     runs = study.study(
         sweep.runs, out, sweep.base, sweep.limit, sweep.scene, estimate=sweep.estimate
