@@ -5,7 +5,7 @@ the run contract.
 import difflib
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Self, TypeVar
+from typing import Any, Self, TypeVar, overload
 
 __all__ = [
     "BadInput",
@@ -25,7 +25,10 @@ __all__ = [
     "unknown",
 ]
 
-T = TypeVar("T")
+A = TypeVar("A")
+B = TypeVar("B")
+C = TypeVar("C")
+D = TypeVar("D")
 
 # Numbers of the signals that ask the program to end. Python drops an exception of a signal handler
 # in some places, such as callbacks of imports; whoever waits for a process looks here, too.
@@ -145,11 +148,17 @@ def of_code(code: int, message: str) -> Failure:
     return kinds[code](message) if code in kinds else Failure(message, code=code)
 
 
-def gathered(acts: Iterable[Callable[[], T]]) -> list[T]:
+@overload
+def gathered(
+    acts: tuple[Callable[[], A], Callable[[], B], Callable[[], C], Callable[[], D]],
+) -> tuple[A, B, C, D]: ...
+@overload
+def gathered(acts: list[Callable[[], A]]) -> list[A]: ...
+def gathered(acts: Any) -> Any:
     """Calls all `acts` and returns their results. Raises one BadInput with the messages of all that
     failed.
     """
-    results: list[T] = []
+    results = []
     messages: list[str] = []
     for act in acts:
         try:

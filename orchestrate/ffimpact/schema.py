@@ -10,7 +10,7 @@ from typing import Any
 
 from pydantic.json_schema import models_json_schema
 
-from .input.models import BODIES, OBSTACLES, Contact, Top
+from .input.models import BODIES, OBSTACLES, Contact, Entries, Top
 
 __all__ = ["FILE", "schema", "text"]
 
@@ -23,7 +23,7 @@ def schema() -> dict[str, Any]:
     """Returns the schema of a scene file, which has either tables of bodies and obstacles or the
     parameters of a case of the paper.
     """
-    models = [Top, Contact, *BODIES.values(), *OBSTACLES.values()]
+    models: list[type[Entries]] = [Top, Contact, *BODIES.values(), *OBSTACLES.values()]
     _, made = models_json_schema([(entry_model, "validation") for entry_model in models])
     definitions: dict[str, Any] = {name: _plain(part) for name, part in made["$defs"].items()}
     for word, table in (("shape", BODIES), ("kind", OBSTACLES)):

@@ -72,7 +72,7 @@ def crossing(
 
 
 def _values(code: Program, t: np.ndarray) -> np.ndarray:
-    return implicit.run(code, t[:, None])[0] + 0 * t
+    return implicit.run(code, t[:, None])[0]
 
 
 def _jet(bounds: Interval, slope: float = 0.0) -> Jet:
@@ -96,14 +96,10 @@ def _times(a: Jet, b: Jet) -> Jet:
     corners = np.array([x[:, None] * y[None] for x in a for y in b])
     corners[np.isnan(corners)] = 0.0  # 0 times infinity
     low, high = (
-        np.array([_diagonal(bound, k) for k in range(ORDER + 1)])
+        np.array([sum(bound[i, k - i] for i in range(k + 1)) for k in range(ORDER + 1)])
         for bound in (corners.min(axis=0), corners.max(axis=0))
     )
     return low, high
-
-
-def _diagonal(products: np.ndarray, k: int) -> np.ndarray:
-    return np.sum([products[i, k - i] for i in range(k + 1)], axis=0)
 
 
 def _of(derivatives: Iterator[Interval], a: Jet) -> Jet:

@@ -8,8 +8,9 @@ this program; edp/kernels/implicit.cpp documents the numbers and the gap that fo
 
 import ast
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -114,7 +115,7 @@ def _tokens(node: ast.AST, names: str) -> list[float]:
 
 # Each operation on a (and b) returns its value and its derivatives with respect to a and b. `side`
 # is the branch of min, max and abs: 1 where min and max select a, else 0; of abs the sign of a.
-OPERATIONS = {
+OPERATIONS: dict[float, Callable[[Any, Any, Any], tuple[Any, Any, Any]]] = {
     4: lambda a, b, side: (a + b, 1, 1),
     5: lambda a, b, side: (a - b, 1, -1),
     6: lambda a, b, side: (a * b, b, a),
@@ -129,7 +130,7 @@ OPERATIONS = {
     15: lambda a, b, side: (np.exp(a), np.exp(a), 0),
     16: lambda a, b, side: (a * side, side, 0),
 }
-SIDES = {
+SIDES: dict[float, Callable[[Any, Any], Any]] = {
     9: lambda a, b: (a < b) * 1.0,
     10: lambda a, b: (a >= b) * 1.0,
     16: lambda a, b: np.where(a < 0, -1.0, 1.0),
@@ -137,19 +138,15 @@ SIDES = {
 
 
 def run(
-    code: tuple[float, ...], points: np.ndarray, sides: dict | None = None
+    code: Sequence[float], points: np.ndarray, sides: dict[int, np.ndarray] | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
     """Returns D (n,) and its gradient (n, axes) at points (n, axes).
 
     `sides` holds the branches of min, max and abs, by the position of the operation in the program.
     Branches in `sides` are kept; a missing branch is chosen at these points and added to `sides`.
     """
-    stack, entries, sides, eye = (
-        [],
-        enumerate(code),
-        {} if sides is None else sides,
-        np.eye(points.shape[1]),
-    )
+    sides = {} if sides is None else sides
+    stack, entries, eye = [], enumerate(code), np.eye(points.shape[1])
     for e, op in entries:
         if op < 4:
             value, slope = (
@@ -183,7 +180,7 @@ def no_zero(code: Sequence[float], points: np.ndarray, half: np.ndarray) -> np.n
             stack.append((points[:, int(op) - 1] - half, points[:, int(op) - 1] + half))
         else:
             b = stack.pop() if op < 11 else None
-            stack.append(RANGES[int(op)](stack.pop(), b))
+            stack.append(RANGES[op](stack.pop(), b))
     low, high = stack[0]
     return (low > 0) | (high < 0)
 
@@ -221,7 +218,7 @@ def sines(a: Interval, shift: float = 0.0) -> Interval:
 
 
 # Each operation on intervals a (and b) returns bounds of its values, infinite if not known.
-RANGES = {
+RANGES: dict[float, Callable[[Interval, Any], Interval]] = {
     4: lambda a, b: (a[0] + b[0], a[1] + b[1]),
     5: lambda a, b: (a[0] - b[1], a[1] - b[0]),
     6: lambda a, b: among(*(x * y for x in a for y in b)),
@@ -232,7 +229,7 @@ RANGES = {
     11: lambda a, b: (-a[1], -a[0]),
     12: lambda a, b: sines(a),
     13: lambda a, b: sines(a, np.pi / 2),
-    14: lambda a, b: tuple(np.sqrt(np.maximum(end, 0.0)) for end in a),
+    14: lambda a, b: (np.sqrt(np.maximum(a[0], 0.0)), np.sqrt(np.maximum(a[1], 0.0))),
     15: lambda a, b: (np.exp(a[0]), np.exp(a[1])),
     16: lambda a, b: (np.maximum(0.0, np.maximum(a[0], -a[1])), np.maximum(-a[0], a[1])),
 }
@@ -259,7 +256,8 @@ def _least_bound(code: Sequence[float], points: np.ndarray, limit: float) -> tup
 
     def failing_of(tested: np.ndarray, half: float) -> np.ndarray:
         """The numbers of the tested points whose boxes of half the width `half` may have a zero."""
-        return tested[~no_zero(code, points[tested], np.full(len(tested), half))]
+        fails = ~no_zero(code, points[tested], np.full(len(tested), half))
+        return np.compress(fails, tested)
 
     half, every = limit, np.arange(len(points))
     failing = failing_of(every, half)
@@ -297,7 +295,10 @@ def gap(points: np.ndarray, numbers: tuple[float, ...], bounds: bool = True) -> 
     `numbers` are those that `settled` returns: limit and the program.
     """
     limit, *code = numbers
-    return np.min([_gap(points, part, limit, bounds) for part in _parts(code)], axis=0)
+    nearest: np.ndarray = np.min(
+        [_gap(points, part, limit, bounds) for part in _parts(code)], axis=0
+    )
+    return nearest
 
 
 def _gap(points: np.ndarray, code: Sequence[float], limit: float, bounds: bool) -> np.ndarray:
@@ -352,7 +353,9 @@ def _certain(
     return gaps, value, size
 
 
-def closest(points: np.ndarray, code: list[float], limit: float) -> tuple[np.ndarray, np.ndarray]:
+def closest(
+    points: np.ndarray, code: Sequence[float], limit: float
+) -> tuple[np.ndarray, np.ndarray]:
     """Closest-point projection: signed distances (n,) of points (n, axes), and the closest points.
 
     Each iteration projects the points onto the tangent plane of D at the present closest points.
@@ -361,7 +364,8 @@ def closest(points: np.ndarray, code: list[float], limit: float) -> tuple[np.nda
     unless it is the closest point.
     """
     at = points + BESIDE * limit * _along_surface(run(code, points)[1])
-    sides, distance = {}, np.zeros(len(points))
+    sides: dict[int, np.ndarray] = {}
+    distance = np.zeros(len(points))
     for _ in range(TURNS):
         value, slope = run(code, at, sides)
         size = np.linalg.norm(slope, axis=1)
@@ -378,10 +382,16 @@ def closest(points: np.ndarray, code: list[float], limit: float) -> tuple[np.nda
 
 def _along_surface(slope: np.ndarray) -> np.ndarray:
     """Tangential directions (n, axes) at gradients (n, axes), in general not along an axis."""
-    normal = slope / np.linalg.norm(slope, axis=1)[:, None]
+    normal = _unit(slope)
     if slope.shape[1] == 2:
-        return normal[:, ::-1] * [1.0, -1.0]
+        return np.column_stack([normal[:, 1], -normal[:, 0]])
     return np.cross(normal, [0.36, 0.48, 0.8])
+
+
+def _unit(slope: np.ndarray) -> np.ndarray:
+    """The unit normals (n, axes) at gradients (n, axes)."""
+    normals: np.ndarray = slope / np.linalg.norm(slope, axis=1, keepdims=True)
+    return normals
 
 
 def nearest(
@@ -429,7 +439,7 @@ def nearest(
     return min(gap, distance), normal
 
 
-def _projected(point: np.ndarray, code: list[float], limit: float) -> tuple[float, np.ndarray]:
+def _projected(point: np.ndarray, code: Sequence[float], limit: float) -> tuple[float, np.ndarray]:
     """Gap [m] of a point (axes,), and the unit normal at its closest point of the surface."""
     distance, on = closest(point[None], code, limit)
     slope = run(code, on)[1][0]
@@ -493,11 +503,11 @@ def settled(
 
 def _point_of_surface(code: Sequence[float], start: np.ndarray) -> np.ndarray | None:
     """A point (axes,) of the surface, by Newton's method along the gradient; None if it fails."""
-    point = start
+    point = start.copy()
     for _ in range(10 * TURNS):
         (value,), (slope,) = run(code, point[None])
         step = value / (slope @ slope) * slope
-        point = point - step
+        point -= step
         if not np.isfinite(point).all():
             return None
         if np.linalg.norm(step) <= 1e-9 * np.linalg.norm(point - start):
@@ -505,7 +515,7 @@ def _point_of_surface(code: Sequence[float], start: np.ndarray) -> np.ndarray | 
     return None
 
 
-def bending(code: tuple[float, ...], points: np.ndarray, step: float) -> np.ndarray:
+def bending(code: Sequence[float], points: np.ndarray, step: float) -> np.ndarray:
     """Curvatures (n, axes) [1/m] of the surface at points (n, axes) on it, positive where convex.
 
     Component i is the curvature along axis i projected onto the surface: the change of the normal
@@ -513,8 +523,7 @@ def bending(code: tuple[float, ...], points: np.ndarray, step: float) -> np.ndar
     """
 
     def normals(at: np.ndarray) -> np.ndarray:
-        slope = run(code, at)[1]
-        return slope / np.linalg.norm(slope, axis=1)[:, None]
+        return _unit(run(code, at)[1])
 
     n, curvatures = normals(points), []
     for axis in np.eye(points.shape[1]):
@@ -527,7 +536,8 @@ def bending(code: tuple[float, ...], points: np.ndarray, step: float) -> np.ndar
             )
             / (2 * step)
         )
-    return np.nan_to_num(np.transpose(curvatures))
+    known_curvatures: np.ndarray = np.nan_to_num(np.stack(curvatures, axis=1))
+    return known_curvatures
 
 
 def radius_at(point: np.ndarray, numbers: tuple[float, ...]) -> float:
@@ -541,7 +551,7 @@ def radius_at(point: np.ndarray, numbers: tuple[float, ...]) -> float:
     return float(1 / bend) if bend * limit > 1e-6 else np.inf
 
 
-def is_mirrored(code: tuple[float, ...], axis: int, axes: int) -> bool:
+def is_mirrored(code: Sequence[float], axis: int, axes: int) -> bool:
     """Whether D is symmetric about the plane through the origin that is normal to an axis.
 
     The values are compared at random points, to a relative 1e-10.
@@ -549,16 +559,9 @@ def is_mirrored(code: tuple[float, ...], axis: int, axes: int) -> bool:
     points = np.random.default_rng(2).normal(size=(SAMPLES, axes))
     points *= np.logspace(-4, 2, SAMPLES)[:, None]
     with np.errstate(all="ignore"):
-        return bool(
-            np.allclose(
-                *(
-                    run(code, sign * points + (1 - sign) * points * (np.arange(axes) != axis))[0]
-                    for sign in (1, -1)
-                ),
-                rtol=1e-10,
-                equal_nan=True,
-            )
-        )
+        image = points * np.where(np.arange(axes) == axis, -1, 1)
+        values, images = run(code, points)[0], run(code, image)[0]
+        return np.allclose(values, images, rtol=1e-10, equal_nan=True)
 
 
 def _text(point: np.ndarray) -> str:

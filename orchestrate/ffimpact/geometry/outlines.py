@@ -4,9 +4,11 @@ Points are arrays (n, 2) in m.
 """
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any, Self
 
 import numpy as np
 
@@ -37,6 +39,9 @@ COARSEST = 400
 # Gaps whose difference is at most FLUSH times the bounding radius belong to one face that lies flat
 # on the other surface.
 FLUSH = 1e-6
+# The orientation of a body, or its change: an angle [rad] in the plane, in three dimensions a
+# rotation vector (3,) [rad] or a matrix (3, 3).
+Turn = Any
 
 
 @dataclass(frozen=True)
@@ -56,44 +61,43 @@ class Loop:
     @property
     def centre(self) -> np.ndarray:
         """The mean of the corners, which is the centre of an ellipse."""
-        return self.corners.mean(axis=0)
+        mean: np.ndarray = self.corners.mean(axis=0)
+        return mean
 
     @property
     def radius(self) -> float | None:
         """The radius [m] of a circle; None for all other loops."""
-        is_circle = self.semi_axes is not None and self.semi_axes[0] == self.semi_axes[1]
-        return float(self.semi_axes[0]) if is_circle else None
+        if self.semi_axes is None or self.semi_axes[0] != self.semi_axes[1]:
+            return None
+        return float(self.semi_axes[0])
 
     @property
     def circles(self) -> list[tuple[np.ndarray, float]]:
         """Centres (2,) and radii [m] of the circles on which segments lie, each circle once."""
-        if self.arc_centres is None:
-            return [(self.centre, self.radius)] if self.radius else []
-        which, first, *_ = self._arcs
+        if self.radius:
+            return [(self.centre, self.radius)]
+        _, centres, first, *_ = self._arcs
         radii = np.linalg.norm(first, axis=1)
         _, once = np.unique(
-            np.column_stack([self.arc_centres[which], np.round(radii / radii.max(), 6)]),
+            np.column_stack([centres, np.round(radii / radii.max(initial=0.0), 6)]),
             axis=0,
             return_index=True,
         )
-        return [(self.arc_centres[which[k]], float(radii[k])) for k in once]
+        return [(centres[k], float(radii[k])) for k in once]
 
     @cached_property
-    def _arcs(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """The arcs: numbers of the segments, radius vectors of both ends (arcs, 2), angles [rad].
+    def _arcs(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """The arcs: numbers of the segments, centres, radius vectors of both ends (arcs, 2), angles.
 
-        The angles (arcs,) from the first to the second vector are positive counter-clockwise.
+        The angles (arcs,) [rad] from the first to the second vector are positive counter-clockwise.
         """
-        which = (
-            np.flatnonzero(~np.isnan(self.arc_centres[:, 0]))
-            if self.arc_centres is not None
-            else np.array([], dtype=int)
-        )
-        a, b = (
-            ends[which] - self.arc_centres[which] if len(which) else np.empty((0, 2))
-            for ends in (self.corners, np.roll(self.corners, -1, axis=0))
-        )
-        return which, a, b, np.arctan2(cross(a, b), (a * b).sum(axis=1))
+        all_centres = np.full(self.corners.shape, np.nan)
+        if self.arc_centres is not None:
+            all_centres = self.arc_centres
+        which = np.flatnonzero(~np.isnan(all_centres[:, 0]))
+        centres, following = all_centres[which], np.roll(self.corners, -1, axis=0)
+        a, b = self.corners[which] - centres, following[which] - centres
+        return which, centres, a, b, np.arctan2(cross(a, b), (a * b).sum(axis=1))
 
     def at(self, piece: int, s: np.ndarray) -> np.ndarray:
         """Points (n, 2) of segment `piece` at the parameters s (n,) in [0, 1].
@@ -101,16 +105,19 @@ class Loop:
         At s = 0 the point is the first corner, exactly in a loop without arcs, else to round-off.
         """
         a, b = self.corners[piece], self.corners[(piece + 1) % len(self.corners)]
-        which, first, last, angles = self._arcs
+        which, centres, first, last, angles = self._arcs
+        points: np.ndarray
         if len(k := np.flatnonzero(which == piece)):
             turn = angles[k[0]]
             along = np.sin(np.outer(1 - s, turn)) * first[k] + np.sin(np.outer(s, turn)) * last[k]
-            return self.arc_centres[piece] + along / np.sin(turn)
-        if self.semi_axes is None:
-            return a + s[:, None] * (b - a)
-        # An ellipse is an affine image of a circle with the conjugate radii a - c and b - c.
-        turn = np.pi / 2 * s[:, None]
-        return self.centre + np.cos(turn) * (a - self.centre) + np.sin(turn) * (b - self.centre)
+            points = centres[k] + along / np.sin(turn)
+        elif self.semi_axes is None:
+            points = a + s[:, None] * (b - a)
+        else:
+            # An ellipse is an affine image of a circle with the conjugate radii a - c and b - c.
+            c, turn = self.centre, np.pi / 2 * s[:, None]
+            points = c + np.cos(turn) * (a - c) + np.sin(turn) * (b - c)
+        return points
 
     def sampled(self, spacing: float) -> np.ndarray:
         """The loop as a polygon (n, 2) with all corners and sides of up to about `spacing` [m]."""
@@ -154,7 +161,7 @@ class Loop:
         and the angle t between them, the moment of the sector is a x b (a + b) / (3 (1 + cos t)),
         that of its triangle a x b (a + b) / 6.
         """
-        _, a, b, turn = self._arcs
+        *_, a, b, turn = self._arcs
         square = cross(a, b)
         return (turn * (a**2).sum(axis=1) - square) / 2, (
             square * (1 / (3 + 3 * np.cos(turn)) - 1 / 6)
@@ -168,10 +175,10 @@ class Loop:
         areas, moments = self._segments
         if not len(areas):
             return polygon_centre(self.corners)
-        moment = (
+        moment: np.ndarray = (
             signed_area(self.corners) * polygon_centre(self.corners)
             + moments.sum(axis=0)
-            + areas @ self.arc_centres[self._arcs[0]]
+            + areas @ self._arcs[1]
         )
         return moment / self.area
 
@@ -192,13 +199,14 @@ class Loop:
     def gap(self, points: np.ndarray) -> np.ndarray:
         """Signed distances (n,) [m] of points (n, 2) from the loop, negative inside."""
         if self.radius:
-            return np.linalg.norm(points - self.centre, axis=1) - self.radius
+            distance: np.ndarray = np.linalg.norm(points - self.centre, axis=1) - self.radius
+            return distance
         import shapely  # imported here: circles do not need it
 
         distance = shapely.distance(shapely.LinearRing(self.sides), shapely.points(points))
-        return np.where(
-            shapely.contains_xy(shapely.Polygon(self.sides), *points.T), -distance, distance
-        )
+        inside = shapely.contains_xy(shapely.Polygon(self.sides), *points.T)
+        signed: np.ndarray = np.where(inside, -distance, distance)
+        return signed
 
 
 def polygon_loop(corners: np.ndarray, arc_centres: np.ndarray | None = None) -> Loop:
@@ -221,18 +229,76 @@ def circle_loop(radius: float) -> Loop:
     return ellipse_loop(radius, radius)
 
 
-class Shape:
-    """The common base of outlines in the plane and of solids.
+class Shape(ABC):
+    """The common base of outlines in the plane and of solids."""
 
-    `points` (n, axes) [m] lie on the boundary, `reach` [m] is the bounding radius, `gap` returns
-    signed distances (n,) [m] of points (n, axes). `disc` is the centre and radius of a disc or
-    ball, and None for other shapes.
-    """
+    @property
+    @abstractmethod
+    def points(self) -> np.ndarray:
+        """Points (n, axes) [m] on the boundary."""
 
-    points: np.ndarray
-    reach: float
-    disc: tuple[np.ndarray, float] | None
-    gap: Callable[[np.ndarray], np.ndarray]
+    @property
+    @abstractmethod
+    def content(self) -> float:
+        """The area [m2] of an outline, the volume [m3] of a solid."""
+
+    @property
+    @abstractmethod
+    def area_centre(self) -> np.ndarray:
+        """The centroid (axes,) [m] of the area or volume."""
+
+    @property
+    @abstractmethod
+    def extent(self) -> np.ndarray:
+        """The lengths (axes,) [m] along the axes."""
+
+    @property
+    @abstractmethod
+    def reach(self) -> float:
+        """The bounding radius [m] about the centroid."""
+
+    @property
+    @abstractmethod
+    def half_thickness(self) -> float:
+        """The length [m] that replaces the radius for a body that is not a disc or ball."""
+
+    @property
+    @abstractmethod
+    def coarsest(self) -> float:
+        """The largest automatic element size [m]."""
+
+    @property
+    @abstractmethod
+    def disc(self) -> tuple[np.ndarray, float] | None:
+        """The centre and radius [m] of a disc or ball; None for other shapes."""
+
+    @abstractmethod
+    def gap(self, points: np.ndarray) -> np.ndarray:
+        """Signed distances (n,) [m] of points (n, axes), negative inside."""
+
+    @abstractmethod
+    def placed(self, centre: np.ndarray, turn: Turn) -> Self:
+        """The shape, turned about the origin and then moved by `centre` (axes,) [m]."""
+
+    @abstractmethod
+    def turned(self, turn: Turn, spin: Turn, t: float) -> Turn:
+        """The turn at time t [s] of a body, from that at t = 0 and its spin [rad/s]."""
+
+    @abstractmethod
+    def fastest(self, turn: Turn, spin: Turn) -> float:
+        """An upper bound of the angular velocity [rad/s]; arguments as of `turned`."""
+
+    @abstractmethod
+    def carried(self, moved: Self, points: np.ndarray) -> np.ndarray:
+        """Points (n, axes) of this shape after the rigid motion that takes it to `moved`."""
+
+    @abstractmethod
+    def samples(self, size: float) -> tuple[np.ndarray, float]:
+        """Points (n, axes) on the boundary and their spacing [m], half an element of a size [m]."""
+
+    @abstractmethod
+    def width(self, points: np.ndarray, spacing: float) -> float:
+        """The width [m] of a part of the boundary that contains these samples."""
 
     def least(self, gap: Callable[[np.ndarray], np.ndarray]) -> float:
         """The least value [m] of a distance function on the shape.
@@ -243,20 +309,20 @@ class Shape:
             gap(self.disc[0][None])[0] - self.disc[1] if self.disc else gap(self.points).min()
         )
 
-    def normal_from(self, other) -> np.ndarray:
+    def normal_from(self, other: Any) -> np.ndarray:
         """The outward normal (axes,) of another body or obstacle where this shape is closest."""
         if not getattr(other, "is_exact", True):
-            return other.nearest(self)[1]
+            _, normal = other.nearest(self)
+            return np.asarray(normal)
         if self.disc:
-            return normal_of(other, self.disc[0])
+            return normal_of(other.gap, self.disc[0])
         if getattr(other, "disc", None):
-            return -normal_of(self, other.disc[0])
+            return -normal_of(self.gap, other.disc[0])
         gaps = other.gap(self.points)
         # If a face lies flat on the other surface, the point next to its middle defines the normal.
         touching = self.points[gaps <= gaps.min() + FLUSH * self.reach]
-        return normal_of(
-            other, touching[np.linalg.norm(touching - touching.mean(axis=0), axis=1).argmin()]
-        )
+        middle = np.linalg.norm(touching - touching.mean(axis=0), axis=1).argmin()
+        return normal_of(other.gap, touching[middle])
 
 
 @dataclass(frozen=True)
@@ -270,11 +336,15 @@ class Outline(Shape):
         return self.loops[0].area - sum(hole.area for hole in self.loops[1:])
 
     @property
+    def content(self) -> float:
+        return self.area
+
+    @property
     def area_centre(self) -> np.ndarray:
         outer, *holes = self.loops
-        return (
-            outer.area * outer.area_centre - sum(hole.area * hole.area_centre for hole in holes)
-        ) / self.area
+        moment: np.ndarray = outer.area * outer.area_centre
+        moment = moment - sum(hole.area * hole.area_centre for hole in holes)
+        return moment / self.area
 
     @property
     def length(self) -> float:
@@ -287,12 +357,12 @@ class Outline(Shape):
 
     @property
     def extent(self) -> np.ndarray:
-        """Width and height (2,) [m]."""
-        return np.ptp(self.loops[0].polygon, axis=0)
+        """Width and height (2,) [m] of the outer loop: of a tube, of the section of its wall."""
+        lengths: np.ndarray = np.ptp(self.loops[0].polygon, axis=0)
+        return lengths
 
     @cached_property
     def reach(self) -> float:
-        """The bounding radius [m] about the centroid of the area."""
         return float(np.linalg.norm(self.loops[0].polygon - self.area_centre, axis=1).max())
 
     @cached_property
@@ -306,10 +376,8 @@ class Outline(Shape):
 
     @property
     def half_thickness(self) -> float:
-        """The length [m] that replaces the radius for a body that is not a disc.
-
-        It is the smaller of half the smaller extent and 2 area / length of the boundary, which is
-        the radius of a disc and the wall thickness of a ring.
+        """The smaller of half the smaller extent and 2 area / length of the boundary, which is the
+        radius of a disc and the wall thickness of a ring.
         """
         return float(min(self.extent.min() / 2, 2 * self.area / self.length))
 
@@ -320,31 +388,27 @@ class Outline(Shape):
         """
         return float(min(self.extent.min() / 2, self.area / self.length))
 
-    def placed(self, centre: np.ndarray, angle: float) -> "Outline":
-        outline = Outline(tuple(loop.placed(centre, angle) for loop in self.loops))
+    def placed(self, centre: np.ndarray, turn: Turn) -> Self:
+        outline = replace(self, loops=tuple(loop.placed(centre, turn) for loop in self.loops))
         outline.__dict__["reach"] = self.reach  # independent of the position: not computed again
         return outline
 
-    def turned(self, angle: float, spin: float, t: float) -> float:
-        """The angle [rad] of a body at time t [s], from its angle at t = 0 and its spin [rad/s]."""
-        return angle + spin * t
+    def turned(self, turn: Turn, spin: Turn, t: float) -> Turn:
+        return turn + spin * t
 
-    def fastest(self, angle: float, spin: float) -> float:
-        """The upper bound of the angular velocity [rad/s], which is constant in the plane."""
-        return abs(spin)
+    def fastest(self, turn: Turn, spin: Turn) -> float:
+        return abs(float(spin))  # constant in the plane
 
-    def carried(self, moved: "Outline", points: np.ndarray) -> np.ndarray:
-        """Points (n, 2) of this outline after the rigid motion that takes it to `moved`."""
+    def carried(self, moved: Self, points: np.ndarray) -> np.ndarray:
         a, b = self.loops[0].corners[:2]
         c, d = moved.loops[0].corners[:2]
         turn = complex(*(d - c)) / complex(*(b - a))
-        return c + (points - a) @ np.array([[turn.real, -turn.imag], [turn.imag, turn.real]]).T
+        matrix = np.array([[turn.real, -turn.imag], [turn.imag, turn.real]])
+        carried: np.ndarray = c + (points - a) @ matrix.T
+        return carried
 
     def samples(self, size: float) -> tuple[np.ndarray, float]:
-        """Points (n, 2) on the outline, two per element of a size [m], and their spacing [m].
-
-        Their number is limited to the range from COARSEST to FINEST.
-        """
+        """Two points per element. Their number is limited to the range from COARSEST to FINEST."""
         spacing = self.length / np.clip(2 * self.length / size, COARSEST, FINEST)
         return np.vstack([loop.sampled(spacing) for loop in self.loops]), spacing
 
@@ -365,17 +429,16 @@ class Outline(Shape):
 
     @property
     def disc(self) -> tuple[np.ndarray, float] | None:
-        """The centre (2,) and radius [m] of a disc; None for all other outlines."""
-        whole = len(self.loops) == 1 and self.loops[0].radius
-        return (self.loops[0].centre, whole) if whole else None
+        outer, *holes = self.loops
+        return (outer.centre, outer.radius) if outer.radius and not holes else None
 
     def gap(self, points: np.ndarray) -> np.ndarray:
-        """Signed distances (n,) [m] of points (n, 2) from the body.
-
-        They are negative in the material, positive outside and in the holes.
-        """
+        """Signed distances (n,) [m]: negative in the material, positive outside and in the holes."""
         outer, *holes = self.loops
-        return np.max([outer.gap(points), *(-hole.gap(points) for hole in holes)], axis=0)
+        distance: np.ndarray = np.max(
+            [outer.gap(points), *(-hole.gap(points) for hole in holes)], axis=0
+        )
+        return distance
 
 
 @dataclass(frozen=True)
@@ -393,21 +456,14 @@ class TubeOutline(Outline):
     @property
     def area_centre(self) -> np.ndarray:
         """The centroid (2,) [m] of both loops, on the axis."""
-        return sum(loop.area_centre for loop in self.loops) / 2
-
-    @property
-    def extent(self) -> np.ndarray:
-        """Width and height (2,) [m] of the right loop, which is the section of the wall."""
-        return np.ptp(self.loops[0].polygon, axis=0)
+        first, second = self.loops
+        middle: np.ndarray = (first.area_centre + second.area_centre) / 2
+        return middle
 
     @property
     def disc(self) -> None:
         """None, because a tube is not a ball."""
         return None
-
-    def placed(self, centre: np.ndarray, angle: float) -> "TubeOutline":
-        """The section, turned about the origin by angle [rad] and moved by `centre` (2,) [m]."""
-        return TubeOutline(tuple(loop.placed(centre, angle) for loop in self.loops))
 
     def folding(self, revolved: bool = False) -> float:
         """The estimate of `Outline.folding`, for the right loop alone."""
@@ -415,26 +471,22 @@ class TubeOutline(Outline):
 
     def gap(self, points: np.ndarray) -> np.ndarray:
         """Signed distances (n,) [m] of points (n, 2) from the nearer loop."""
-        return np.min([loop.gap(points) for loop in self.loops], axis=0)
+        distance: np.ndarray = np.min([loop.gap(points) for loop in self.loops], axis=0)
+        return distance
 
 
-def normal_of(other, point: np.ndarray) -> np.ndarray:
-    """The outward normal (axes,) of a body or an obstacle at a point (axes,).
+def normal_of(gap: Callable[[np.ndarray], np.ndarray], point: np.ndarray) -> np.ndarray:
+    """The outward normal (axes,) at a point (axes,) of a surface with these signed distances.
 
     The normal is the gradient of the signed distance, from central differences of fourth order,
     rounded to eight decimals. It is 0 where the gradient vanishes.
     """
-    h = max(1e-7 * np.abs(point).max(), 1e-3 * abs(other.gap(point[None])[0]), SHORTEST)
-    slope = [
-        (
-            other.gap(point + k * h * np.eye(len(point)))
-            - other.gap(point - k * h * np.eye(len(point)))
-        )
-        / (2 * k * h)
-        for k in (1, 2)
-    ]
+    h = max(1e-7 * np.abs(point).max(), 1e-3 * abs(gap(point[None])[0]), SHORTEST)
+    axes = np.eye(len(point))
+    slope = [(gap(point + k * h * axes) - gap(point - k * h * axes)) / (2 * k * h) for k in (1, 2)]
     normal = np.round((4 * slope[0] - slope[1]) / 3, 8)  # Richardson: fourth order
-    return normal / max(np.linalg.norm(normal), 0.5)
+    unit: np.ndarray = normal / max(float(np.linalg.norm(normal)), 0.5)
+    return unit
 
 
 # ---- polygons: corners (n, 2) [m], closed from the last corner to the first
@@ -447,7 +499,8 @@ def rotation(angle: float) -> np.ndarray:
 
 def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """The cross product a_x b_y - a_y b_x (...) of vectors (..., 2)."""
-    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+    product: np.ndarray = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+    return product
 
 
 def signed_area(corners: np.ndarray) -> float:
@@ -460,7 +513,9 @@ def polygon_centre(corners: np.ndarray) -> np.ndarray:
     """The centroid (2,) [m] of the area of a polygon (n, 2)."""
     a = corners - corners[0]
     b = np.roll(a, -1, axis=0)
-    return corners[0] + ((a + b) * cross(a, b)[:, None]).sum(axis=0) / (6 * signed_area(corners))
+    moment = ((a + b) * cross(a, b)[:, None]).sum(axis=0)
+    centroid: np.ndarray = corners[0] + moment / (6 * signed_area(corners))
+    return centroid
 
 
 def folding(corners: np.ndarray, thickness: float, revolved: bool) -> float:

@@ -63,9 +63,9 @@ def check(path: str, vertices: np.ndarray, closed: bool) -> None:
     after = np.roll(sides.along, -1, axis=0)
     back = (np.sum(sides.along * after, axis=1) < 0) & (abs(cross(sides.along, after)) < 1e-9)
     for k in np.flatnonzero(back if closed else back[:-1]):
-        j = (k + 1) % len(vertices)
+        corner = (k + 1) % len(vertices)
         raise BadInput(
-            f"{path}.vertices.{j + 1}: the chain turns back on itself at {_text(vertices[j])} (accepted: corners of less than "
+            f"{path}.vertices.{corner + 1}: the chain turns back on itself at {_text(vertices[corner])} (accepted: corners of less than "
             f"180 degrees)"
         )
     crossing = _crossing(sides, size)
@@ -105,7 +105,7 @@ def inset(path: str, vertices: np.ndarray, closed: bool, radius: float) -> np.nd
         raise BadInput(
             f"{path}: {radius:g} m is too large for the sides (accepted: below {largest:.6g} m)"
         )
-    moved = vertices - radius * steps
+    moved: np.ndarray = vertices - radius * steps
     if not closed:
         moved[0] = moved[1] - lengths[0] * along[0]
         moved[-1] = moved[-2] + lengths[-1] * along[-1]
@@ -139,7 +139,8 @@ def gap(points: np.ndarray, numbers: tuple[float, ...]) -> np.ndarray:
         :, None
     ] * before
     side = np.sum(away * (normal[nearest] + beyond), axis=1)
-    return np.where(side < 0, -1, 1) * np.linalg.norm(away, axis=1) - numbers[1]
+    distance: np.ndarray = np.where(side < 0, -1, 1) * np.linalg.norm(away, axis=1) - numbers[1]
+    return distance
 
 
 def _nearest(sides: Sides, points: np.ndarray) -> np.ndarray:
@@ -154,7 +155,8 @@ def _nearest(sides: Sides, points: np.ndarray) -> np.ndarray:
         for end in (sides.low, sides.high)
     ]
     tree = shapely.STRtree(shapely.linestrings(np.stack(ends, axis=1)))
-    return tree.nearest(shapely.points(points))
+    nearest: np.ndarray = tree.nearest(shapely.points(points))
+    return nearest
 
 
 def sides_of(numbers: tuple[float, ...]) -> Sides:
@@ -221,7 +223,7 @@ def _crossing(sides: Sides, size: float) -> tuple[int, int, np.ndarray] | None:
         return None
     k = meet.argmax()
     at = s[k] if not parallel[k] else first[k] if np.isfinite(first[k]) else last[k]
-    return i[k], j[k], sides.start[i[k]] + at * e[k]
+    return int(i[k]), int(j[k]), sides.start[i[k]] + at * e[k]
 
 
 def _text(point: np.ndarray) -> str:

@@ -77,15 +77,16 @@ class TimeFunction:
         t = np.asarray(t, dtype=float)
         inside = np.clip(t, times[0], times[-1])
         beyond = np.where(t < times[0], slopes[0], slopes[-1]) * (t - inside)
-        return beyond + (values[0] if len(times) == 1 else self._spline(inside))
+        values_at: np.ndarray = beyond + (values[0] if len(times) == 1 else self._spline(inside))
+        return values_at
 
     def slope(self, t: np.ndarray | float) -> np.ndarray:
         """The slopes per second at times t [s], in the shape of t."""
         times, _, slopes = self.knots.T
         t = np.asarray(t, dtype=float)
         if len(times) == 1:
-            return slopes[0] + 0 * t
-        return self._spline(np.clip(t, times[0], times[-1]), 1)
+            return np.full_like(t, slopes[0])
+        return np.asarray(self._spline(np.clip(t, times[0], times[-1]), 1))
 
     @property
     def largest_value(self) -> float:
@@ -121,7 +122,8 @@ class TimeFunction:
     def kinks(self) -> np.ndarray:
         """The kinks (n, 2): times [s], changes of the slope per second."""
         times, _, slopes = self.knots.T
-        return np.column_stack([times[:-1], abs(np.diff(slopes))])[self._at_kink]
+        at = self._at_kink
+        return np.column_stack([times[:-1][at], abs(np.diff(slopes))[at]])
 
     def since(self, begin: float) -> "TimeFunction":
         """The function with knots from `begin` [s] on only, where it is the same."""

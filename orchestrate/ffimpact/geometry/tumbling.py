@@ -52,9 +52,8 @@ def rotation(turn: np.ndarray) -> np.ndarray:
         return np.eye(3)
     K = _cross(turn / angle)
     matrix = np.eye(3) + math.sin(angle) * K + (1 - math.cos(angle)) * K @ K
-    rounded = matrix.round()
-    matrix = np.where(abs(matrix - rounded) < 1e-15, rounded, matrix)
-    return matrix
+    rounded: np.ndarray = matrix.round()
+    return np.where(abs(matrix - rounded) < 1e-15, rounded, matrix)
 
 
 def _cross(w: np.ndarray) -> np.ndarray:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from functools import partial
 from inspect import Parameter as Keyword, Signature
-from typing import Annotated, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 import numpy as np
 from pydantic import (
@@ -105,6 +105,11 @@ __all__ = [
     "tables",
 ]
 
+if TYPE_CHECKING:
+    from pydantic._internal._model_construction import ModelMetaclass
+else:
+    ModelMetaclass = type(BaseModel)
+
 PLACEMENTS = ("centroid", "as-drawn")
 MOST_PRESSURE = 1e15  # largest accepted pressure [Pa]
 MOST_TURN = 36000.0  # largest accepted angle [degrees]
@@ -133,7 +138,7 @@ def several(value: Any) -> Any:
     return [value] if isinstance(value, Entries) else value
 
 
-class _Made(type(BaseModel)):  # type: ignore[misc]
+class _Made(ModelMetaclass):
     """The metaclass of models: Python constructors raise BadInput and ignore entries that are None.
 
     BadInput replaces pydantic's ValidationError.
@@ -146,17 +151,19 @@ class _Made(type(BaseModel)):  # type: ignore[misc]
                 f"{cls.__name__}: '{brief(unnamed[0])}' has no name (accepted: entries by name: {accepted})"
             )
         set_entries = {name: plain(value) for name, value in entries.items() if value is not None}
+        model: Any = cls  # a subclass of Entries
         try:
             made = super().__call__(**set_entries)
         except ValidationError as error:
-            raise BadInput(*_lines(cls, error, cls.__name__, ": ", None)) from None
+            raise BadInput(*_lines(model, error, cls.__name__, ": ", None)) from None
         made._given = set_entries
         return made
 
     @property
     def __signature__(cls) -> Signature:
         """The entries as keywords, with units and meanings, for help() and notebooks."""
-        fields = {name: cls.model_fields[name] for name in cls.names(None)}
+        model: Any = cls
+        fields = {name: model.model_fields[name] for name in model.names(None)}
         keywords = [_keyword(*item) for item in fields.items() if not item[1].exclude]
         if issubclass(cls, Body):
             own = Keyword("material", Keyword.KEYWORD_ONLY, default=None, annotation="a Material")
@@ -1100,11 +1107,11 @@ KINDS: dict[str, tuple[str, dict[str, type[Any]]]] = {
 def read(content: dict[str, Any], dimension: Dimension) -> Tables:
     """The tables of a scene; raises BadInput with a line for each error in any of them."""
     top = {name: value for name, value in content.items() if name not in (*KINDS, "contact")}
-    parts = gathered([
+    read_top, bodies, obstacles, contact = gathered((
         lambda: Top.read("", top, dimension), lambda: tables(content, "body", dimension),
         lambda: tables(content, "obstacle", dimension),
-        lambda: Contact.read("contact", content.get("contact", {}), dimension)])  # fmt: skip
-    return Tables.model_construct(**dict(zip(("top", "bodies", "obstacles", "contact"), parts)))
+        lambda: Contact.read("contact", content.get("contact", {}), dimension)))  # fmt: skip
+    return Tables.model_construct(top=read_top, bodies=bodies, obstacles=obstacles, contact=contact)
 
 
 def tables(content: dict[str, Any], key: str, dimension: Dimension) -> list[Any]:

@@ -62,8 +62,14 @@ OTHER_UNITS = {
 class Rule:
     """The base of rules: an entry of a model is declared as Annotated[float, rule]."""
 
-    accepted: str  # the accepted values as messages print them
-    meaning: str = ""
+    @property
+    def accepted(self) -> str:
+        """The accepted values as messages print them."""
+        raise NotImplementedError
+
+    @property
+    def meaning(self) -> str:
+        return ""
 
     def checked(self, value: Any, dimension: Dimension | None) -> Any:
         """Returns the value as the program uses it; `dimension` is that of the scene, if known.
@@ -127,7 +133,7 @@ class Parameter(Rule):
     scripts: tuple[str, ...] = ()
 
     @property
-    def meaning(self) -> str:  # type: ignore[override]
+    def meaning(self) -> str:
         """The meaning of the parameter, with its unit."""
         return f"{self.help} [{self.unit}]" if self.unit not in ("", "-") else self.help
 
@@ -148,7 +154,7 @@ class Parameter(Rule):
         return common | ({"anyOf": [number, {"enum": list(self.words)}]} if self.words else number)
 
     @property
-    def accepted(self) -> str:  # type: ignore[override]
+    def accepted(self) -> str:
         """The accepted values, as messages print them."""
         if self.kind == "numbers":
             return "none, or numbers separated by commas"

@@ -100,7 +100,7 @@ class Vector(Rule):
     count: int = 0
 
     @property
-    def accepted(self) -> str:  # type: ignore[override]
+    def accepted(self) -> str:
         return self.accepted_in(PLANE_STRAIN)
 
     def accepted_in(self, dimension: Dimension | None) -> str:
@@ -183,7 +183,7 @@ class InSpace(Rule):
     low: float | None = None
 
     @property
-    def accepted(self) -> str:  # type: ignore[override]
+    def accepted(self) -> str:
         return self.plane.accepted
 
     @property
@@ -212,7 +212,7 @@ class Points(Rule):
     meaning: str = ""
 
     @property
-    def accepted(self) -> str:  # type: ignore[override]
+    def accepted(self) -> str:
         return f"{self.least} points [x, y] or more"
 
     def checked(self, value: Any, dimension: Dimension | None) -> Any:
@@ -337,7 +337,7 @@ class Where(Rule):
     meaning: str = "a side, the name of a group of its file, or a region"
 
     @property
-    def accepted(self) -> str:  # type: ignore[override]
+    def accepted(self) -> str:
         return self.accepted_in(SOLID)
 
     def accepted_in(self, dimension: Dimension | None) -> str:
@@ -352,15 +352,16 @@ class Where(Rule):
     def checked(self, value: Any, dimension: Dimension | None) -> Any:
         if isinstance(value, str):
             return value
-        if not isinstance(value, dict) or value.get("kind") not in _kinds(dimension):
+        kind: Any = value.get("kind") if isinstance(value, dict) else None
+        if kind not in _kinds(dimension):
             raise BadInput(
                 f": '{brief(value)}' is no part of a boundary "
                 f"(accepted: {self.accepted_in(dimension)})"
             )
-        first, second = REGIONS[ALIAS.get(value["kind"], value["kind"])]
-        accepted = ("kind", first, second)
-        for key in [key for key in value if key not in accepted]:
-            details = f"set to '{brief(value[key])}'{suggestion(key, accepted)} (accepted: {', '.join(accepted)})"
+        first, second = REGIONS[ALIAS.get(kind, kind)]
+        entries = ("kind", first, second)
+        for key in [key for key in value if key not in entries]:
+            details = f"set to '{brief(value[key])}'{suggestion(key, entries)} (accepted: {', '.join(entries)})"
             raise BadInput(f".{brief(key)}: no such entry, {details}")
         vector_rule = Vector()
         for key in (first, second):
@@ -369,7 +370,7 @@ class Where(Rule):
                     number().accepted if key == "radius" else vector_rule.accepted_in(dimension)
                 )
                 raise BadInput(f".{key}: is missing (accepted: {accepted})")
-        region = {"kind": value["kind"]}
+        region: dict[str, Any] = {"kind": kind}
         for key in (first, second):
             try:
                 region[key] = (number() if key == "radius" else vector_rule).checked(

@@ -166,7 +166,8 @@ class Sizes:
 
 def nearest(points: np.ndarray, others: np.ndarray) -> np.ndarray:
     """Distances (n,) [m] of points (n, axes) from the nearest of the other points (m, axes)."""
-    return cKDTree(others).query(points)[0]
+    distances: np.ndarray = cKDTree(others).query(points)[0]
+    return distances
 
 
 def disc(
@@ -548,7 +549,8 @@ def boundary(cells: np.ndarray) -> np.ndarray:
     _, first, count = np.unique(
         np.sort(sides, axis=1), axis=0, return_index=True, return_counts=True
     )
-    return sides[np.sort(first[count == 1])]
+    outer: np.ndarray = sides[np.sort(first[count == 1])]
+    return outer
 
 
 def pieces(points: int, elements: np.ndarray) -> np.ndarray:

@@ -59,12 +59,18 @@ class Curved:
     def arms(self, points: np.ndarray) -> np.ndarray:
         """Radius vectors (..., 3) of points, from the centre or from the axis at right angles."""
         away = points - self.centre
-        return away - (away @ self.axis)[..., None] * self.axis if len(self.axis) else away
+        arms: np.ndarray = (
+            away - (away @ self.axis)[..., None] * self.axis if len(self.axis) else away
+        )
+        return arms
 
     def onto(self, points: np.ndarray) -> np.ndarray:
         """Points (n, 3), moved along their radius vectors onto the sphere or cylinder."""
         arms = self.arms(points)
-        return points + arms * (self.radius / np.linalg.norm(arms, axis=1, keepdims=True) - 1)
+        projected: np.ndarray = points + arms * (
+            self.radius / np.linalg.norm(arms, axis=1, keepdims=True) - 1
+        )
+        return projected
 
 
 @dataclass(frozen=True)
@@ -110,7 +116,8 @@ class SolidMesh:
 
 def cell_volumes(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
     a, b, c, d = (points[cells[:, k]] for k in range(4))
-    return ((b - a) * np.cross(c - a, d - a)).sum(axis=1) / 6
+    volumes: np.ndarray = ((b - a) * np.cross(c - a, d - a)).sum(axis=1) / 6
+    return volumes
 
 
 def right_handed(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
@@ -210,7 +217,8 @@ def _onto(
     for k, patch in enumerate(patches):
         corners = np.unique(faces[round_faces & (nearest == k)])
         points[corners] = patch.onto(points[corners])
-    return round_faces & (nearest == 1)
+    on_patch: np.ndarray = round_faces & (nearest == 1)
+    return on_patch
 
 
 def _occ_shape(occ, kind: str, lengths: list[float]) -> int:

@@ -8,14 +8,15 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from operator import attrgetter
 from pathlib import Path
+from typing import Self
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from ..failure import BadInput
 from ..geometry import outlines, tumbling
+from ..geometry.outlines import Turn
 from ..input.models import Body, Mesh, Shell, Tube
 from . import curved, flat, solid_file
 from .revolution import check_radii
@@ -228,7 +229,10 @@ def _outside(beyond: np.ndarray) -> np.ndarray:
 
     `beyond` (n, k) [m] is the distance of each point beyond each pair, negative between its faces.
     """
-    return np.linalg.norm(np.maximum(beyond, 0), axis=1) + np.minimum(beyond.max(axis=1), 0)
+    distance: np.ndarray = np.linalg.norm(np.maximum(beyond, 0), axis=1) + np.minimum(
+        beyond.max(axis=1), 0
+    )
+    return distance
 
 
 def surface(triangles: np.ndarray) -> Shape:
@@ -321,7 +325,8 @@ def _solid_angle(triangles: np.ndarray, points: np.ndarray) -> np.ndarray:
         + (b * c).sum(axis=2) * la
         + (c * a).sum(axis=2) * lb
     )
-    return 2 * np.arctan2((a * np.cross(b, c)).sum(axis=2), below).sum(axis=1)
+    angle: np.ndarray = 2 * np.arctan2((a * np.cross(b, c)).sum(axis=2), below).sum(axis=1)
+    return angle
 
 
 def distance_to_triangles(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
@@ -329,7 +334,8 @@ def distance_to_triangles(points: np.ndarray, triangles: np.ndarray) -> np.ndarr
     a, b, c = (triangles[..., k, :] for k in range(3))
 
     def dot(u: np.ndarray, v: np.ndarray) -> np.ndarray:
-        return (u * v).sum(axis=-1)
+        product: np.ndarray = (u * v).sum(axis=-1)
+        return product
 
     normal = np.cross(b - a, c - a)
     square = np.maximum(dot(normal, normal), np.finfo(float).tiny)
@@ -359,10 +365,25 @@ class Solid(outlines.Shape):
     rotation: np.ndarray
     geometry: solid_file.Geometry | None = None
 
-    volume, extent, reach = (
-        property(attrgetter(f"shape.{name}")) for name in ("volume", "extent", "reach")
-    )
-    area_centre = property(attrgetter("centre"))
+    @property
+    def volume(self) -> float:
+        return self.shape.volume
+
+    @property
+    def content(self) -> float:
+        return self.shape.volume
+
+    @property
+    def extent(self) -> np.ndarray:
+        return self.shape.extent
+
+    @property
+    def reach(self) -> float:
+        return self.shape.reach
+
+    @property
+    def area_centre(self) -> np.ndarray:
+        return self.centre
 
     @property
     def disc(self) -> tuple[np.ndarray, float] | None:
@@ -371,10 +392,7 @@ class Solid(outlines.Shape):
 
     @property
     def half_thickness(self) -> float:
-        """The length [m] that replaces the radius for a body that is not a ball.
-
-        It is the smaller of half the smallest extent and 3 volume / area.
-        """
+        """The smaller of half the smallest extent and 3 volume / area."""
         return float(min(self.extent.min() / 2, 3 * self.volume / self.shape.area))
 
     @property
@@ -384,23 +402,21 @@ class Solid(outlines.Shape):
         """
         return float(min(self.extent.min() / 2, 1.5 * self.volume / self.shape.area))
 
-    def placed(self, centre: np.ndarray, rotation: np.ndarray) -> "Solid":
-        return replace(self, centre=self.centre + centre, rotation=rotation @ self.rotation)
+    def placed(self, centre: np.ndarray, turn: Turn) -> Self:
+        return replace(self, centre=self.centre + centre, rotation=turn @ self.rotation)
 
-    def turned(self, turn: np.ndarray, spin: np.ndarray, t: float) -> np.ndarray:
-        """The rotation matrix (3, 3) at time t [s], for the initial turn (3,) [rad] and spin (3,).
-
-        `turn` is a rotation vector, `spin` is in rad/s.
-        """
+    def turned(self, turn: Turn, spin: Turn, t: float) -> Turn:
+        """The rotation matrix (3, 3), from a rotation vector `turn`."""
         return tumbling.turned(self.shape.moments, tumbling.rotation(turn), spin, t)
 
-    def fastest(self, turn: np.ndarray, spin: np.ndarray) -> float:
-        """An upper bound of the angular velocity [rad/s]; arguments as of `turned`."""
+    def fastest(self, turn: Turn, spin: Turn) -> float:
         return tumbling.fastest(self.shape.moments, tumbling.rotation(turn), spin)
 
-    def carried(self, moved: "Solid", points: np.ndarray) -> np.ndarray:
-        """Points (n, 3) of this solid after the rigid motion that takes it to `moved`."""
-        return moved.centre + (points - self.centre) @ self.rotation @ moved.rotation.T
+    def carried(self, moved: Self, points: np.ndarray) -> np.ndarray:
+        carried: np.ndarray = (
+            moved.centre + (points - self.centre) @ self.rotation @ moved.rotation.T
+        )
+        return carried
 
     @cached_property
     def points(self) -> np.ndarray:
@@ -408,7 +424,8 @@ class Solid(outlines.Shape):
         return self.sampled(math.sqrt(self.shape.area / SAMPLES))
 
     def sampled(self, spacing: float) -> np.ndarray:
-        return self.shape.sampled(spacing) @ self.rotation.T + self.centre
+        points: np.ndarray = self.shape.sampled(spacing) @ self.rotation.T + self.centre
+        return points
 
     def samples(self, size: float) -> tuple[np.ndarray, float]:
         """Points (n, 3) on the surface and their spacing [m], half an element of a size [m].

@@ -38,7 +38,7 @@ from pathlib import Path
 import numpy as np
 
 from ..failure import Failure
-from ..input.parameters import OUTPUT, Value
+from ..input.parameters import OUTPUT, Table
 from .rest import rest_errors
 from .results import Answers, held_bodies, suffixes
 
@@ -109,21 +109,22 @@ HIGH = 0.75  # share of a largest value above which histories are compared
 # Shares of the impulse at which times are compared. They are dense at the end of contact.
 SHARES = 1 - np.geomspace(1 - EARLY, 1e-4, 16)
 
-Scaled = Callable[[Mapping, float], dict[str, Value]]
+Scaled = Callable[[Table, float], Table]
 # Runs the scene with these values in a folder, and raises Failure if the run fails.
-Solve = Callable[[dict[str, Value], Path], None]
+Solve = Callable[[Table, Path], None]
 # Runs the scene with a factor on elements and steps in a folder; returns the failure or None.
 Failed = Callable[[float, Path], Failure | None]
+Columns = Callable[[Answers], list[np.ndarray]]
 
 
 def settle(
     stage: Path,
-    values: Mapping[str, Value],
+    values: Table,
     own_mesh: bool,
     solve: Solve,
     read: Callable[[Path], Answers],
     scaled: Scaled,
-) -> dict:
+) -> Table:
     """Estimates the error of the run in `stage`, made from the scene `values`, and computes finer
     runs.
 
@@ -149,7 +150,8 @@ def settle(
         return _ended(solve, entries | chosen, where)
 
     sentences = _add_levels(runs, stage, failed, read)
-    notes, estimated, refinements, before = [], None, 0, math.inf
+    notes: list[str] = []
+    estimated, refinements, before = None, 0, math.inf
     seconds = sum(run.summary["cpu_seconds"] for run in runs[1:])
     while len(runs) > 1:
         estimated = error_estimates(runs)
@@ -218,14 +220,14 @@ def _same(fine: Answers, coarse: Answers) -> bool:
     return all(fine.summary.get(name) == coarse.summary.get(name) is not None for name in names)
 
 
-def _lacks_contact(summary: Mapping) -> bool:
+def _lacks_contact(summary: Table) -> bool:
     """Whether the rule for the end of an impact has cut it: the results lack a contact that may
     follow. The results at an end_time are those at this time, with or without such a contact.
     """
     return bool(summary.get("later_contact_possible")) and summary["ended"] != "end_time"
 
 
-def _excludes(summary: Mapping, own_mesh: bool) -> list[str]:
+def _excludes(summary: Table, own_mesh: bool) -> list[str]:
     """Returns what all runs have in common. For a flat strike the penalty is not among it, because
     it changes with the element size (finer.py).
     """
@@ -251,16 +253,17 @@ def error_estimates(runs: Sequence[Answers]) -> dict[str, float]:
     return estimates | rest_errors(*runs[:2])
 
 
-def _ended(solve: Solve, values: dict[str, Value], where: Path) -> Failure | None:
+def _ended(solve: Solve, values: Table, where: Path) -> Failure | None:
     """Runs the scene. Returns the failure if the step or the material ended the run, None if the
     run has a result. Other failures are raised.
     """
     try:
-        return solve(values, where)
+        solve(values, where)
     except Failure as failure:
         if failure.code not in NO_ANSWER:
             raise
         return failure
+    return None
 
 
 def _swap(stage: Path) -> None:
@@ -279,7 +282,7 @@ def _swap(stage: Path) -> None:
     shutil.rmtree(finer)
 
 
-def output(factor: float) -> dict[str, Value]:
+def output(factor: float) -> Table:
     """Returns the requests for output of a run with `factor` times the elements and steps, as
     entries to override. A coarser run is only compared and writes no output. A finer run takes the
     place of the first one and keeps all its requests.
@@ -309,7 +312,7 @@ def differences(fine: Answers, coarse: Answers) -> dict[str, float]:
     first, second = fine.summary, coarse.summary
     energy = first["largest_energy"]
 
-    def value(summary: Mapping, name: str) -> float:
+    def value(summary: Table, name: str) -> float:
         number = summary.get(name)
         return 0.0 if number is None or math.isnan(number) else float(number)
 
@@ -324,7 +327,7 @@ def differences(fine: Answers, coarse: Answers) -> dict[str, float]:
 
     def later(run: Answers) -> float:
         """The work [J/m] after the end of the shorter run."""
-        return sum(run.history[name][-1] - until(run, name) for name in works)
+        return sum(float(run.history[name][-1]) - until(run, name) for name in works)
 
     def energy_apart(name: str) -> float:
         return abs(value(first, name) - later(fine) - value(second, name) + later(coarse))
@@ -377,15 +380,12 @@ def history_differences(fine: Answers, coarse: Answers) -> dict[str, float]:
 
     def of_bodies(names: Sequence[str], scales: Mapping[str, float]) -> float:
         columns = {s: [n + s for n in names if n + s in fine.history] for s in scales}
-        return max(
-            (
-                apart(lambda run, s=s: [run.history[n] for n in columns[s]], scale)
-                for s, scale in scales.items()
-            ),
-            default=0.0,
-        )
+        return max((apart(named(*columns[s]), scale) for s, scale in scales.items()), default=0.0)
 
-    friction = math.sqrt(shared.squares(lambda run: [run.history["friction_work"]]).max())
+    def named(*names: str) -> Columns:
+        return lambda run: [run.history[name] for name in names]
+
+    friction = math.sqrt(shared.squares(named("friction_work")).max())
     over_time = {
         "impulse": apart(lambda run: [_impulse(run.history)], summary["impulse"]),
         "rebound": of_bodies(("vx", "vy", "vz"), dict.fromkeys(_free(fine), fine.speed)),
@@ -395,11 +395,7 @@ def history_differences(fine: Answers, coarse: Answers) -> dict[str, float]:
         OF_ITSELF: friction / abs(work) if work else 0.0,
     }
     over_time |= {name: shared.apart_while_high(name) for name in ("peak_force", *_highest(fine))}
-    over_time |= {
-        name: apart(lambda run, name=name: [run.history[name]], energy)
-        for name in WORKS
-        if name in fine.history
-    }
+    over_time |= {name: apart(named(name), energy) for name in WORKS if name in fine.history}
     reached = [_times_of_shares(run.history) for run in (fine, coarse)]
     delays = abs(reached[0] - reached[1]) / (lasts or math.inf)
     return over_time | {
@@ -420,17 +416,18 @@ class _SharedRecord:
         self.share = np.diff(np.concatenate([t[:1], (t[1:] + t[:-1]) / 2, t[-1:]]))
         self.late = t >= t[0] + EARLY * (t[-1] - t[0])
 
-    def squares(self, columns: Callable[[Answers], list[np.ndarray]]) -> np.ndarray:
+    def squares(self, columns: Columns) -> np.ndarray:
         """The squared differences of a vector with these columns."""
         first, second = (
             np.array([np.interp(self.t, run.history["t"], column) for column in columns(run)])
             for run in self.runs
         )
-        return ((first - second) ** 2).sum(axis=0)
+        squares: np.ndarray = ((first - second) ** 2).sum(axis=0)
+        return squares
 
     def apart(
         self,
-        columns: Callable[[Answers], list[np.ndarray]],
+        columns: Columns,
         scale: float,
         when: np.ndarray | None = None,
     ) -> float:
@@ -451,17 +448,20 @@ class _SharedRecord:
         return self.apart(lambda run: [_column(run, name)], largest, high)
 
 
-def _impulse(history: Mapping) -> np.ndarray:
+def _impulse(history: Mapping[str, np.ndarray]) -> np.ndarray:
     """Returns the normal impulse up to each time [N s/m]."""
     return np.cumsum(history["normal_force"] * history["dt"])
 
 
-def _times_of_shares(history: Mapping) -> np.ndarray:
+def _times_of_shares(history: Mapping[str, np.ndarray]) -> np.ndarray:
     """Returns the times [s] at which the impulse reaches its SHARES, from the onset of contact."""
     impulse = _impulse(history)
-    onset = max(np.argmax(history["normal_force"] > 0) - 1, 0)
+    onset = max(int(np.argmax(history["normal_force"] > 0)) - 1, 0)
     reached, first = np.unique(np.maximum.accumulate(impulse), return_index=True)
-    return np.interp(SHARES * reached[-1], reached, history["t"][first]) - history["t"][onset]
+    times: np.ndarray = (
+        np.interp(SHARES * reached[-1], reached, history["t"][first]) - history["t"][onset]
+    )
+    return times
 
 
 def _free(run: Answers) -> list[str]:
@@ -491,7 +491,10 @@ def _column(run: Answers, name: str) -> np.ndarray:
         return run.history[name]
     number = name.rpartition("_")[2]
     axes = [f"support_force_{axis}_{number}" for axis in "xyz"]
-    return np.linalg.norm([run.history[axis] for axis in axes if axis in run.history], axis=0)
+    sizes: np.ndarray = np.linalg.norm(
+        [run.history[axis] for axis in axes if axis in run.history], axis=0
+    )
+    return sizes
 
 
 def wanted(also: str) -> list[str]:
@@ -537,16 +540,13 @@ def excess(estimated: Mapping[str, float], accuracy: float, also: str, made: flo
         for name, limit in limits.items()
         if estimated[name] > limit
     }
-    worst = max(
-        [name for name in wanted(also) if name in above] or above, key=estimated.get, default=None
-    )
-    needed = made / max([estimated[name] / limits[name] for name in above], default=1)
+    if not above:
+        return []
+    main = [name for name in wanted(also) if name in above] or list(above)
+    worst = max(main, key=lambda name: estimated[name])
+    needed = made / max(estimated[name] / limits[name] for name in above)
     advice = f"ask for accuracy = {needed:.1g}" if made else "take smaller elements and steps"
-    return (
-        [
-            f"estimated errors: {above[worst]}, requested {100 * accuracy:g} %: "
-            f"all above it: {', '.join(above.values())}: if you need these numbers, {advice}"
-        ]
-        if above
-        else []
-    )
+    return [
+        f"estimated errors: {above[worst]}, requested {100 * accuracy:g} %: "
+        f"all above it: {', '.join(above.values())}: if you need these numbers, {advice}"
+    ]

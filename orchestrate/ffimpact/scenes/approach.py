@@ -80,7 +80,8 @@ class Onset:
         axes = np.vstack([np.zeros(len(self.normal)), np.eye(len(self.normal))])
         carried = body.outline.carried(shape, axes)
         normal = np.round((carried[1:] - carried[0]) @ self.normal, 6)
-        return normal / np.linalg.norm(normal)
+        unit: np.ndarray = normal / np.linalg.norm(normal)
+        return unit
 
     def gaps(self, body: int, points: np.ndarray) -> np.ndarray:
         """Returns the gaps (n,) [m] between points of `body`, where it is at the onset, and the
@@ -253,7 +254,8 @@ def _middle(onset: Onset) -> np.ndarray:
     off = np.max([abs(shape.gap(points)) for shape in onset.outlines], axis=0)
     along = (points - points[off.argmin()]) @ onset.normal
     on = points[(off <= off.min() + MET * onset.radius) & (abs(along) <= MET * onset.radius)]
-    return (on.min(axis=0) + on.max(axis=0)) / 2
+    middle: np.ndarray = (on.min(axis=0) + on.max(axis=0)) / 2
+    return middle
 
 
 def _onset(scene: Scene, first: int, second: int) -> Onset:

@@ -600,7 +600,8 @@ def _near(body: Body, k: int, onset: Onset, depth: float, points: np.ndarray) ->
     """
     gaps = onset.gaps(k, body.outline.carried(onset.outlines[0 if k == onset.first else 1], points))
     # A point at the depth itself counts in any unit of length, whatever the round-off.
-    return points[gaps <= gaps.min() + (1 + 1e-9) * depth]
+    nearest: np.ndarray = points[gaps <= gaps.min() + (1 + 1e-9) * depth]
+    return nearest
 
 
 def boundary_curves(scene: Scene, k: int) -> list[list[tuple[Curve, float, int]]]:

@@ -15,11 +15,11 @@ import numpy as np
 
 from ..failure import BadInput, gathered
 from ..geometry import tumbling
-from ..geometry.outlines import Outline
+from ..geometry.outlines import Outline, Shape, Turn
 from ..input import models, parameters
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
 from ..input.models import MATERIAL, MOST_STRETCH
-from ..input.parameters import Value
+from ..input.parameters import Table, Value
 from ..input.rules import SHORTEST
 from ..mesh import flat, mesh, revolution, solids
 from ..mesh.solid_file import GEOMETRIES
@@ -54,12 +54,12 @@ class Body:
     """
 
     name: str
-    outline: Outline | Solid
+    outline: Shape
     mesh: mesh.Mesh | SolidMesh | None
     position: np.ndarray
-    angle: float | np.ndarray
+    angle: Turn
     velocity: np.ndarray
-    spin: float | np.ndarray
+    spin: Turn
     law: str
     young: float
     nu: float
@@ -154,11 +154,17 @@ class Body:
         return file_mesh.points[corners[outer]], file_mesh.labels[outer] == mesh.FREE
 
     @property
-    def placed(self) -> Outline | Solid:
+    def section(self) -> Outline:
+        """The outline of a body in the plane or of revolution."""
+        assert isinstance(self.outline, Outline)
+        return self.outline
+
+    @property
+    def placed(self) -> Shape:
         """The outline at its position at the start."""
         return self.at(0.0, self.position)
 
-    def at(self, t: float, centre: np.ndarray) -> Outline | Solid:
+    def at(self, t: float, centre: np.ndarray) -> Shape:
         """Returns the outline with its centre at `centre`, turned as the body is at time t [s] in
         free motion.
         """
@@ -217,9 +223,7 @@ def _body(table: models.Body, top: models.Top, folder: Path, dimension: Dimensio
     )
 
 
-def _rigid(
-    table: models.Body, top: models.Top, dimension: Dimension, outline: Outline | Solid
-) -> dict:
+def _rigid(table: models.Body, top: models.Top, dimension: Dimension, outline: Shape) -> Table:
     """Returns the material entries of a rigid body. Its `young` is set later, by stiffened()."""
     for key in ("law", "young", "nu", *OPTIONAL, "support"):
         if key in table:
@@ -229,15 +233,13 @@ def _rigid(
     if "mass" in table and "density" in table:
         raise BadInput(f"{table.at('mass')}: stands beside density (accepted: one of them)")
     mass = table.mass or 0.0
-    # Volume [m3] or area [m2]. For a body of revolution with a mass the density below is only a
-    # scale.
-    content = outline.volume if isinstance(outline, Solid) else outline.area
     if not mass and "density" not in table and "density" not in top:
         raise BadInput(
             f"{table.at('density')}: is missing, here and at the top of the file (accepted: "
             f"{parameters.PARAMETERS['density'].accepted}, or mass)"
         )
-    density = mass / content if mass else table.density or top.density
+    # For a body of revolution with a mass this density is only a scale.
+    density = mass / outline.content if mass else table.density or top.density or 0.0
     defaults = {key: parameters.PARAMETERS[key].default for key in OPTIONAL}
     return defaults | {
         "law": "svk",
@@ -339,7 +341,7 @@ def _material(table: models.Body, top: models.Top) -> dict[str, Value]:
     return values
 
 
-def _refuse_size(path: str, size: float, outline: Outline | Solid, name: str) -> None:
+def _refuse_size(path: str, size: float, outline: Shape, name: str) -> None:
     """Raises BadInput if an element size [m] does not fit a body; 0 is automatic."""
     low, high = outline.half_thickness * FINEST, 2 * outline.coarsest
     if size and not low <= size <= high * (1 + 1e-9):

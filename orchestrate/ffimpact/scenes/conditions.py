@@ -19,6 +19,7 @@ from ..geometry.time_functions import TimeFunction, displacements, farthest, fun
 from ..input import models
 from ..input.dimension import Dimension
 from ..input.models import listed
+from ..input.parameters import Table
 from ..input.rules import ALIAS, number
 
 __all__ = ["Load", "Part", "Support", "files_renamed", "read_loads", "read_supports"]
@@ -53,11 +54,14 @@ class Part:
     def contains(self, points: np.ndarray) -> np.ndarray:
         """Whether points (n, axes) are in the region."""
         first, second = self.numbers
+        inside: np.ndarray
         if self.kind == "half-space":
-            return (points - first) @ second >= 0
-        if self.kind == "box":
-            return ((points >= first) & (points <= second)).all(axis=1)
-        return np.linalg.norm(points - first, axis=1) <= second
+            inside = (points - first) @ second >= 0
+        elif self.kind == "box":
+            inside = np.all((points >= first) & (points <= second), axis=1)
+        else:
+            inside = np.linalg.norm(points - first, axis=1) <= second
+        return inside
 
     def is_mirrored(self, axis: int, rotation: np.ndarray) -> bool:
         """Whether the part is its own mirror image in the plane normal to an axis. `rotation` is
@@ -67,7 +71,7 @@ class Part:
             side = SIDES.get(self.name)
             if side is None or side[0] >= len(rotation):
                 return self.name in WHOLE
-            return abs(rotation[axis, side[0]]) < 1e-9
+            return bool(abs(rotation[axis, side[0]]) < 1e-9)
         first, second = self.numbers
         if self.kind == "box":
             return bool(first[axis] == -second[axis])
@@ -124,7 +128,7 @@ class Load:
         return float(f"{largest:.6g}")
 
 
-def files_renamed(content: dict, rename: Callable[[str, str], str]) -> dict:
+def files_renamed(content: Table, rename: Callable[[str, str], str]) -> Table:
     """Returns the tables of a scene with rename(label, name) in place of the names of all files: of
     bodies and obstacles, and of CSV files of supports, loads and driven obstacles. A label is unique
     in the scene.
@@ -155,15 +159,15 @@ def files_renamed(content: dict, rename: Callable[[str, str], str]) -> dict:
     )
 
 
-def _with_file(label: str, table: dict, rename: Callable[[str, str], str]) -> dict:
+def _with_file(label: str, table: Table, rename: Callable[[str, str], str]) -> Table:
     if "file" not in table:
         return dict(table)
     return table | {"file": rename(table.get("name", label), str(table["file"]))}
 
 
 def _csv_renamed(
-    label: str, table: dict, names: tuple[str, ...], rename: Callable[[str, str], str]
-) -> dict:
+    label: str, table: Table, names: tuple[str, ...], rename: Callable[[str, str], str]
+) -> Table:
     files = {name: table[name] for name in names if time_functions.is_csv(table.get(name))}
     return table | {name: rename(f"{label}-{name}", file) for name, file in files.items()}
 

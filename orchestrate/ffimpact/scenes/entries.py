@@ -6,12 +6,13 @@ import copy
 import re
 import tomllib
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
 from ..failure import BadInput, brief
 from ..input import parameters
-from ..input.parameters import Value
+from ..input.parameters import Table
 
 __all__ = ["release", "set_entry", "toml_value"]
 
@@ -32,7 +33,7 @@ EVERYWHERE = ("penalty", "dt")  # entries that depend on every body
 SIZES = ("mesh_size", "contact_mesh_size")  # likewise at the top of a scene
 
 
-def set_entry(content: dict, name: str, value: Value | list) -> dict:
+def set_entry(content: Table, name: str, value: Any) -> Table:
     """Returns the tables of a file with one entry set.
 
     Names are dotted: "body.2.young", "contact.pair.1.penalty", "body.1.velocity.2". Tables and
@@ -40,7 +41,8 @@ def set_entry(content: dict, name: str, value: Value | list) -> dict:
     program then chooses its value. Raises BadInput if the scene has no such table or component.
     """
     changed = copy.deepcopy(content)
-    container, path = changed, ""
+    container: Any = changed
+    path = ""
     *parents, last = name.split(".")
     for step, following in zip(parents, [*parents[1:], last]):
         path = f"{path}.{step}" if path else step
@@ -64,7 +66,7 @@ def set_entry(content: dict, name: str, value: Value | list) -> dict:
     return changed
 
 
-def release(content: dict, names: list[str]) -> tuple[str, ...]:
+def release(content: Table, names: list[str]) -> tuple[str, ...]:
     """Resets entries that depend on the changed entries `names` (FOLLOWS) to automatic: removes
     them from the tables `content`. Returns one message for each.
 
@@ -99,7 +101,7 @@ def release(content: dict, names: list[str]) -> tuple[str, ...]:
     return tuple(messages)
 
 
-def _tables(value, path: str = "") -> Iterator[tuple[str, dict]]:
+def _tables(value: Any, path: str = "") -> Iterator[tuple[str, Table]]:
     """Yields all tables in a table or a list, with their dotted names."""
     if isinstance(value, dict):
         yield path, value
@@ -124,7 +126,7 @@ def _table_of(name: str) -> tuple[str, str]:
     return ".".join(parts[:depth]), ".".join(parts[depth : depth + 1])
 
 
-def _key(container: dict | list, step: str, path: str, name: str) -> str | int:
+def _key(container: Table | list[Any], step: str, path: str, name: str) -> str | int:
     """Returns the key of one part of a dotted name; in a list it is the index from 0."""
     if not step:
         raise BadInput(
@@ -143,7 +145,7 @@ def _key(container: dict | list, step: str, path: str, name: str) -> str | int:
     return int(step) - 1
 
 
-def toml_value(value):
+def toml_value(value: Any) -> Any:
     """Returns the value of a text by TOML's rules, or the text itself if it has none. Numbers and
     arrays of numpy become plain numbers and lists.
     """

@@ -1,9 +1,8 @@
 """Changes the sizes of elements and steps of a scene, for the runs that estimate an error."""
 
 import math
-from collections.abc import Mapping
 
-from ..input.parameters import Value
+from ..input.parameters import Table
 from ..output import estimate
 from .approach import onsets_of
 from .bodies import SIZES
@@ -13,7 +12,7 @@ from .scene import Scene
 __all__ = ["scaled"]
 
 
-def scaled(scene: Scene, used: Mapping, factor: float) -> dict[str, Value | list]:
+def scaled(scene: Scene, used: Table, factor: float) -> Table:
     """Returns the entries to override in a scene, run before as the tables `used`, for `factor`
     times its elements and steps.
 
@@ -21,13 +20,13 @@ def scaled(scene: Scene, used: Mapping, factor: float) -> dict[str, Value | list
     strikes. Meshes of files stay, too.
     """
     kept = ("penalty", "slip_velocity", "friction_dynamic")
-    entries = {f"contact.{name}": used["contact"][name] for name in kept}
+    entries: Table = {f"contact.{name}": used["contact"][name] for name in kept}
     if used["contact"].get("pair"):
         entries["contact.pair"] = _pairs(scene, used["contact"]["pair"], factor)
     entries["accuracy"] = estimate.loosened(used["accuracy"], factor)
     stretched = any("mesh_stretch" in table for table in used["body"])
     # errors of fronts are of first order in the elements
-    first_order = math.sqrt(scene.values["accuracy"] * entries["accuracy"])
+    first_order = math.sqrt(scene.number("accuracy") * entries["accuracy"])
     finer = scene.override({"accuracy": first_order})
     strikes = fronts(finer, onsets_of(scene)) if stretched else []
     for k, (body, table) in enumerate(zip(scene.bodies, used["body"])):
@@ -45,7 +44,7 @@ def scaled(scene: Scene, used: Mapping, factor: float) -> dict[str, Value | list
     return entries | estimate.output(factor)
 
 
-def _pairs(scene: Scene, used: list[dict], factor: float) -> list[dict]:
+def _pairs(scene: Scene, used: list[Table], factor: float) -> list[Table]:
     """Returns the tables [[contact.pair]] for `factor` times the elements. If the penalty of a flat
     strike is automatic, it changes so that the front rises in `factor` times the time. The
     estimated error is then that of elements and penalty together (front.py).
@@ -55,13 +54,14 @@ def _pairs(scene: Scene, used: list[dict], factor: float) -> list[dict]:
         return used
     onsets = [front.onset for front in fronts(scene, onsets_of(scene))]
     # The index -1 is obstacle 0.
-    others = [surface.name for surface in [*scene.bodies, *reversed(scene.obstacles)]]
+    others = [body.name for body in scene.bodies]
+    others += [obstacle.name for obstacle in reversed(scene.obstacles)]
     flat = [
         [others[onset.first], others[onset.second]]
         for onset in onsets
         if (onset.first, onset.second) not in fixed_pairs
     ]
-    softer = factor ** scene.contact["exponent"]
+    softer = factor ** scene.number("exponent")
     return [
         pair | {"penalty": pair["penalty"] / softer} if pair["bodies"] in flat else pair
         for pair in used

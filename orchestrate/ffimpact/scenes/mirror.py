@@ -3,14 +3,20 @@ three dimensions its half z >= 0 or the quarter x >= 0, z >= 0 (`symmetry`). It 
 and spins zero.
 """
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from ..failure import BadInput
 from ..geometry.outlines import rotation
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
 from ..mesh import revolution
+from ..mesh.solids import Solid
 from .bodies import Body
 from .obstacles import Obstacle
+
+if TYPE_CHECKING:
+    from .scene import Scene
 
 __all__ = ["COPIES", "copies", "mirror_axes", "symmetric_along"]
 
@@ -30,7 +36,7 @@ def mirror_axes(dimension: Dimension, copies: int) -> tuple[int, ...]:
     return (0,) if dimension is AXISYMMETRIC or copies == 2 else ()
 
 
-def copies(scene) -> int:
+def copies(scene: "Scene") -> int:
     """Returns the symmetry factor 1, 2 or 4: whole scene over computed part. Of revolution it is 1.
     Raises BadInput if the scene has less symmetry than its entry demands.
     """
@@ -52,7 +58,7 @@ def copies(scene) -> int:
     return COPIES[symmetry]
 
 
-def symmetric_along(scene) -> list[str]:
+def symmetric_along(scene: "Scene") -> list[str]:
     """Returns the axes along which no body can move, because the scene is its own mirror image in a
     plane normal to the axis. A case of the paper (without bodies) counts as not symmetric.
     """
@@ -62,7 +68,7 @@ def symmetric_along(scene) -> list[str]:
     return [AXES[axis] for axis in (0, 1) if planar and _is_mirrored_in_plane(scene, axis)]
 
 
-def _is_mirrored_in_plane(scene, axis: int) -> bool:
+def _is_mirrored_in_plane(scene: "Scene", axis: int) -> bool:
     """Whether a plane scene is its own mirror image in the line normal to an axis through the centre
     of its first body. Shapes are compared by their signed distances.
     """
@@ -71,7 +77,8 @@ def _is_mirrored_in_plane(scene, axis: int) -> bool:
     image = np.where(np.arange(2) == axis, -1.0, 1.0)
 
     def mirrored(points: np.ndarray) -> np.ndarray:
-        return points * image + (1 - image) * at
+        image_points: np.ndarray = points * image + (1 - image) * at
+        return image_points
 
     def is_its_image(body: Body) -> bool:
         own = np.abs(body.placed.gap(mirrored(body.placed.points))).max() <= ALIKE * radius
@@ -96,21 +103,21 @@ def _is_mirrored_in_plane(scene, axis: int) -> bool:
     )
 
 
-def _broken_in_plane(scene) -> str:
+def _broken_in_plane(scene: "Scene") -> str:
     """Returns why the half x >= 0 of a plane scene does not represent all of it, "" if it does."""
     if scene.bodies[0].position[0] != 0 or not _is_mirrored_in_plane(scene, 0):
         return "the scene is not its own mirror image in x = 0"
     for k, body in enumerate(scene.bodies):
         if body.mesh or body.angle or any(body.moments):
             return f"'{body.name}' is a file's, is turned, or has a moment of inertia of its own"
-        if not revolution.crossing_axis(body.outline):
+        if not revolution.crossing_axis(body.section):
             return f"'{body.name}' has parts that do not cross x = 0"
         if any(pair.first == pair.second == k for pair in scene.pairs):
             return f"'{body.name}' may come into contact with itself"
     return ""
 
 
-def _broken(scene, axis: int) -> str:
+def _broken(scene: "Scene", axis: int) -> str:
     """Returns what has no mirror image in the plane through the origin normal to an axis, "" if the
     scene is symmetric.
     """
@@ -136,9 +143,10 @@ def _of_body(body: Body, axis: int, plane: str) -> str:
         return f"spins out of {plane}"
     if any(body.moments):
         return "has moments of inertia of its own"
-    if body.mesh or body.outline.geometry:
+    placed = body.placed
+    if body.mesh or not isinstance(placed, Solid) or placed.geometry:
         return "is a file's"
-    if not body.outline.shape.is_mirrored(body.placed.rotation.T @ normal):
+    if not placed.shape.is_mirrored(placed.rotation.T @ normal):
         return f"is not its own mirror image in {plane}"
     return _of_conditions(body, axis, plane)
 
@@ -147,7 +155,8 @@ def _of_conditions(body: Body, axis: int, plane: str) -> str:
     """Returns which support or load of a body has no mirror image or acts along the axis, "" if
     none.
     """
-    turned = rotation(body.angle) if np.isscalar(body.angle) else body.placed.rotation
+    placed = body.placed
+    turned = placed.rotation if isinstance(placed, Solid) else rotation(body.angle)
     for kind, listed in (("support", body.supports), ("load", body.loads)):
         if not all(condition.part.is_mirrored(axis, turned) for condition in listed):
             return f"has a {kind} that is not its own mirror image in {plane}"

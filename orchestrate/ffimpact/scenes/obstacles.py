@@ -15,6 +15,7 @@ from numpy.polynomial import Polynomial
 
 from ..failure import BadInput, gathered
 from ..geometry import implicit, polyline, time_functions, tumbling
+from ..geometry.outlines import Shape
 from ..geometry.time_functions import TimeFunction, displacements, farthest
 from ..input import models
 from ..input.dimension import AXISYMMETRIC, SOLID, Dimension
@@ -36,6 +37,8 @@ __all__ = [
     "settled",
 ]
 
+# Returns the position (axes,) of the centre of a sphere relative to a point, polynomials of time.
+SeenFrom = Callable[[np.ndarray], np.ndarray]
 DRIVE = ("motion", "rotation", "pivot", "axis")  # entries of an obstacle with a prescribed motion
 
 
@@ -81,7 +84,7 @@ class Obstacle:
         """
         return self.numbers[axis] == 0
 
-    def regions(self, seen_from: Callable, bounding_radius: float) -> Iterator[list[Polynomial]]:
+    def regions(self, seen_from: SeenFrom, bounding_radius: float) -> Iterator[list[Polynomial]]:
         """Yields for each part of the surface a list of polynomials of time. All of a list are <= 0 while
         a moving sphere of this radius [m] is near that part. seen_from(point): the position
         (axes,) of its centre relative to a point, of polynomials.
@@ -124,7 +127,7 @@ class Obstacle:
         """Returns gaps for element sizes: like gap(), but to first order far from an implicit obstacle."""
         return self.gap(points)
 
-    def gap_from(self, shape) -> float:
+    def gap_from(self, shape: Shape) -> float:
         """Returns the smallest gap [m] of the outline or surface of a body."""
         return shape.least(self.gap)
 
@@ -169,7 +172,7 @@ class Plane(Obstacle):
     def is_mirrored(self, axis: int) -> bool:
         return self.numbers[3 + axis] == 0
 
-    def regions(self, seen_from: Callable, bounding_radius: float) -> Iterator[list[Polynomial]]:
+    def regions(self, seen_from: SeenFrom, bounding_radius: float) -> Iterator[list[Polynomial]]:
         axes = len(self.velocity)
         point, normal = np.array(self.numbers[:axes]), np.array(self.numbers[axes:])
         yield [seen_from(point) @ normal - bounding_radius]
@@ -186,12 +189,13 @@ class Circle(Obstacle):
 
     def gap(self, points: np.ndarray) -> np.ndarray:
         axes = points.shape[1]
-        return np.linalg.norm(points - self.numbers[:axes], axis=1) - self.numbers[axes]
+        distance: np.ndarray = np.linalg.norm(points - self.numbers[:axes], axis=1) - self.numbers[axes]
+        return distance
 
     def radius_at(self, point: np.ndarray, within: float) -> float:
         return self.numbers[-1]
 
-    def regions(self, seen_from: Callable, bounding_radius: float) -> Iterator[list[Polynomial]]:
+    def regions(self, seen_from: SeenFrom, bounding_radius: float) -> Iterator[list[Polynomial]]:
         centre, radius = np.array(self.numbers[:-1]), self.numbers[-1]
         yield [(seen_from(centre) ** 2).sum() - (radius + bounding_radius) ** 2]
 
@@ -207,7 +211,7 @@ class Bowl(Circle):
     def radius_at(self, point: np.ndarray, within: float) -> float:
         return np.inf
 
-    def regions(self, seen_from: Callable, bounding_radius: float) -> Iterator[list[Polynomial]]:
+    def regions(self, seen_from: SeenFrom, bounding_radius: float) -> Iterator[list[Polynomial]]:
         centre, radius = np.array(self.numbers[:-1]), self.numbers[-1]
         yield [max(0.0, radius - bounding_radius) ** 2 - (seen_from(centre) ** 2).sum()]
 
@@ -241,7 +245,7 @@ class Polyline(Obstacle):
     def radius_at(self, point: np.ndarray, within: float) -> float:
         return polyline.radius_at(point, within, self.numbers)
 
-    def regions(self, seen_from: Callable, bounding_radius: float) -> Iterator[list[Polynomial]]:
+    def regions(self, seen_from: SeenFrom, bounding_radius: float) -> Iterator[list[Polynomial]]:
         sides, near = polyline.sides_of(self.numbers), bounding_radius + self.numbers[1]
         for point, along, low, high in zip(sides.start, sides.along, sides.low, sides.high):
             r = seen_from(point)
@@ -280,10 +284,10 @@ class Implicit(Obstacle):
     def gap_for_sizes(self, points: np.ndarray) -> np.ndarray:
         return implicit.gap(points, self.numbers, bounds=False)
 
-    def gap_from(self, shape) -> float:
+    def gap_from(self, shape: Shape) -> float:
         return self.nearest(shape)[0]
 
-    def nearest(self, shape) -> tuple[float, np.ndarray]:
+    def nearest(self, shape: Shape) -> tuple[float, np.ndarray]:
         """Returns the smallest gap [m] of a body and the outward normal there. The gap is that of the
         points of the body, or of its whole circle or sphere.
         """
@@ -377,7 +381,8 @@ class Drive:
         """
         axes = points.shape[1]
         turned = self.rotation(t)[:axes, :axes]
-        return self.pivot + (points - self.pivot - self.shift(t)) @ turned
+        at_start: np.ndarray = self.pivot + (points - self.pivot - self.shift(t)) @ turned
+        return at_start
 
     def shift(self, t: float) -> np.ndarray:
         """The displacement (axes,) [m] at the time t [s] since the start."""

@@ -3,6 +3,7 @@ sections of scene.dat (edp/program/input/scene-file.idp).
 """
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -13,21 +14,23 @@ from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
 from ..mesh import mesh
 from ..mesh.mesh import Mesh
 from ..mesh.solid_mesh import SolidMesh
+from ..mesh.solids import Solid
 from .bodies import Body
 from .conditions import KINDS, NEVER, ON_SIDE, SIDES, Part, Support
 from .mirror import mirror_axes
-from .obstacles import Drive
+from .obstacles import Drive, Obstacle
 
 __all__ = ["sections"]
 
 ALONG = 1e-6  # deviation of the components of a unit normal that counts as along an axis
-Lines = list[tuple]
+Row = tuple[Any, ...]
+Lines = list[Row]
 
 
 def sections(
     bodies: Sequence[Body],
     meshes: Sequence[Mesh | SolidMesh],
-    obstacles: Sequence,
+    obstacles: Sequence[Obstacle],
     dimension: Dimension,
     copies: int,
 ) -> Lines:
@@ -80,7 +83,7 @@ def sections(
 
 def _support_row(
     support: Support, surface: "_Surface", elements: np.ndarray, functions: list[TimeFunction]
-) -> tuple:
+) -> Row:
     """The row of a support between body and elements: fixed components, release, functions."""
     fixed = surface.fixed(support, elements)
     moved = [function if held else None for function, held in zip(support.motion, fixed)]
@@ -88,7 +91,7 @@ def _support_row(
     return *map(int, fixed), *padding, support.release, *_numbered(functions, moved)
 
 
-def _drive_row(drive: Drive, dimension: Dimension, functions: list[TimeFunction]) -> tuple:
+def _drive_row(drive: Drive, dimension: Dimension, functions: list[TimeFunction]) -> Row:
     """The row of a driven obstacle after its number: functions, pivot, axis."""
     numbers = _numbered(functions, list(drive.translation))[:3]
     turn = _numbered(functions, [drive.turn])[0]
@@ -96,7 +99,7 @@ def _drive_row(drive: Drive, dimension: Dimension, functions: list[TimeFunction]
     return *numbers, turn, *drive.pivot, *padding, *drive.axis
 
 
-def _line(function: TimeFunction) -> tuple:
+def _line(function: TimeFunction) -> Row:
     """The line of a time function: number of knots, the largest value and slope, knots."""
     largest = function.largest_value, function.largest_slope
     return len(function.knots), *largest, *function.knots.ravel().tolist()
@@ -108,9 +111,11 @@ def _numbered(functions: list[TimeFunction], added: list[TimeFunction | None]) -
     """
     numbers = []
     for function in added:
-        needed = function is not None and not function.is_zero
-        numbers.append(len(functions) if needed else -1)
-        functions += [function] if needed else []
+        if function is None or function.is_zero:
+            numbers.append(-1)
+        else:
+            numbers.append(len(functions))
+            functions.append(function)
     return numbers + [-1] * (3 - len(added))
 
 
@@ -121,13 +126,17 @@ class _Surface:
         self.body, self.made, self.dimension, self.copies = body, made, dimension, copies
         # `axes` transforms the mesh to the body's own axes, `turn` to its orientation at the start.
         turn = rotation(body.angle) if dimension is PLANE_STRAIN else np.eye(dimension.axes)
-        self.axes = body.at(0.0, np.zeros(3)).rotation if dimension is SOLID else np.eye(2)
+        solid = body.at(0.0, np.zeros(dimension.axes))
+        self.axes = solid.rotation if isinstance(solid, Solid) else np.eye(2)
         self.turn = turn
         self.own = made.points @ self.axes
 
     def placed(self, elements: np.ndarray) -> np.ndarray:
         """Returns the corners (f, axes, axes) [m] of boundary elements at the start."""
-        return (self.made.points @ self.turn.T + self.body.position)[self.made.sides[elements]]
+        corners: np.ndarray = (self.made.points @ self.turn.T + self.body.position)[
+            self.made.sides[elements]
+        ]
+        return corners
 
     @property
     def own_labels(self) -> np.ndarray:
@@ -135,15 +144,13 @@ class _Surface:
         symmetry.
         """
         if self.dimension is not SOLID:
-            return self.made.labels != mesh.AXIS
-        if self.copies > 1:
-            corners = self.made.points[self.made.sides] + self.body.position
-            folded = [
-                abs(corners[:, :, axis]).max(axis=1) > ON_SIDE * np.ptp(self.own)
-                for axis in mirror_axes(self.dimension, self.copies)
-            ]
-            return np.all(folded, axis=0)
-        return np.ones(len(self.made.sides), dtype=bool)
+            own: np.ndarray = self.made.labels != mesh.AXIS
+            return own
+        own = np.ones(len(self.made.sides), dtype=bool)
+        corners = self.made.points[self.made.sides] + self.body.position
+        for axis in mirror_axes(self.dimension, self.copies):
+            own &= abs(corners[:, :, axis]).max(axis=1) > ON_SIDE * np.ptp(self.own)
+        return own
 
     def elements(self, part: Part) -> np.ndarray:
         """Returns the numbers of the elements of a part among those of the body. Raises BadInput if
@@ -245,14 +252,15 @@ class _Surface:
 
 
 def _refuse_touching(
-    part: Part, corners: np.ndarray, k: int, bodies: Sequence[Body], obstacles: Sequence
+    part: Part, corners: np.ndarray, k: int, bodies: Sequence[Body], obstacles: Sequence[Obstacle]
 ) -> None:
     """Raises BadInput if a part with a support is in contact with an obstacle or another body at
     the start.
     """
     points = corners.reshape(-1, corners.shape[2])
     near = ON_SIDE * bodies[k].outline.half_thickness
-    for other in [*(body for j, body in enumerate(bodies) if j != k), *obstacles]:
+    others: list[Body | Obstacle] = [body for j, body in enumerate(bodies) if j != k]
+    for other in [*others, *obstacles]:
         gap = other.placed.gap(points) if isinstance(other, Body) else other.gap(points)
         if gap.min() <= near:
             raise BadInput(
@@ -280,7 +288,8 @@ def _refuse_opposite(body: Body, surface: _Surface) -> None:
     for j, second in enumerate(body.supports):
         for first in body.supports[:j]:
             elements = [surface.elements(support.part) for support in (first, second)]
-            if not np.isin(*elements).any() or second.release < first.release:
+            common = np.intersect1d(elements[0], elements[1])
+            if not len(common) or second.release < first.release:
                 continue
             fixed = [surface.fixed(*pair) for pair in zip((first, second), elements)]
             for k, both in enumerate(zip(*fixed)):

@@ -12,16 +12,17 @@ import shutil
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from ..failure import BadInput, brief, gathered
-from ..geometry.outlines import Shape, normal_of
+from ..geometry.outlines import Outline, Shape, normal_of
 from ..input import dimension, models, parameters
 from ..input.dimension import AXISYMMETRIC, SOLID, Dimension
 from ..input.models import CONTACT, MATERIAL, OWN, listed
-from ..input.parameters import Value
+from ..input.parameters import Table, Value
 from ..mesh.solid_file import declares_unit, takes_in_others
 from ..output import former
 from ..output.columns import Features, recorded
@@ -88,7 +89,7 @@ class Scene:
     name: str
     title: str
     script: str
-    content: dict
+    content: Table
     folder: Path
     values: dict[str, Value]
     dimension: Dimension
@@ -149,12 +150,17 @@ class Scene:
         }
 
     @property
-    def decisive_entries(self) -> dict:
+    def decisive_entries(self) -> Table:
         """The entries that decide the results, apart from the script, and the sha256 of files. Two
         scenes for which they are equal are the same run.
         """
         files: list[str] = []
-        conditions.files_renamed(self.content, lambda _, name: files.append(name) or name)
+
+        def listed_file(label: str, name: str) -> str:
+            files.append(name)
+            return name
+
+        conditions.files_renamed(self.content, listed_file)
         meshes = {
             name: hashlib.sha256((self.folder / name).read_bytes()).hexdigest() for name in files
         }
@@ -163,7 +169,7 @@ class Scene:
             "files": meshes
         }
 
-    def with_files_in(self, where: Path, tables: dict) -> dict:
+    def with_files_in(self, where: Path, tables: Table) -> Table:
         """Copies the files of bodies, obstacles, supports and loads to `where`/body-files and
         returns `tables` with the paths of the copies.
 
@@ -245,7 +251,7 @@ class Scene:
         return {name: max(getattr(body, name) for body in self.bodies) for name in SIZES}
 
 
-def read(content: dict, folder: Path, name: str) -> Scene:
+def read(content: Table, folder: Path, name: str) -> Scene:
     """Returns the scene in the tables of a file. Paths of other files are relative to `folder`.
     Raises BadInput for whatever is wrong in the tables.
     """
@@ -270,12 +276,12 @@ def read(content: dict, folder: Path, name: str) -> Scene:
             f"dimension = '{scene_dimension.name}' (accepted: {scene_dimension.script})"
         )
     all_bodies, all_obstacles, contact, values = gathered(
-        [
+        (
             lambda: bodies.read(tables.bodies, top, folder, scene_dimension),
             lambda: obstacles.read(tables.obstacles, scene_dimension, top.end_time or 0.0, folder),
             lambda: _parameters(tables.contact, CONTACT, scene_dimension),
             lambda: _parameters(top, RUN, scene_dimension),
-        ]
+        )
     )
     for key in SIZES:
         if getattr(top, key) and all(body.mesh for body in all_bodies):
@@ -413,16 +419,17 @@ def _names(all_bodies: list[Body], all_obstacles: list[Obstacle]) -> dict[str, i
     """Returns the index of each body and obstacle by name, as in a Pair. Raises BadInput if a name
     occurs twice.
     """
-    index, where = {}, {}
-    for path, number, surface in [
-        *((f"body.{k + 1}", k, body) for k, body in enumerate(all_bodies)),
-        *((f"obstacle.{k + 1}", -1 - k, obstacle) for k, obstacle in enumerate(all_obstacles)),
+    index: dict[str, int] = {}
+    where: dict[str, str] = {}
+    for path, number, name in [
+        *((f"body.{k + 1}", k, body.name) for k, body in enumerate(all_bodies)),
+        *((f"obstacle.{k + 1}", -1 - k, other.name) for k, other in enumerate(all_obstacles)),
     ]:
-        if surface.name in index:
+        if name in index:
             raise BadInput(
-                f"{path}.name: '{brief(surface.name)}' is the name of {where[surface.name]} too (accepted: each name once)"
+                f"{path}.name: '{brief(name)}' is the name of {where[name]} too (accepted: each name once)"
             )
-        index[surface.name], where[surface.name] = number, path
+        index[name], where[name] = number, path
     return index
 
 
@@ -433,7 +440,7 @@ def _own_of_obstacles(
     tables: list[models.Obstacle], bodies_count: int
 ) -> dict[tuple[int, int], Pair]:
     """Returns the contact parameters in [[obstacle]] tables, as exceptions for every body."""
-    pairs = {}
+    pairs: dict[tuple[int, int], Pair] = {}
     for k, table in enumerate(tables):
         own = {key: getattr(table, key) for key in OWN if key in table}
         pairs |= {
@@ -457,7 +464,7 @@ def _penalties(
 
 def _exceptions(tables: list[models.Pair], index: dict[str, int]) -> dict[tuple[int, int], Pair]:
     """Returns the exceptions in the tables [[contact.pair]] by the two indices."""
-    pairs = {}
+    pairs: dict[tuple[int, int], Pair] = {}
     for table in tables:
         both = _partners(table.entry, table.bodies, index)
         if both in pairs:
@@ -492,19 +499,19 @@ def _touching_themselves(
         return [0]
     if self_contact == "off":
         return []
-    flat = scene_dimension is not SOLID
     return [
         k
         for k, body in enumerate(all_bodies)
         if not body.rigid
         and (
             self_contact == "on"
-            or (flat and body.outline.folding(scene_dimension is AXISYMMETRIC) < FOLDING)
+            or isinstance(body.outline, Outline)
+            and body.outline.folding(scene_dimension is AXISYMMETRIC) < FOLDING
         )
     ]
 
 
-def _partners(path: str, names, index: dict[str, int]) -> tuple[int, int]:
+def _partners(path: str, names: Any, index: dict[str, int]) -> tuple[int, int]:
     """Returns the indices of the two surfaces of a contact pair, the body or the first body
     first.
     """
@@ -601,7 +608,7 @@ def gap_between(first: Shape, second: Shape) -> float:
 def gap_to_obstacle(outline: Shape, obstacle: Obstacle) -> float:
     """Returns the distance [m] of a body from an obstacle, negative where they overlap."""
     centre, least = outline.area_centre, obstacle.gap_from(outline)
-    nearest = centre - obstacle.gap(centre[None]) * normal_of(obstacle, centre)
+    nearest = centre - obstacle.gap(centre[None]) * normal_of(obstacle.gap, centre)
     # The projection `nearest` is not on the obstacle where its distance has no gradient. The gap of
     # the body at `nearest` finds an obstacle inside the body.
     is_of_it = obstacle.gap(nearest[None])[0] < 1e-4 * outline.half_thickness

@@ -67,7 +67,10 @@ def _combined(iterates: list[np.ndarray], residuals: list[np.ndarray]) -> np.nda
     steps, falls = np.diff(iterates[last], axis=0).T, np.diff(residuals[last], axis=0).T
     if steps.size == 0:
         return iterates[-1]
-    return iterates[-1] - steps @ np.linalg.lstsq(falls, residuals[-1], rcond=1e-10)[0]
+    improved: np.ndarray = (
+        iterates[-1] - steps @ np.linalg.lstsq(falls, residuals[-1], rcond=1e-10)[0]
+    )
+    return improved
 
 
 def _write(file: Path, word: str, change: np.ndarray) -> None:
