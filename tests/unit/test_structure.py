@@ -86,7 +86,7 @@ def test_no_private_name_of_another_module_is_taken(module):
     assert not [name for name in taken if name.startswith("_") and not name.startswith("__")]
 
 
-UNTYPED = 31
+UNTYPED = 10
 
 
 def test_modules_without_checked_types_do_not_become_more():

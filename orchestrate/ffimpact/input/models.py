@@ -480,6 +480,7 @@ def _with_parameters(law: type[Material], entries: Any, names: tuple[str, ...]) 
         return entries
     if missing := [name for name, value in zip(names, values) if value is None]:
         rule = rule_of(law, missing[0])
+        assert rule
         raise BadInput(f"{law.__name__}: {missing[0]}: is missing (accepted: {rule.accepted})")
     columns = [np.atleast_1d(plain(value)) for value in values]
     if len({len(column) for column in columns}) > 1:

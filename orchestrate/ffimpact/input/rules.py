@@ -132,7 +132,7 @@ class Numbers(Rule):
     meaning: str = ""
 
     @property
-    def accepted(self) -> str:  # type: ignore[override]
+    def accepted(self) -> str:
         return f"1 to {self.largest_count} numbers, each {self.low:g} to {self.high:g}"
 
     def checked(self, value: Any, dimension: Dimension | None) -> Any:

@@ -103,6 +103,10 @@ class Mesh:
     NEVER: ClassVar[int] = 3  # label of edges that never come into contact
 
     @property
+    def elements(self) -> np.ndarray:
+        return self.triangles
+
+    @property
     def sides(self) -> np.ndarray:
         return self.edges
 

@@ -90,6 +90,10 @@ class SolidMesh:
     NEVER: ClassVar[int] = 4  # label of faces that never come into contact
 
     @property
+    def elements(self) -> np.ndarray:
+        return self.cells
+
+    @property
     def sides(self) -> np.ndarray:
         return self.faces
 

@@ -18,6 +18,7 @@ from ..failure import BadInput
 from ..geometry.outlines import Outline, Shape
 from ..geometry.time_functions import farthest
 from ..input.dimension import PLANE_STRAIN
+from ..input.parameters import Value
 from ..mesh import mesh
 from .bodies import Body
 from .conditions import WHOLE
@@ -72,13 +73,17 @@ class Onset:
     pressed: float = 0.0
     shielded: bool = False
 
+    def shape(self, k: int) -> Shape:
+        """Returns the shape of body number k at the onset."""
+        first, second = self.outlines
+        return second if k == self.second and isinstance(second, Shape) else first
+
     def own_normal(self, k: int, body: Body) -> np.ndarray:
         """Returns the normal in the axes of body number k, not turned, without the round-off of the
         onset, because a mesh changes with every digit.
         """
-        shape = self.outlines[0 if k == self.first else 1]
         axes = np.vstack([np.zeros(len(self.normal)), np.eye(len(self.normal))])
-        carried = body.outline.carried(shape, axes)
+        carried = body.outline.carried(self.shape(k), axes)
         normal = np.round((carried[1:] - carried[0]) @ self.normal, 6)
         unit: np.ndarray = normal / np.linalg.norm(normal)
         return unit
@@ -147,10 +152,9 @@ def _near(scene: Scene) -> list[list[int]]:
 def _fall(scene: Scene) -> np.ndarray:
     """Returns the acceleration of free bodies [m/s2]."""
     fall = np.zeros(scene.dimension.axes)
-    fall[:2] = (
-        scene.values.get("body_force_x", 0.0),
-        scene.values["body_force_y"] - scene.values["gravity"],
-    )
+    if "body_force_x" in scene.values:
+        fall[0] = scene.number("body_force_x")
+    fall[1] = scene.number("body_force_y") - scene.number("gravity")
     return fall
 
 
@@ -190,9 +194,10 @@ def _in_turn(scene: Scene, onset: Onset) -> list[Onset]:
     """
     onsets = [onset]
     while scene.dimension is PLANE_STRAIN and len(onsets) <= MORE and math.isfinite(onset.time):
-        scene = _rebound(scene, onset)
-        if scene is None:
+        rebound = _rebound(scene, onset)
+        if rebound is None:
             break
+        scene = rebound
         onset = _onset(scene, onset.first, onset.second)
         onsets += [onset] if math.isfinite(onset.time) else []
     return onsets
@@ -212,8 +217,8 @@ def _rebound(scene: Scene, onset: Onset) -> Scene | None:
         if k < 0:
             closing += scene.obstacles[-1 - k].velocity @ n
             continue
-        body = scene.bodies[k]
-        shape = onset.outlines[0 if k == onset.first else 1]
+        body, shape = scene.bodies[k], onset.shape(k)
+        assert isinstance(shape, Outline)  # in the plane
         held = bool(body.supports)  # neither turns nor falls, as with infinite mass
         lever, mass = _lever(shape, point, n), math.inf if held else body.density * shape.area
         own_fall = np.zeros(len(n)) if held else fall
@@ -238,7 +243,7 @@ def _rebound(scene: Scene, onset: Onset) -> Scene | None:
             velocity=velocity,
             spin=spin,
         )
-    still = {
+    still: dict[str, Value] = {
         name: 0.0 for name in ("gravity", "body_force_x", "body_force_y") if name in scene.values
     }
     return replace(scene, bodies=bodies, values=scene.values | still)
@@ -263,17 +268,15 @@ def _onset(scene: Scene, first: int, second: int) -> Onset:
     other = scene.bodies[second] if second >= 0 else scene.obstacles[-1 - second]
     # Two bodies without supports fall alike, so that gravity does not change their relative
     # velocity.
-    falls = [not surface.supports for surface in (body, other) if isinstance(surface, Body)]
+    falls = [not scene.bodies[k].supports for k in (first, second) if k >= 0]
     pull = _fall(scene) * (falls[0] - (falls[1] if second >= 0 else 0))
     start = body.velocity - other.velocity
-    radius = min(
-        [body.outline.half_thickness, *([other.outline.half_thickness] if second >= 0 else [])]
-    )
-    loaded = max(loaded_pull(surface) for surface in (body, other) if isinstance(surface, Body))
+    bodies = [surface for surface in (body, other) if isinstance(surface, Body)]
+    radius = min(surface.outline.half_thickness for surface in bodies)
+    loaded = max(loaded_pull(surface) for surface in bodies)
     turning = sum(
         surface.outline.fastest(surface.angle, surface.spin) * surface.outline.reach
-        for surface in (body, other)
-        if isinstance(surface, Body)
+        for surface in bodies
     )
     t, never = _first_touch(body, other, start, pull, turning, radius)
     met = not math.isinf(t)
@@ -314,11 +317,9 @@ def _onset(scene: Scene, first: int, second: int) -> Onset:
         return onset
     # `spun` [m/s] is the closing velocity of the points in contact, with that by spin.
     point, spun = _middle(onset), velocity @ normal
-    for sign, struck, shape in zip((1, -1), (body, other), outlines):
-        if (
-            isinstance(struck, Body)
-            and abs(lever := _lever(shape, point, normal)) > ECCENTRIC * shape.reach
-        ):
+    for sign, k, struck in zip((1, -1), (first, second), bodies):
+        shape = onset.shape(k)
+        if abs(lever := _lever(shape, point, normal)) > ECCENTRIC * shape.reach:
             spun += sign * struck.spin * lever
     return replace(onset, closing=float(abs(spun)))
 
@@ -342,11 +343,9 @@ def loaded_pull(body: Body) -> float:
         for load in body.loads
         if load.kind == "traction" or (load.kind == "pressure" and load.part.name not in WHOLE)
     ]
-    if isinstance(body.outline, Outline):
-        width, content = 2 * body.outline.half_thickness, body.outline.area
-    else:
-        width, content = math.pi * body.outline.half_thickness**2, body.outline.volume
-    return sum(stress) * width / (body.density * content)
+    half = body.outline.half_thickness
+    width = 2 * half if isinstance(body.outline, Outline) else math.pi * half**2
+    return sum(stress) * width / (body.density * body.outline.content)
 
 
 def _pressed(scene: Scene, onset: Onset) -> float:
@@ -377,7 +376,7 @@ def _between(scene: Scene, drive: Drive) -> bool:
 def _lever(shape: Shape, point: np.ndarray, n: np.ndarray) -> float:
     """Returns the signed lever arm [m] about the centre of a body of a force along n at a point."""
     arm = point - shape.area_centre
-    return arm[0] * n[1] - arm[1] * n[0]
+    return float(arm[0] * n[1] - arm[1] * n[0])
 
 
 def turned(scene: Scene) -> Scene:
@@ -412,12 +411,8 @@ def refuse_nothing(scene: Scene, onsets: list[Onset]) -> None:
     """Raises BadInput if a run whose end is automatic would have none: a body is driven, no bodies
     ever come into contact, or a body set down on an obstacle does not leave it.
     """
-    driven = [
-        f"{kind}.{k}"
-        for kind, all_of in (("body", scene.bodies), ("obstacle", scene.obstacles))
-        for k, surface in enumerate(all_of, 1)
-        if surface.driven
-    ]
+    driven = [f"body.{k}" for k, body in enumerate(scene.bodies, 1) if body.driven]
+    driven += [f"obstacle.{k}" for k, other in enumerate(scene.obstacles, 1) if other.driven]
     if driven and (scene.values["end_time"] == 0 or scene.values["until"] == "rest"):
         raise BadInput(
             f"end_time: {scene.values['end_time']:g} with until = '{scene.values['until']}', but "
@@ -459,9 +454,9 @@ def refuse_sinking(scene: Scene, onsets: list[Onset]) -> None:
         first = min(mine, key=lambda onset: onset.time, default=None)
         if not first or not math.isfinite(first.time) or not body.sides:
             continue
-        if 0 < scene.values["end_time"] < first.time:
+        if 0 < scene.number("end_time") < first.time:
             continue
-        own, other = first.outlines if k == first.first else first.outlines[::-1]
+        own, other = first.shape(k), first.outlines[1 if k == first.first else 0]
         corners, may_touch = body.sides
         if isinstance(other, Obstacle) and other.kind != "plane":
             continue
@@ -497,10 +492,10 @@ def _at(
     another body; `pull` is the acceleration of `body` in that frame.
     """
     if isinstance(other, Body):
-        velocity, struck = body.velocity, other.at(t, other.position + other.velocity * t)
-    else:
-        velocity, struck = body.velocity - other.velocity, other
-    return body.at(t, body.position + velocity * t + pull * t**2 / 2), struck
+        placed = body.at(t, body.position + body.velocity * t + pull * t**2 / 2)
+        return placed, other.at(t, other.position + other.velocity * t)
+    velocity = body.velocity - other.velocity
+    return body.at(t, body.position + velocity * t + pull * t**2 / 2), other
 
 
 def _first_touch(
@@ -517,13 +512,11 @@ def _first_touch(
     While the pair is within its search distance, conservative advancement is used: each step is so
     short that no point can travel farther than the gap.
     """
-    rate, steps, met, before = np.linalg.norm(pull), 0, False, math.inf
+    rate, steps, met, before = float(np.linalg.norm(pull)), 0, False, math.inf
     for t, end in _within_reach(body, other, start, pull):
         while t < end:
-            gap, speed = (
-                _gap(*_at(body, other, t, pull)),
-                np.linalg.norm(start + pull * t) + turning,
-            )
+            gap = _gap(*_at(body, other, t, pull))
+            speed = float(np.linalg.norm(start + pull * t)) + turning
             met = met or gap <= MET * radius
             # The search ends when the gap is closed, or grows again as the body passes by.
             if met and (gap <= CLOSED * radius or gap >= before):

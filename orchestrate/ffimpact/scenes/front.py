@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..geometry.outlines import Outline, Shape, TubeOutline
+from ..geometry.outlines import Outline, TubeOutline
 from ..input.dimension import SOLID
 from .approach import Onset
 from .bodies import Body
@@ -70,11 +70,11 @@ class Front:
         """Returns the penalty k [Pa/m^m] for which the front has the time `rise`: t_N = k p^m is
         the pressure rho c v at the penetration p = v rise.
         """
-        return self._pressure(bodies) / (self.onset.closing * self.rise) ** exponent
+        return float(self._pressure(bodies) / (self.onset.closing * self.rise) ** exponent)
 
     def rise_on(self, penalty: float, bodies: list[Body], exponent: float) -> float:
         """Returns the rise time [s] of the front on a penalty [Pa/m^m]."""
-        return (self._pressure(bodies) / penalty) ** (1 / exponent) / self.onset.closing
+        return float((self._pressure(bodies) / penalty) ** (1 / exponent) / self.onset.closing)
 
     def _pressure(self, bodies: list[Body]) -> float:
         """Returns rho c v [Pa], with the impedances rho c of two bodies in series."""
@@ -147,7 +147,7 @@ def _across(scene: Scene, body: Body) -> float:
     """Returns the length [m] that elements of a body may have across a plane front."""
     wave, shear = body.moduli
     lateral = max(1 - 2 * shear / wave, 1e-9)
-    share = ACROSS * (_accuracy(scene) / lateral**2) ** (1 / 3)
+    share = float(ACROSS * (_accuracy(scene) / lateral**2) ** (1 / 3))
     return body.outline.half_thickness * min(1.0, share)
 
 
@@ -174,7 +174,7 @@ def _stays_plane(scene: Scene, k: int, onsets: list[Onset], landings: list[Front
         return False
     normals = np.array([front.onset.own_normal(k, body) for front in mine])
     alike = abs(normals @ normals[0]) > 1 - ALIKE
-    return bool(alike.all()) and _fills_box(body.outline, normals[0])
+    return bool(alike.all()) and _fills_box(body.section, normals[0])
 
 
 def _fills_box(outline: Outline, normal: np.ndarray) -> bool:
@@ -187,7 +187,7 @@ def _fills_box(outline: Outline, normal: np.ndarray) -> bool:
 
 def _accuracy(scene: Scene) -> float:
     """Returns the accuracy that the element sizes of a front are chosen for."""
-    return scene.values["accuracy"] / (1 if scene.values["accuracy_of"] == "promised" else 2)
+    return scene.number("accuracy") / (1 if scene.values["accuracy_of"] == "promised" else 2)
 
 
 def _size(scene: Scene, onset: Onset, k: int, across: float = 0.0) -> float:
@@ -198,24 +198,19 @@ def _size(scene: Scene, onset: Onset, k: int, across: float = 0.0) -> float:
     thickness.
     """
     body, axes = scene.bodies[k], scene.dimension.axes
-    content = body.outline.volume if scene.dimension is SOLID else body.outline.area  # [m3], [m2]
+    content = body.outline.content
     if body.mesh:
-        cells = body.mesh.cells if scene.dimension is SOLID else body.mesh.triangles
-        return (content / len(cells) / ELEMENT[axes]) ** (1 / axes)
+        return float((content / len(body.mesh.elements) / ELEMENT[axes]) ** (1 / axes))
     required = PER_ACCURACY * _accuracy(scene) * _length(onset, k)
     stretch = _stretch(required, across)
-    least = (UNKNOWNS[axes] * content / stretch ** (axes - 1) / MOST_UNKNOWNS[axes]) ** (1 / axes)
+    unknowns = UNKNOWNS[axes] * content / stretch ** (axes - 1)
+    least = float((unknowns / MOST_UNKNOWNS[axes]) ** (1 / axes))
     return min(body.outline.half_thickness / 2, max(least, required))
-
-
-def _shape(onset: Onset, k: int) -> Shape:
-    """Returns the shape of body k at the onset of contact."""
-    return onset.outlines[0 if k == onset.first else 1]
 
 
 def _length(onset: Onset, k: int) -> float:
     """Returns the length [m] of body k along the contact normal."""
-    return float(np.ptp(_shape(onset, k).points @ onset.normal))
+    return float(np.ptp(onset.shape(k).points @ onset.normal))
 
 
 def _landing(onset: Onset, k: int, body: Body, size: float) -> float:
@@ -223,7 +218,7 @@ def _landing(onset: Onset, k: int, body: Body, size: float) -> float:
     given size [m].
     """
     points, spacing = body.outline.samples(min(size, body.outline.half_thickness / 2))
-    moved = body.outline.carried(_shape(onset, k), points)
+    moved = body.outline.carried(onset.shape(k), points)
     gaps = onset.gaps(k, moved)
     landing = moved[gaps <= gaps.min() + onset.closing * size / body.wave_speed]
     walls = moved[moved[:, 0] > 0] if isinstance(body.outline, TubeOutline) else moved

@@ -354,7 +354,7 @@ def _refuse_friction(scene: Scene) -> None:
         static = own.get("friction_static", common["friction_static"])
         inherited = "auto" if "friction_static" in own else common["friction_dynamic"]
         dynamic = own.get("friction_dynamic", inherited)
-        if dynamic != "auto" and dynamic > static:
+        if dynamic != "auto" and float(dynamic) > float(static):
             raise BadInput(
                 f"{path}.friction_dynamic: {dynamic:g} is larger than friction_static {static:g} "
                 "(accepted: 0 to friction_static)"
@@ -363,7 +363,7 @@ def _refuse_friction(scene: Scene) -> None:
 
 def _refuse_rest(scene: Scene) -> None:
     """Raises BadInput if nothing ever moves."""
-    surfaces = [*scene.bodies, *scene.obstacles]
+    surfaces: list[Body | Obstacle] = [*scene.bodies, *scene.obstacles]
     moving = [
         *(surface.velocity for surface in surfaces),
         *(body.spin for body in scene.bodies),
