@@ -5,6 +5,7 @@ Outlines and meshes are given about the centroids of the bodies.
 
 import math
 import tempfile
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,11 +22,12 @@ from ..geometry.outlines import (
     self_crossing,
 )
 from ..input.models import Body, Mesh, Polygon, Ring
+from ..input.parameters import Table
 from . import gmsh_file, mesh
 
 __all__ = ["check_simple", "mesh_file", "mesh_outline", "motion", "shape", "velocity"]
 
-LOOPS = {
+LOOPS: dict[str, Callable[..., tuple[Loop, ...]]] = {
     "disc": lambda radius: (circle_loop(radius),),
     "ring": lambda radius, inner: (circle_loop(radius), circle_loop(inner)),
     "ellipse": lambda semi_axes: (ellipse_loop(*semi_axes),),
@@ -44,7 +46,7 @@ def shape(body: Body, folder: Path) -> tuple[Outline, mesh.Mesh | None, np.ndarr
     return outline.placed(-centre, 0.0), body_mesh and body_mesh.moved(-centre), centre
 
 
-def motion(body: Body) -> dict:
+def motion(body: Body) -> Table:
     """The initial position (2,) [m], angle [rad], velocity (2,) [m/s] and spin [rad/s] of a body.
 
     Raises BadInput if the velocity is over- or underdetermined.
@@ -198,7 +200,8 @@ def mesh_outline(body_mesh: mesh.Mesh) -> Outline:
     Edges on circles become arcs. A loop whose edges all lie on one circle becomes that circle.
     """
     arc_centre = {
-        tuple(sorted(edge)): at for edge, at in zip(body_mesh.edges.tolist(), body_mesh.arc_centres)
+        tuple(sorted(edge)): at
+        for edge, at in zip(body_mesh.edges.tolist(), body_mesh.circle_centres)
     }
     following = dict(mesh.boundary(body_mesh.triangles).tolist())
     loops = []

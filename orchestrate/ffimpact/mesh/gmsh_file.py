@@ -10,6 +10,7 @@ import numpy as np
 
 from ..failure import BadInput
 from . import mesh
+from .mesh import Gmsh
 
 __all__ = ["load", "read", "taken"]
 
@@ -55,7 +56,7 @@ def read(path: Path) -> mesh.Mesh:
         return taken(gmsh.model)
 
 
-def taken(model) -> mesh.Mesh:
+def taken(model: Gmsh) -> mesh.Mesh:
     """The mesh of a gmsh model, with counter-clockwise triangles and without unused vertices.
 
     Raises BadInput if the model is not flat, has other elements than triangles, or has physical
@@ -73,7 +74,7 @@ def taken(model) -> mesh.Mesh:
         labels = np.full(len(edges), mesh.FREE)
     else:
         number = {int(tag): k for k, tag in enumerate(used)}
-        labelled = {}
+        labelled: dict[frozenset[int], int] = {}
         # A line in several groups gets the label of contact or symmetry if one group defines it.
         for a, b, label in curves:
             if a not in number or b not in number:  # the line belongs to no triangle
@@ -98,7 +99,7 @@ def taken(model) -> mesh.Mesh:
     return mesh.Mesh(points, triangles, edges, labels)
 
 
-def _physical_curves(model) -> list[tuple[int, int, int]] | None:
+def _physical_curves(model: Gmsh) -> list[tuple[int, int, int]] | None:
     """Returns (node, node, label) of each line in a physical curve, None without physical curves.
 
     The name of the curve determines the label; the number of the curve does if it has no name.
@@ -118,7 +119,7 @@ def _physical_curves(model) -> list[tuple[int, int, int]] | None:
     return lines if groups else None
 
 
-def _names(model) -> str:
+def _names(model: Gmsh) -> str:
     return ", ".join(
         model.getPhysicalName(1, number) or str(number) for _, number in model.getPhysicalGroups(1)
     )

@@ -20,8 +20,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
-from types import ModuleType
-from typing import ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -31,6 +30,9 @@ from scipy.spatial import cKDTree
 from .. import progress
 from ..failure import BadInput, NotInstalled
 from ..places import INSTALLED, PACKAGE
+
+if TYPE_CHECKING:
+    from .solid_mesh import SolidMesh
 
 __all__ = [
     "AXIS",
@@ -83,6 +85,9 @@ DIGITS = 10
 # treats their outline as a circle, however long its edges are.
 OWN = 360
 Curve = Callable[[np.ndarray], np.ndarray]  # points (n, 2) [m] at parameters (n,) in [0, 1]
+Gmsh = Any  # the module gmsh or a part of it, such as gmsh.model, which have no types
+T = TypeVar("T")
+Made = TypeVar("Made", "Mesh", "SolidMesh")
 
 
 @dataclass(frozen=True)
@@ -109,6 +114,13 @@ class Mesh:
     @property
     def sides(self) -> np.ndarray:
         return self.edges
+
+    @property
+    def circle_centres(self) -> np.ndarray:
+        """`arc_centres`, nan for all edges of a mesh that has none."""
+        if self.arc_centres is None:
+            return np.full((len(self.edges), 2), np.nan)
+        return self.arc_centres
 
     def moved(self, by: np.ndarray) -> "Mesh":
         """The mesh, translated by the vector `by` (2,) [m]."""
@@ -219,14 +231,14 @@ def disc(
     return Mesh(points, counter_clockwise(points, triangles), edges, labels, region=OWN)
 
 
-def _outline(geo, half: bool, contact_arc: float) -> tuple[list[int], list[int]]:
+def _outline(geo: Gmsh, half: bool, contact_arc: float) -> tuple[list[int], list[int]]:
     """Adds the unit circle to gmsh; returns its arcs and the axis as numbers of curves.
 
     The arcs are counter-clockwise from the lowest point. The axis is empty for a whole disc.
     """
 
-    def point(angle):  # angle [rad] from the lowest point
-        return geo.addPoint(math.sin(angle), -math.cos(angle), 0)
+    def point(angle: float) -> int:  # angle [rad] from the lowest point
+        return int(geo.addPoint(math.sin(angle), -math.cos(angle), 0))
 
     centre, bottom, top = geo.addPoint(0, 0, 0), point(0.0), point(math.pi)
     corners = [bottom, point(contact_arc), top]
@@ -297,7 +309,7 @@ def nodes_on(curve: Curve, largest: float, sizes: Sizes) -> np.ndarray:
     return curve(np.interp(passed[-1] * np.arange(count) / count, passed, s))
 
 
-def _loop(model, nodes: np.ndarray) -> tuple[list[int], list[int]]:
+def _loop(model: Gmsh, nodes: np.ndarray) -> tuple[list[int], list[int]]:
     """Adds points and lines along a loop to gmsh, one element per line; returns their numbers."""
     points = [model.geo.addPoint(x, y, 0) for x, y in nodes]
     lines = [model.geo.addLine(a, b) for a, b in zip(points, [*points[1:], points[0]])]
@@ -306,7 +318,7 @@ def _loop(model, nodes: np.ndarray) -> tuple[list[int], list[int]]:
     return points, lines
 
 
-def _grade(field, loops: list[np.ndarray], curves: tuple[list[int], ...], bulk: float) -> int:
+def _grade(field: Gmsh, loops: list[np.ndarray], curves: tuple[list[int], ...], bulk: float) -> int:
     """Adds the size field inside the loops to gmsh and returns its number.
 
     On the outline the size is the length of the edges. It grows linearly with the distance from the
@@ -324,13 +336,13 @@ def _grade(field, loops: list[np.ndarray], curves: tuple[list[int], ...], bulk: 
         sources.append(
             graded(field, "CurvesList", lines[fineness == level], (size, bulk), sampling=5)
         )
-    least = field.add("Min")
+    least = int(field.add("Min"))
     field.setNumbers(least, "FieldsList", sources)
     return least
 
 
 def _filled(
-    gmsh, loops: Sequence[Sequence[int]], sizes: Callable
+    gmsh: Gmsh, loops: Sequence[Sequence[int]], sizes: Callable[[Gmsh], int]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Meshes the inside of loops of gmsh curves and returns its triangles as `elements_of` does.
 
@@ -353,7 +365,7 @@ def _filled(
 _alone = threading.RLock()  # gmsh has a single model and serves one thread at a time
 
 
-def start_gmsh() -> ModuleType:
+def start_gmsh() -> Gmsh:
     """The initialised module gmsh, even if a script that uses gmsh itself has finalised it.
 
     Raises NotInstalled if a system library is missing.
@@ -366,7 +378,7 @@ def start_gmsh() -> ModuleType:
 
 
 @cache
-def _loaded() -> ModuleType:
+def _loaded() -> Gmsh:
     """The module gmsh, which is finalised when this program ends."""
     try:
         import gmsh
@@ -378,7 +390,7 @@ def _loaded() -> ModuleType:
     return gmsh
 
 
-def _initialize(gmsh: ModuleType) -> None:
+def _initialize(gmsh: Gmsh) -> None:
     """Initialises gmsh and restores the signal handlers.
 
     During the initialisation the signal handlers have their defaults. So a run starts gmsh before
@@ -394,7 +406,7 @@ def _initialize(gmsh: ModuleType) -> None:
             signal.signal(number, handler)
 
 
-def in_own_process(read: Callable, path: Path, *arguments):
+def in_own_process(read: Callable[..., T], path: Path, *arguments: object) -> T:
     """Returns read(path, *given) from a separate process, because some broken files crash gmsh.
 
     Raises the BadInput of `read`, or BadInput with the signal or exit code of the process.
@@ -412,7 +424,7 @@ def in_own_process(read: Callable, path: Path, *arguments):
         )
         # The file is empty if a script in a geometry has ended the process.
         if child.returncode == 0 and (pickled := answer.read()):
-            result = pickle.loads(pickled)
+            result: T | BadInput = pickle.loads(pickled)
             if isinstance(result, BadInput):
                 raise BadInput(str(result).replace(str(path), path.name))
             return result
@@ -435,7 +447,7 @@ def _answer() -> None:
 
 
 @contextmanager
-def gmsh_session() -> Iterator[ModuleType]:
+def gmsh_session() -> Iterator[Gmsh]:
     """Provides the module gmsh with default options, without output, to one thread at a time.
 
     The model is cleared at the end.
@@ -452,7 +464,7 @@ def gmsh_session() -> Iterator[ModuleType]:
 
 
 def graded(
-    field,
+    field: Gmsh,
     kind: str,
     sources: Sequence[int],
     sizes: tuple[float, float],
@@ -465,7 +477,7 @@ def graded(
     from there to the second. `kind` is PointsList or CurvesList, `sampling` the number of points on
     a curve.
     """
-    distance, size = field.add("Distance"), field.add("Threshold")
+    distance, size = field.add("Distance"), int(field.add("Threshold"))
     field.setNumbers(distance, kind, sources)
     if sampling:
         field.setNumber(distance, "Sampling", sampling)
@@ -482,7 +494,7 @@ def graded(
 
 
 def elements_of(
-    model, dimensions: Sequence[int], nodes: dict[int, int], singular: str, plural: str
+    model: Gmsh, dimensions: Sequence[int], nodes: dict[int, int], singular: str, plural: str
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Returns vertices (n, 3), elements (t, corners) and gmsh's numbers (n,) of the vertices.
 
@@ -564,9 +576,9 @@ def pieces(points: int, elements: np.ndarray) -> np.ndarray:
     points.
     """
     links = elements[:, :-1].ravel(), elements[:, 1:].ravel()
-    return connected_components(
-        coo_array((np.ones(len(links[0])), links), (points, points)), directed=False
-    )[1]
+    graph = coo_array((np.ones(len(links[0])), links), (points, points))
+    piece: np.ndarray = connected_components(graph, directed=False)[1]
+    return piece
 
 
 def inner_outlines(points: np.ndarray, sides: np.ndarray) -> list[np.ndarray]:
@@ -580,7 +592,9 @@ def inner_outlines(points: np.ndarray, sides: np.ndarray) -> list[np.ndarray]:
     return [np.flatnonzero(piece == inner) for inner in np.unique(piece) if inner != outer]
 
 
-def without_inner(made, keeps: Callable[[np.ndarray, np.ndarray], bool] = lambda own, rest: False):
+def without_inner(
+    made: Made, keeps: Callable[[np.ndarray, np.ndarray], bool] = lambda own, rest: False
+) -> Made:
     """The Mesh or SolidMesh with inner outlines that never come into contact.
 
     An inner outline keeps its labels if `keeps`(own, rest) is true for the vertices (n, axes) on

@@ -22,6 +22,7 @@ from ..geometry.outlines import (
     signed_area,
 )
 from ..input.models import Body, Mesh, Polygon, Shell, Torus, Tube
+from ..input.parameters import Table
 from . import flat, mesh
 
 __all__ = [
@@ -37,7 +38,7 @@ __all__ = [
     "whole",
 ]
 
-LOOPS = {
+LOOPS: dict[str, Callable[..., Loop]] = {
     "ball": circle_loop,
     "ellipsoid": lambda semi_axes: ellipse_loop(*semi_axes),
     "cylinder": lambda r, height: Loop(
@@ -73,7 +74,7 @@ def shape(body: Body, folder: Path) -> tuple[Outline, mesh.Mesh | None, np.ndarr
     return Outline((loop.placed(-centre, 0.0),)), None, centre
 
 
-def motion(body: Body) -> dict:
+def motion(body: Body) -> Table:
     """The initial position (2,) [m] and velocity (2,) [m/s] of a body; angle and spin are 0.
 
     Raises BadInput if the velocity is not along the axis.
@@ -159,7 +160,7 @@ def _mirror(half: mesh.Mesh) -> mesh.Mesh:
         half.triangles[:, ::-1],
         half.edges[:, ::-1],
         half.labels,
-        half.arc_centres * [-1, 1],
+        half.circle_centres * [-1, 1],
     )
 
 
@@ -212,18 +213,20 @@ def _with_crossings(corners: np.ndarray, near: float) -> np.ndarray:
 
 def right_half(loop: Loop) -> list[int]:
     """The numbers of the segments of a section's loop to the right of the axis, upwards."""
-    lower, upper = sorted(np.flatnonzero(loop.corners[:, 0] == 0), key=lambda k: loop.corners[k, 1])
+    crossing = np.flatnonzero(loop.corners[:, 0] == 0).tolist()
+    lower, upper = sorted(crossing, key=lambda k: loop.corners[k, 1])
     return [(lower + k) % len(loop.corners) for k in range((upper - lower) % len(loop.corners))]
 
 
-def boundary(outline: Outline) -> list[tuple[Callable[[np.ndarray], np.ndarray], Loop | None]]:
+def boundary(outline: Outline) -> list[tuple[mesh.Curve, Loop | None]]:
     """The boundary of the half x >= 0, counter-clockwise, as curves over [0, 1].
 
     Each curve comes with the loop to which it belongs, None on the axis. The boundary leads upwards
     along the outer surface and down the axis. Where it reaches a cavity, it follows the surface of
     the cavity downwards and then continues down the axis.
     """
-    curves, ends = [], []
+    curves: list[tuple[mesh.Curve, Loop | None]] = []
+    ends: list[np.ndarray] = []
     for k, loop in enumerate(outline.loops):
         pieces = right_half(loop)
         lower, upper = loop.corners[pieces[0]], loop.corners[(pieces[-1] + 1) % len(loop.corners)]
@@ -232,15 +235,16 @@ def boundary(outline: Outline) -> list[tuple[Callable[[np.ndarray], np.ndarray],
             ends = [lower, upper]
         else:
             curves += [(_straight(ends[1], upper), None)]
-            curves += [
-                ((lambda s, loop=loop, piece=piece: loop.at(piece, 1 - s)), loop)
-                for piece in pieces[::-1]
-            ]
+            curves += [(partial(_backwards, loop, piece), loop) for piece in pieces[::-1]]
             ends[1] = lower
     return [*curves, (_straight(ends[1], ends[0]), None)]
 
 
-def _straight(start: np.ndarray, end: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+def _backwards(loop: Loop, piece: int, s: np.ndarray) -> np.ndarray:
+    return loop.at(piece, 1 - s)
+
+
+def _straight(start: np.ndarray, end: np.ndarray) -> mesh.Curve:
     """The straight curve over [0, 1] from start (2,) to end (2,)."""
     return lambda s: start + s[:, None] * (end - start)
 
@@ -286,7 +290,7 @@ def whole(half: mesh.Mesh) -> mesh.Mesh:
         np.vstack([half.triangles, mirrored[half.triangles][:, ::-1]]),
         np.vstack([half.edges[outer], mirrored[half.edges[outer]][:, ::-1]]),
         np.tile(half.labels[outer], 2),
-        np.vstack([half.arc_centres[outer], half.arc_centres[outer] * [-1, 1]]),
+        np.vstack([half.circle_centres[outer], half.circle_centres[outer] * [-1, 1]]),
     )
 
 

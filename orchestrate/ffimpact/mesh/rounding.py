@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import mesh
-from .mesh import GROWTH, Sizes
+from .mesh import GROWTH, Gmsh, Sizes
 
 __all__ = ["Rounding", "TURN", "fields", "roundings"]
 
@@ -50,7 +50,7 @@ class Rounding:
         return self.area * min(depth, (1 - 2 / math.pi) / 2 * self.radius)
 
 
-def fields(gmsh, sizes: Sizes, sources: list[int], bulk: float, cut: float) -> list[int]:
+def fields(gmsh: Gmsh, sizes: Sizes, sources: list[int], bulk: float, cut: float) -> list[int]:
     """Adds size fields for the curved surfaces of a body to gmsh and returns their numbers.
 
     `bulk` is the element size in the bulk, and `sources` are gmsh's points of the expected contact.
@@ -75,7 +75,7 @@ def fields(gmsh, sizes: Sizes, sources: list[int], bulk: float, cut: float) -> l
     return made
 
 
-def roundings(model, largest: float) -> list[Rounding]:
+def roundings(model: Gmsh, largest: float) -> list[Rounding]:
     """The curved surfaces of a gmsh model with a radius below `largest` [m]."""
     surfaces = []
     for _, tag in model.getEntities(2):
@@ -104,9 +104,9 @@ def _size(small: list[Rounding], bulk: float, cut: float) -> float:
     return size
 
 
-def _on_surface(field, surface: Rounding, kind: str, **values: float) -> int:
+def _on_surface(field: Gmsh, surface: Rounding, kind: str, **values: float) -> int:
     """Adds a gmsh field of a kind for one surface and its edges; returns its number."""
-    made = field.add(kind)
+    made = int(field.add(kind))
     field.setNumbers(made, "SurfacesList", [surface.tag])
     for name, value in values.items():
         field.setNumber(made, name, value)

@@ -10,12 +10,13 @@ import re
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ..failure import BadInput
 from . import mesh
-from .mesh import FREE, Sizes, boundary, in_own_process, pieces
+from .mesh import FREE, Gmsh, Sizes, boundary, in_own_process, pieces
 from .solid_mesh import SolidMesh, cell_volumes, cells_of, generate
 
 __all__ = [
@@ -62,8 +63,10 @@ class Geometry:
         `sizes` are element sizes [m] with points relative to the centre. `cut` is the largest share
         of the bounding box that flat elements cut off at roundings (rounding.py).
         """
-        lengths = (sizes.bulk, sizes.contact, sizes.near + self.centre, sizes.slack)
-        inside = Sizes(*(length / self.scale for length in lengths))
+        bulk, contact, slack = (
+            size / self.scale for size in (sizes.bulk, sizes.contact, sizes.slack)
+        )
+        inside = Sizes(bulk, contact, (sizes.near + self.centre) / self.scale, slack)
         return meshed(self.path, inside, cut).scaled(self.scale)
 
 
@@ -140,7 +143,7 @@ def _taken(path: Path, sizes: Sizes | None, cut: float) -> SolidMesh:
 
 
 def _meshed(path: Path, sizes: Sizes | None, cut: float) -> SolidMesh:
-    def build(gmsh) -> None:
+    def build(gmsh: Gmsh) -> None:
         gmsh.option.setString("Geometry.OCCTargetUnit", "M")
         gmsh.open(str(path))
         if not gmsh.model.getEntities(3):
@@ -152,7 +155,7 @@ def _meshed(path: Path, sizes: Sizes | None, cut: float) -> SolidMesh:
     return generate(build, sizes or Sizes(0.0, 0.0, np.empty((0, 3)), 0.0), 0, _labelled, cut)
 
 
-def _labelled(model) -> SolidMesh:
+def _labelled(model: Gmsh) -> SolidMesh:
     """The mesh of a gmsh model, with labels of boundary faces from its physical surfaces.
 
     Raises BadInput if a tetrahedron is flat, if the mesh is not one connected piece, or if the
@@ -176,7 +179,7 @@ def _labelled(model) -> SolidMesh:
         return SolidMesh(points, cells, faces, np.full(len(faces), FREE))
     scale = np.ptp(points, axis=0).max()
 
-    def keys(corners: np.ndarray) -> list[tuple]:
+    def keys(corners: np.ndarray) -> list[tuple[Any, ...]]:
         """Keys of triangles: their sorted corners, rounded to 1e-9 of the size of the mesh."""
         return [
             tuple(sorted(map(tuple, triangle)))
@@ -232,7 +235,7 @@ def _check_surface(points: np.ndarray, faces: np.ndarray) -> None:
         )
 
 
-def _contact_triangles(model) -> np.ndarray | None:
+def _contact_triangles(model: Gmsh) -> np.ndarray | None:
     """Corners (t, 3, 3) of the triangles in physical surfaces with the name `contact`.
 
     Returns None if no physical surface has a name. Raises BadInput if only others have names.
@@ -259,4 +262,6 @@ def _contact_triangles(model) -> np.ndarray | None:
         for kind, _, nodes in zip(*model.mesh.getElements(2, surface))
         if kind in TRIANGLES
     ]
-    return coordinates.reshape(-1, 3)[np.vstack(corners or [np.empty((0, 3), dtype=int)])]
+    triangles = np.vstack(corners or [np.empty((0, 3), dtype=int)])
+    placed: np.ndarray = coordinates.reshape(-1, 3)[triangles]
+    return placed

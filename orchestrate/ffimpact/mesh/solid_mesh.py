@@ -13,7 +13,7 @@ from typing import ClassVar
 import numpy as np
 
 from . import mesh, rounding
-from .mesh import AXIS, FREE, GROWTH, Sizes
+from .mesh import AXIS, FREE, GROWTH, Gmsh, Sizes, T
 
 __all__ = [
     "Curved",
@@ -113,9 +113,10 @@ class SolidMesh:
     @property
     def centre(self) -> np.ndarray:
         """The centre of volume (3,) [m]."""
-        return (self.volumes[:, None] * self.points[self.cells].mean(axis=1)).sum(
-            axis=0
-        ) / self.volumes.sum()
+        volumes = self.volumes
+        moments = volumes[:, None] * self.points[self.cells].mean(axis=1)
+        centre: np.ndarray = moments.sum(axis=0) / volumes.sum()
+        return centre
 
 
 def cell_volumes(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
@@ -160,15 +161,14 @@ def mesh_shape(
     """
     spherical = kind in ("ball", "shell")
     bulk = min(sizes.bulk, LARGEST * lengths[0]) if spherical else sizes.bulk
-    inside = Sizes(
-        *(
-            np.round(size / scale, mesh.DIGITS)
-            for size in (bulk, min(bulk, sizes.contact), sizes.near, sizes.slack)
-        )
+    largest, contact, slack = (
+        float(np.round(size / scale, mesh.DIGITS))
+        for size in (bulk, min(bulk, sizes.contact), sizes.slack)
     )
+    inside = Sizes(largest, contact, np.round(sizes.near / scale, mesh.DIGITS), slack)
     sides = np.round(lengths / scale, 12)  # 12 decimals: the accuracy of the corners
 
-    def build(gmsh) -> None:
+    def build(gmsh: Gmsh) -> None:
         occ = gmsh.model.occ
         volume = [(3, _occ_shape(occ, kind, list(map(float, sides))))]
         if spherical:
@@ -184,7 +184,8 @@ def mesh_shape(
             occ.intersect(volume, [(3, half)])
         occ.synchronize()
 
-    points, cells = generate(build, inside, 0 if kind in ("ball", "box") else rounding.TURN)
+    turn = 0 if kind in ("ball", "box") else rounding.TURN
+    points, cells = generate(build, inside, turn, cells_of)
     points = points * scale
     faces = mesh.boundary(cells)
     labels = np.full(len(faces), FREE)
@@ -194,12 +195,12 @@ def mesh_shape(
         points[np.unique(faces[on]), axis] = 0
     if kind == "box":
         return SolidMesh(points, cells, faces, labels)
-    axis = np.array([]) if spherical else rotation[:, 1]
+    along = np.array([]) if spherical else rotation[:, 1]
     radii = lengths[: 2 if kind in ("shell", "tube") else 1]
-    patches = tuple(Curved(np.zeros(3), axis, float(radius)) for radius in radii)
+    patches = tuple(Curved(np.zeros(3), along, float(radius)) for radius in radii)
     round_faces = labels == FREE
     if not spherical:
-        round_faces &= np.ptp(points[faces] @ axis, axis=1) >= 1e-7 * scale
+        round_faces &= np.ptp(points[faces] @ along, axis=1) >= 1e-7 * scale
     inner = _onto(patches, radii, points, faces, round_faces)
     if kind == "shell":
         labels[inner] = SolidMesh.NEVER
@@ -225,22 +226,22 @@ def _onto(
     return on_patch
 
 
-def _occ_shape(occ, kind: str, lengths: list[float]) -> int:
+def _occ_shape(occ: Gmsh, kind: str, lengths: list[float]) -> int:
     """Adds a shape of mesh_shape() to gmsh's OpenCASCADE model and returns its number."""
     if kind == "ball":
-        return occ.addSphere(0, 0, 0, *lengths)
+        return int(occ.addSphere(0, 0, 0, *lengths))
     if kind == "box":
-        return occ.addBox(*(-length / 2 for length in lengths), *lengths)
+        return int(occ.addBox(*(-length / 2 for length in lengths), *lengths))
     if kind == "cylinder":
         radius, height = lengths
-        return occ.addCylinder(0, -height / 2, 0, 0, height, 0, radius)
+        return int(occ.addCylinder(0, -height / 2, 0, 0, height, 0, radius))
     solid = "ball" if kind == "shell" else "cylinder"
-    outer, inner, *height = lengths
-    whole, hole = (_occ_shape(occ, solid, [radius, *height]) for radius in (outer, inner))
-    return occ.cut([(3, whole)], [(3, hole)])[0][0][1]
+    outer, inner, *rest = lengths
+    whole, hole = (_occ_shape(occ, solid, [radius, *rest]) for radius in (outer, inner))
+    return int(occ.cut([(3, whole)], [(3, hole)])[0][0][1])
 
 
-def cells_of(model) -> tuple[np.ndarray, np.ndarray]:
+def cells_of(model: Gmsh) -> tuple[np.ndarray, np.ndarray]:
     """Vertices (n, 3) and tetrahedra (t, 4) of a gmsh model.
 
     Of tetrahedra of second order only the corners are kept. Raises BadInput for other elements.
@@ -250,8 +251,12 @@ def cells_of(model) -> tuple[np.ndarray, np.ndarray]:
 
 
 def generate(
-    build: Callable, sizes: Sizes, turn: int, take: Callable = cells_of, cut: float | None = None
-):
+    build: Callable[[Gmsh], None],
+    sizes: Sizes,
+    turn: int,
+    take: Callable[[Gmsh], T],
+    cut: float | None = None,
+) -> T:
     """Builds a model with `build`, meshes it with gmsh and returns the result of `take`.
 
     A curved surface gets at least `turn` elements per full turn. If `cut` is set, rounding.py
@@ -274,7 +279,7 @@ def generate(
         return take(gmsh.model)
 
 
-def _grade(gmsh, sizes: Sizes, cut: float | None) -> None:
+def _grade(gmsh: Gmsh, sizes: Sizes, cut: float | None) -> None:
     """Sets the size field: sizes grow linearly with the distance from expected contact points."""
     field, sources, made = gmsh.model.mesh.field, _sources(gmsh, sizes), []
     if sources:
@@ -289,7 +294,7 @@ def _grade(gmsh, sizes: Sizes, cut: float | None) -> None:
         field.setAsBackgroundMesh(least)
 
 
-def _sources(gmsh, sizes: Sizes) -> list[int]:
+def _sources(gmsh: Gmsh, sizes: Sizes) -> list[int]:
     """Adds the expected contact points to gmsh and returns their numbers.
 
     The list is empty if elements are not smaller there than in the bulk.
@@ -315,9 +320,8 @@ def expected_cells(volume: float, sizes: Sizes) -> float:
         return bulk
     away = np.linspace(0, (sizes.bulk - sizes.contact) / GROWTH, 200)
     patch = np.ptp(sizes.near, axis=0).max() / 2 + sizes.slack
-    return bulk + np.trapezoid(
-        np.pi * (patch + away) ** 2 / (FILL * (sizes.contact + GROWTH * away) ** 3), away
-    )
+    layers = np.pi * (patch + away) ** 2 / (FILL * (sizes.contact + GROWTH * away) ** 3)
+    return bulk + float(np.trapezoid(layers, away))
 
 
 def write(together: SolidMesh, regions: np.ndarray, path: Path) -> None:

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -18,9 +18,14 @@ from ..failure import BadInput
 from ..geometry import outlines, tumbling
 from ..geometry.outlines import Turn
 from ..input.models import Body, Mesh, Shell, Tube
+from ..input.parameters import Table
 from . import curved, flat, solid_file
+from .mesh import Sizes
 from .revolution import check_radii
-from .solid_mesh import MOST_CELLS, Sizes, SolidMesh, expected_cells, mesh_shape
+from .solid_mesh import MOST_CELLS, SolidMesh, expected_cells, mesh_shape
+
+if TYPE_CHECKING:
+    from ..scenes import bodies
 
 __all__ = [
     "Shape",
@@ -38,7 +43,7 @@ __all__ = [
     "tube",
 ]
 
-MADE = {
+MADE: dict[str, Callable[..., "Shape"]] = {
     "ball": lambda radius: ball(radius),
     "box": lambda *extent: box(np.array(extent)),
     "cylinder": lambda radius, height: cylinder(radius, height),
@@ -456,8 +461,10 @@ class Solid(outlines.Shape):
 # ---- meshes
 
 
-def mesh_of(body, sizes: Sizes | None, mirror_axes: tuple[int, ...], accuracy: float) -> SolidMesh:
-    """The mesh of a body (bodies.Body) about its centre of volume, turned as at the start.
+def mesh_of(
+    body: "bodies.Body", sizes: Sizes | None, mirror_axes: tuple[int, ...], accuracy: float
+) -> SolidMesh:
+    """The mesh of a body about its centre of volume, turned as at the start.
 
     The mesh is that of the body's file, or gmsh generates one with the element sizes `sizes`, which
     refer to the body before its rotation. `mirror_axes` contains the axes that are normal to planes of
@@ -465,8 +472,10 @@ def mesh_of(body, sizes: Sizes | None, mirror_axes: tuple[int, ...], accuracy: f
     mesh would have more than MOST_CELLS tetrahedra.
     """
     solid = body.at(0.0, np.zeros(3))
-    if body.mesh:
+    assert isinstance(solid, Solid)
+    if isinstance(body.mesh, SolidMesh):
         return _with_curves(replace(body.mesh, points=body.mesh.points @ solid.rotation.T))
+    assert sizes  # which a body without a mesh has
     expected = expected_cells(solid.volume, sizes) / 2 ** len(mirror_axes)
     if expected > MOST_CELLS:
         raise BadInput(
@@ -543,7 +552,7 @@ def _of_file(body: Mesh, folder: Path) -> tuple[Solid, SolidMesh | None, np.ndar
     return Solid(shape, np.zeros(3), np.eye(3)), centred, centre
 
 
-def motion(body: Body) -> dict:
+def motion(body: Body) -> Table:
     """The initial position [m], rotation vector [rad], velocity [m/s] and spin [rad/s], each (3,).
 
     Raises BadInput if the table contains both `angle` and `turn`, or a velocity twice.

@@ -11,9 +11,10 @@ other, with the label 2 on the axis. So it is for bodies in the plane that are r
 import math
 import tomllib
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -22,7 +23,7 @@ from ..failure import BadInput
 from ..geometry.outlines import Loop, TubeOutline, rotation
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID
 from ..input.models import MATERIAL, OWN
-from ..input.parameters import Value
+from ..input.parameters import Table, Value
 from ..input.toml_text import to_toml
 from ..mesh import mesh, revolution, solid_mesh, solids
 from ..mesh.mesh import AXIS, FREE, Curve, Sizes, mesh_body, nearest
@@ -32,7 +33,7 @@ from .bodies import DAMPING, STIFF, Body
 from .front import Front, fronts, stretch_of
 from .mirror import COPIES, copies, mirror_axes
 from .needs import IMPLICIT, implicit_for
-from .parts import sections
+from .parts import Lines, Row, sections
 from .scene import Pair, Scene
 from .sizes import Impact
 from .unstressed import find_unstressed
@@ -83,7 +84,7 @@ class Assembly:
     centres: np.ndarray
     data: str
     values: dict[str, Value]
-    used: dict
+    used: Table
 
     def write(self, folder: Path) -> None:
         """Writes mesh.msh (in three dimensions mesh.mesh) and scene.dat, which edp/program/bodies.edp
@@ -96,7 +97,7 @@ class Assembly:
         (folder / "scene.dat").write_text(self.data)
 
 
-def prepare(scene: Scene, where: Path) -> tuple[dict[str, Value | Path], dict, str]:
+def prepare(scene: Scene, where: Path) -> tuple[dict[str, Value | Path], Table, str]:
     """Prepares a run in the folder `where`: writes the mesh and the data file of a scene. Returns the
     flags of the run, the scene as used, and the text of its scene.toml. Raises BadInput for a scene
     that cannot be run.
@@ -153,13 +154,14 @@ def assemble(scene: Scene, onsets: list[Onset] | None = None) -> Assembly:
     penalties = {
         (pair.first, pair.second): float(own["penalty"]) for pair, own in zip(scene.pairs, pairs)
     }
+    penalty, exponent = float(values["penalty"]), float(values["exponent"])
     rises = [
-        strike.rise_on(penalties.get(both, values["penalty"]), scene.bodies, values["exponent"])
+        strike.rise_on(penalties.get(both, penalty), scene.bodies, exponent)
         for both, strike in ask.fronts.items()
     ]
     # Why auto takes implicit steps; the transit [s] of the front of a flat strike through an element
     # and its rise time [s].
-    notes = [("implicit", why)] if why else []
+    notes: Lines = [("implicit", why)] if why else []
     if rises:
         notes += [("front", min(strike.tau for strike in ask.fronts.values()), max(rises))]
     return Assembly(
@@ -172,24 +174,24 @@ def assemble(scene: Scene, onsets: list[Onset] | None = None) -> Assembly:
     )
 
 
-def _sections(
-    scene: Scene, sizes: list[Sizes | None]
-) -> tuple[list[mesh.Mesh], np.ndarray, list[tuple]]:
+def _sections(scene: Scene, sizes: list[Sizes | None]) -> tuple[list[mesh.Mesh], np.ndarray, Lines]:
     """Returns the meshes of bodies in the plane, their centres in the common mesh (bodies, axes)
     [m], and the lines of circles in scene.dat. For bodies of revolution circles that are the mirror
     image of another one are left out.
     """
-    meshes = [
-        body.mesh or mesh_body(boundary_curves(scene, k), sizes[k], body.outline.half_thickness)
-        for k, body in enumerate(scene.bodies)
-    ]
-    meshes = [_reached(scene, k, made) for k, made in enumerate(meshes)]
+    meshes = []
+    for k, (body, size) in enumerate(zip(scene.bodies, sizes)):
+        made = body.mesh
+        if size:
+            made = mesh_body(boundary_curves(scene, k), size, body.outline.half_thickness)
+        assert isinstance(made, mesh.Mesh)
+        meshes.append(_reached(scene, k, made))
     halved = bool(mirror_axes(scene.dimension, copies(scene)))
     centres = side_by_side(meshes, 1 if halved else 0)
     circles = [
         (k, *(centre + at), radius)
         for k, (body, centre) in enumerate(zip(scene.bodies, centres))
-        for loop in body.outline.loops
+        for loop in body.section.loops
         for at, radius in loop.circles
         if not halved or at[0] >= 0
     ]
@@ -198,18 +200,18 @@ def _sections(
 
 def _solids(
     scene: Scene, sizes: list[Sizes | None]
-) -> tuple[list[solid_mesh.SolidMesh], np.ndarray, list[tuple]]:
+) -> tuple[list[solid_mesh.SolidMesh], np.ndarray, Lines]:
     """Returns the same in three dimensions: bodies turned as at the start, one above the other,
     reduced by symmetry; lines of spheres and cylinders.
     """
     normals = mirror_axes(SOLID, copies(scene))
-    accuracy = float(scene.values["accuracy"])
+    accuracy, degree = scene.number("accuracy"), int(scene.number("degree"))
     meshes = [
         solids.mesh_of(body, size, normals, accuracy) for body, size in zip(scene.bodies, sizes)
     ]
     meshes = [_reached(scene, k, made) for k, made in enumerate(meshes)]
     count = sum(
-        0 if body.rigid else solid_mesh.unknowns(made.cells, scene.values["degree"])
+        0 if body.rigid else solid_mesh.unknowns(made.cells, degree)
         for body, made in zip(scene.bodies, meshes)
     )
     if count > solid_mesh.MOST_UNKNOWNS:
@@ -271,10 +273,8 @@ class Asker:
         onset = self.first_onsets.get((first, second))
         if second >= 0 or onset is None:
             return math.inf
-        body, obstacle = onset.outlines
-        radius = obstacle.radius_at(
-            body.points[obstacle.gap(body.points).argmin()], ASIDE * onset.radius
-        )
+        points, obstacle = onset.shape(first).points, self.scene.obstacles[-1 - second]
+        radius = obstacle.radius_at(points[obstacle.gap(points).argmin()], ASIDE * onset.radius)
         return radius if radius < onset.radius / 2 else math.inf
 
     @cached_property
@@ -305,7 +305,7 @@ class Asker:
         radius: float,
         slides: bool = False,
         presses: bool = True,
-        **more: float,
+        **more: Any,
     ) -> Impact:
         """Returns the impact of a disc, or a ball, of this radius [m] with the material of the softest
         body, and the entries `more`.
@@ -317,29 +317,26 @@ class Asker:
         along = max(along, self.pressed) if presses else along
         pressing = pressing if self.onsets else max(loaded_pull(body) for body in self.scene.bodies)
         soft = min(bodies, key=lambda body: body.stiffness)
-        values = self.scene.values
-        request = {
-            "sphere": self.scene.dimension is not PLANE_STRAIN,
-            "radius": radius,
-            "young": soft.young / (STIFF if soft.rigid else 1),
-            "nu": soft.nu,
-            "density": soft.density,
-            "damping": tuple(getattr(soft, name) for name in DAMPING),
-            "closing": along,
-            "pressing": pressing,
-            "exponent": self.scene.contact["exponent"],
-            "accuracy": values["accuracy"],
-            "accuracy_of": values["accuracy_of"],
-            "end_time": values["end_time"],
-            "endless": values["until"] == "rest",
-        }
+        scene = self.scene
+        impact = Impact(
+            sphere=scene.dimension is not PLANE_STRAIN,
+            radius=radius,
+            young=soft.young / (STIFF if soft.rigid else 1),
+            nu=soft.nu,
+            density=soft.density,
+            damping=tuple(getattr(soft, name) for name in DAMPING),
+            closing=along,
+            pressing=pressing,
+            exponent=scene.number("exponent"),
+            accuracy=scene.number("accuracy"),
+            accuracy_of=str(scene.values["accuracy_of"]),
+            end_time=scene.number("end_time"),
+            endless=scene.values["until"] == "rest",
+        )
         if slides:
-            request |= {
-                "sliding": across,
-                "spin": max(float(np.linalg.norm(body.spin)) for body in bodies),
-                "pulling": pulling,
-            }
-        return Impact(**request | more)
+            spin = max(float(np.linalg.norm(body.spin)) for body in bodies)
+            impact = replace(impact, sliding=across, spin=spin, pulling=pulling)
+        return replace(impact, **more)
 
 
 def contact_values(
@@ -350,7 +347,7 @@ def contact_values(
     """
     radius = min([least, *(body.outline.half_thickness for body in bodies)])
     sizes = [body.contact_mesh_size for body in bodies]
-    more = {"given_contact_size": min(*sizes, radius)} if min(sizes) > 0 else {}
+    more: Table = {"given_contact_size": min(*sizes, radius)} if min(sizes) > 0 else {}
     values = dict(contact)
     if automatic := [name for name in ("penalty", "slip_velocity") if contact[name] == "auto"]:
         more |= {"exponent": contact["exponent"]}
@@ -378,7 +375,7 @@ def pair_values(pair: Pair, ask: Asker, values: dict[str, Value]) -> dict[str, V
         inherited["penalty"] = ask.scene.contact["penalty"]
     own = inherited | pair.values
     if front := ask.open_front(pair):
-        own["penalty"] = front.penalty(ask.scene.bodies, ask.scene.contact["exponent"])
+        own["penalty"] = front.penalty(ask.scene.bodies, ask.scene.number("exponent"))
     own = contact_values(bodies, own, ask, pair.path, small or math.inf)
     return {name: own[name] for name in OWN}
 
@@ -404,7 +401,7 @@ def with_open_penalties(scene: Scene, ask: "Asker") -> list[Pair]:
 
 def used_tables(
     scene: Scene, sizes: list[Sizes | None], values: dict[str, Value], pairs: list[dict[str, Value]]
-) -> dict:
+) -> Table:
     """Returns the tables of a scene with all values as used. Contact parameters of obstacles become
     tables [[contact.pair]].
     """
@@ -437,7 +434,7 @@ def used_tables(
         | {key: value for key, value in table.items() if key not in OWN}
         for table, obstacle in zip(scene.content.get("obstacle", []), scene.obstacles)
     ]
-    contact = {key: values[key] for key in scene.contact}
+    contact: Table = {key: values[key] for key in scene.contact}
     contact |= {"self_contact": scene.content.get("contact", {}).get("self_contact", "auto")}
     contact |= {"pair": [{"bodies": names(pair)} | own for pair, own in zip(scene.pairs, pairs)]}
     top = {"title": scene.title, "script": scene.script, "dimension": scene.dimension.name}
@@ -450,7 +447,7 @@ def used_tables(
     )
 
 
-def _disc_like(k: int, ask: Asker, **more: float) -> Impact:
+def _disc_like(k: int, ask: Asker, **more: Any) -> Impact:
     """Returns the impact of a disc or ball as thick as body k."""
     body = ask.scene.bodies[k]
     return ask.disc([body], body.outline.half_thickness, **more)
@@ -506,7 +503,7 @@ def _bulk(k: int, ask: Asker) -> float:
     quadratic in it. The rule is asked at an accuracy where it does not limit the size.
     """
     body = ask.scene.bodies[k]
-    looser = ask.scene.values["accuracy"] / UNLIMITED / _share(k, ask)
+    looser = ask.scene.number("accuracy") / UNLIMITED / _share(k, ask)
     required = _disc_like(k, ask, accuracy=UNLIMITED).mesh_size * math.sqrt(looser)
     return max(min(required, body.outline.coarsest), body.contact_mesh_size)
 
@@ -598,7 +595,7 @@ def _near(body: Body, k: int, onset: Onset, depth: float, points: np.ndarray) ->
     smallest gap by `depth` [m] at most. For a disc on a plane `depth` is the gap at touch_arc from
     its lowest point.
     """
-    gaps = onset.gaps(k, body.outline.carried(onset.outlines[0 if k == onset.first else 1], points))
+    gaps = onset.gaps(k, body.outline.carried(onset.shape(k), points))
     # A point at the depth itself counts in any unit of length, whatever the round-off.
     nearest: np.ndarray = points[gaps <= gaps.min() + (1 + 1e-9) * depth]
     return nearest
@@ -608,15 +605,15 @@ def boundary_curves(scene: Scene, k: int) -> list[list[tuple[Curve, float, int]]
     """Returns the closed curves that bound the mesh of body k, the outer one first,
     counter-clockwise. Each is a list of pieces with the largest element size [m] and the label.
     """
-    loops, finest = scene.bodies[k].outline.loops, math.sqrt(float(scene.values["accuracy"]))
+    outline, finest = scene.bodies[k].section, math.sqrt(scene.number("accuracy"))
+    loops = outline.loops
 
     def largest(loop: Loop) -> float:
         # Edges on an ellipse are straight, and an edge of the angle a loses a^2/6 of the area.
         if loop.semi_axes is None:
             return np.inf
-        return (ROUND if loop.radius else min(ROUND, finest)) * loop.semi_axes.min()
+        return (ROUND if loop.radius else min(ROUND, finest)) * float(loop.semi_axes.min())
 
-    outline = scene.bodies[k].outline
     halved = outline if scene.dimension is AXISYMMETRIC else None
     if copies(scene) > 1:
         halved = revolution.crossing_axis(outline)
@@ -640,7 +637,7 @@ def boundary_curves(scene: Scene, k: int) -> list[list[tuple[Curve, float, int]]
     ]
 
 
-def _reached(scene: Scene, k: int, made):
+def _reached(scene: Scene, k: int, made: mesh.Made) -> mesh.Made:
     """Returns the Mesh or SolidMesh of body k. Its inner outlines have contact points only if the
     body may come into contact with itself or something is inside: nothing reaches the others.
     """
@@ -656,14 +653,15 @@ def _holds(scene: Scene, k: int, inner: np.ndarray, rest: np.ndarray) -> bool:
     body = scene.bodies[k]
     turn = np.eye(3) if scene.dimension is SOLID else rotation(body.angle).T
     own, outer = (points @ turn + body.position for points in (inner, rest))
-    others = [*(other.placed for j, other in enumerate(scene.bodies) if j != k), *scene.obstacles]
-    return any(other.gap(own).min() < other.gap(outer).min() for other in others)
+    gaps = [other.placed.gap for j, other in enumerate(scene.bodies) if j != k]
+    gaps += [obstacle.gap for obstacle in scene.obstacles]
+    return any(gap(own).min() < gap(outer).min() for gap in gaps)
 
 
 # ---- meshes
 
 
-def side_by_side(meshes: list[mesh.Mesh | solid_mesh.SolidMesh], along: int) -> np.ndarray:
+def side_by_side(meshes: Sequence[mesh.Mesh | solid_mesh.SolidMesh], along: int) -> np.ndarray:
     """Returns centres (bodies, axes) [m] on an axis (0: x, 1: y), from 0 on, for meshes about their
     centres. Their distance from each other is BETWEEN times the largest extent.
     """
@@ -677,20 +675,20 @@ def side_by_side(meshes: list[mesh.Mesh | solid_mesh.SolidMesh], along: int) -> 
     return centres
 
 
-def stack(meshes: list[mesh.Mesh] | list[solid_mesh.SolidMesh], centres: np.ndarray) -> tuple:
+def stack(
+    meshes: Sequence[mesh.Mesh | solid_mesh.SolidMesh], centres: np.ndarray
+) -> tuple[mesh.Mesh | solid_mesh.SolidMesh, np.ndarray]:
     """Returns all bodies as one mesh, and the number (t,) of the body of each triangle or
     tetrahedron.
     """
     first = np.cumsum([0, *(len(made.points) for made in meshes)])
-    points, cells, sides, labels = zip(
-        *([getattr(made, part.name) for part in fields(made)[:4]] for made in meshes)
-    )
     together = type(meshes[0])(
-        np.vstack([own + centre for own, centre in zip(points, centres)]),
-        *(np.vstack([own + k for own, k in zip(parts, first)]) for parts in (cells, sides)),
-        np.concatenate(labels),
+        np.vstack([made.points + centre for made, centre in zip(meshes, centres)]),
+        np.vstack([made.elements + k for made, k in zip(meshes, first)]),
+        np.vstack([made.sides + k for made, k in zip(meshes, first)]),
+        np.concatenate([made.labels for made in meshes]),
     )
-    return together, np.repeat(np.arange(len(meshes)), [len(own) for own in cells])
+    return together, np.repeat(np.arange(len(meshes)), [len(made.elements) for made in meshes])
 
 
 # ---- scene.dat
@@ -700,10 +698,10 @@ def data_file(
     scene: Scene,
     pressure: float,
     centres: np.ndarray,
-    rounds: list[tuple],
+    rounds: Lines,
     pairs: list[dict[str, Value]],
-    notes: Sequence[tuple] = (),
-    conditions: Sequence[tuple] = (),
+    notes: Sequence[Row] = (),
+    conditions: Sequence[Row] = (),
 ) -> str:
     """Returns the text of scene.dat, words and numbers (SI, radians), in the format of
     edp/program/input/scene-file.idp.
@@ -713,7 +711,7 @@ def data_file(
     the lines `implicit` and `front`.
     """
     if scene.dimension is SOLID:
-        head = [("ffimpact-bodies-3d", 1)]
+        head: Lines = [("ffimpact-bodies-3d", 1)]
         starts = [
             (*(body.position - centre), *body.velocity, *body.spin)
             for body, centre in zip(scene.bodies, centres)

@@ -20,7 +20,7 @@ from .conditions import KINDS, NEVER, ON_SIDE, SIDES, Part, Support
 from .mirror import mirror_axes
 from .obstacles import Drive, Obstacle
 
-__all__ = ["sections"]
+__all__ = ["Lines", "Row", "sections"]
 
 ALONG = 1e-6  # deviation of the components of a unit normal that counts as along an axis
 Row = tuple[Any, ...]
