@@ -9,6 +9,7 @@ import gc
 import importlib
 import io
 import locale
+import logging
 import os
 import re
 import signal
@@ -51,6 +52,7 @@ def guarded(run: Command, argv: list[str]) -> int:
     """Calls `run` and returns its exit code. Each failure is reported on stderr, one line a
     message.
     """
+    _log_to_stderr()
     # A wrong command line is reported like any bad input: one line and exit code 10.
     argparse.ArgumentParser.error = _bad_usage  # type: ignore[method-assign, assignment]
     try:
@@ -74,6 +76,20 @@ def guarded(run: Command, argv: list[str]) -> int:
     except KeyboardInterrupt:
         print("ffimpact: interrupted", file=sys.stderr)
         return 130
+
+
+class _Lines(logging.Handler):
+    """Prints what the package logs on stderr, a line each."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        print(f"ffimpact: {record.getMessage()}", file=sys.stderr)
+
+
+def _log_to_stderr() -> None:
+    log = logging.getLogger("ffimpact")
+    if not log.handlers:
+        log.addHandler(_Lines())
+        log.setLevel(logging.INFO)
 
 
 def execute(argv: list[str]) -> int | None:

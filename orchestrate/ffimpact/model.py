@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from html import escape
 from pathlib import Path
 from typing import Annotated, Any, Self
 
@@ -154,6 +155,28 @@ class Scene(models.Top):
         """
         overrides = plain(dict(values or {}) | entries)
         return type(self).from_tables(self.checked().override(overrides).content, self.folder)
+
+    def _rows(self) -> list[tuple[str, str]]:
+        """The tables of the scene, each with its entries in one line of text."""
+        table = self.table()
+        parts: dict[str, dict[str, Any]] = {}
+        for key in ("body", "obstacle"):
+            parts |= {f"{key} {k}": entries for k, entries in enumerate(table.pop(key, []), 1)}
+        parts |= {"contact": table.pop("contact", {}), "run": table}
+        return [
+            (name, ", ".join(f"{entry} = {value}" for entry, value in entries.items()))
+            for name, entries in parts.items()
+            if entries
+        ]
+
+    def __repr__(self) -> str:
+        return "\n".join(["Scene", *(f"  {name:<11} {text}" for name, text in self._rows())])
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><td>{name}</td><td>{escape(text)}</td></tr>" for name, text in self._rows()
+        )
+        return f"<table>{rows}</table>"
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Scene) and self.table() == other.table()

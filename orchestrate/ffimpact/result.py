@@ -61,6 +61,10 @@ class Result:
         """Returns the names of all numbers."""
         return numbers(self.summary)
 
+    def _ipython_key_completions_(self) -> list[str]:
+        """The names that notebooks complete after result[" ."""
+        return self.keys()
+
     def __contains__(self, name: object) -> bool:
         return self.summary.get(str(name)) is not None
 

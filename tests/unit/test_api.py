@@ -97,6 +97,13 @@ def test_a_scene_saved_elsewhere_finds_its_files(tmp_path):
 MATERIAL = {"young": 7e6, "nu": 0.45, "density": 1722}
 
 
+def test_a_scene_is_shown_as_a_table():
+    lines = repr(drop(accuracy=0.02)).splitlines()
+    assert [line.split()[0] for line in lines] == ["Scene", "body", "obstacle", "contact", "run"]
+    assert "shape = disc" in lines[1] and "velocity = [0.0, -8.0]" in lines[1] and "0.02" in lines[4]
+    assert drop()._repr_html_().count("<tr>") == 4
+
+
 def test_numbers_of_a_law_have_names():
     """They are `law_parameters` in a file."""
     mooney = ff.MooneyRivlin(share=0.3, **MATERIAL)

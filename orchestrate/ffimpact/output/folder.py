@@ -12,6 +12,7 @@ import fcntl
 import fnmatch
 import itertools
 import json
+import logging
 import os
 import shutil
 from collections.abc import Iterator
@@ -22,6 +23,8 @@ from ..failure import Busy, Unreadable
 from ..input.parameters import Table
 from ..places import shown
 from .results import read_summary, why
+
+log = logging.getLogger("ffimpact")
 
 __all__ = [
     "FIGURES",
@@ -289,7 +292,7 @@ def replace(stage: Path, folder: Path, same: bool) -> None:
     os.rename(stage, folder)
     (folder / "checkpoint.json").unlink(missing_ok=True)
     if earlier and not (same and _merge(earlier, folder)):
-        print(f"what was in {shown(folder)} before is now in {shown(earlier)}")
+        log.info("what was in %s before is now in %s", shown(folder), shown(earlier))
 
 
 def _merge(earlier: Path, folder: Path) -> bool:

@@ -2,8 +2,8 @@
 scene.
 """
 
+import logging
 import shlex
-import sys
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import zip_longest
@@ -17,6 +17,8 @@ from ..places import shown
 from . import literature
 
 __all__ = ["MOST", "Quantity", "draw", "report", "rows", "rows_of", "stiffness", "warning_lines"]
+
+log = logging.getLogger("ffimpact")
 
 MOST = 12  # largest number of rows of a report that is not verbose
 EXACT_ZERO = 1e-9  # largest size of a number that is zero to round-off
@@ -190,7 +192,7 @@ def draw(result: Record) -> None:
             if isinstance(error, OSError) and error.strerror
             else repr(error)
         )
-        print(f"ffimpact: the figures could not be drawn: {why}", file=sys.stderr)
+        log.warning("the figures could not be drawn: %s", why)
 
 
 def stiffness(contact: Table) -> str:
