@@ -76,7 +76,8 @@ def main(argv: list[str]) -> int:
                         "scenes that take longer are left out")
     parser.add_argument("--minutes", metavar="M", type=float, default=math.inf, help="no scene begins later than that; the same command "
                         "goes on with the others")
-    parser.add_argument("--of", metavar="SCENE", choices=draws.SCENES, help=f"of one kind only: {', '.join(draws.SCENES)}")
+    kinds = (*draws.SCENES, *draws.HELD_MIXTURE, *draws.OTHER_MIXTURE)
+    parser.add_argument("--of", metavar="KIND", nargs="+", choices=kinds, help=f"of these scenes or families only: {', '.join(kinds)}")
     options = parser.parse_args(argv)
     kind = next((kind for kind in SCENES if getattr(options, kind, False)), "round")
     seed, count = (default if value is None else value for default, value in zip(SCENES[kind], (options.seed, options.scenes)))
@@ -89,7 +90,7 @@ def main(argv: list[str]) -> int:
     requirement = "the requirement on silent errors" if options.hard else "the requirement"
     text = report(table) + f"; {requirement} {'is kept' if good else 'IS NOT KEPT'}"
     title = "Hard scenes" if options.hard else "Coverage of the error estimates"
-    title += f" of {options.of}" if options.of else ""
+    title += f" of {', '.join(options.of)}" if options.of else ""
     tables = {"": shown_in(table), "stated": cover(table)}
     return page.finish(options, table, text, good, argv, title, tables, ["stated"])
 
@@ -103,12 +104,13 @@ def shown_in(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def _drawn(options: Namespace, kind: str, seed: int, count: int) -> list[Drawn]:
-    """The scenes that the options select."""
+    """The scenes that the options select. Without --of all kinds share the number `count`."""
+    names = options.of or ["disc-normal"]
     if kind != "round":
-        return getattr(draws, kind)(seed, count)
-    name = options.of or "disc-normal"
+        drawn = getattr(draws, kind)(seed, count)
+        return [(name, point) for name, point in drawn if not options.of or {name, draws.family(name)} & {*names}]
     alike = options.hard or options.of
-    return [(name, point) for point in draws.draw(seed, count, options.hard, name)] if alike else draws.mixture(seed, count)
+    return [(name, point) for name in names for point in draws.draw(seed, count, options.hard, name)] if alike else draws.mixture(seed, count)
 
 
 def _finish_parts(options: Namespace, table: pd.DataFrame, argv: list[str], title: str) -> int:

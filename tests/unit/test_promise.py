@@ -113,6 +113,17 @@ def test_stated_errors_are_to_hold_and_not_to_be_far_too_large_in_each_part(tmp_
     assert ("DO NOT HOLD" in output) == bool(code) and "accuracy 0.03" in output and f"{1 - missed / 30:.1%}" in output
 
 
+@pytest.mark.parametrize("kind, of, names", [("held", ["roller", "disc-beam"], {"roller", "disc-beam"}), ("others", ["unlike"], {"disc-slab", "ball-cylinder"}),
+                                             ("round", ["ball-axisymmetric"], {"ball-axisymmetric"})])
+def test_some_kinds_of_scenes_alone_are_measured(tmp_path, monkeypatch, kind, of, names):
+    """They are those of a measurement of all kinds."""
+    asked = []
+    monkeypatch.setattr(promise, "compare", lambda drawn, *_: asked.extend(drawn) or errors(*[0.5] * len(drawn)))
+    promise.main([*([] if kind == "round" else [f"--{kind}"]), "--seed", "3", "--scenes", "12", "--of", *of, "--out", str(tmp_path)])
+    assert {name for name, _ in asked} == names
+    assert kind == "round" or asked == [(name, point) for name, point in getattr(draws, kind)(3, 12) if name in names]
+
+
 def test_scenes_that_do_not_begin_in_time_are_left_out(tmp_path, monkeypatch):
     monkeypatch.setattr(promise, "_compared", lambda problem, folder: {"error": 0.5, "message": ""})
     drawn = draws.held(3, 4)
