@@ -172,6 +172,8 @@ class Scene(models.Top):
     def __repr__(self) -> str:
         return "\n".join(["Scene", *(f"  {name:<11} {text}" for name, text in self._rows())])
 
+    __str__ = __repr__
+
     def _repr_html_(self) -> str:
         rows = "".join(
             f"<tr><td>{name}</td><td>{escape(text)}</td></tr>" for name, text in self._rows()
