@@ -1,5 +1,6 @@
 """The contract of runs: one scene, one run, one folder; what is kept, reused and refused."""
 
+import shutil
 
 import numpy as np
 import pytest
@@ -56,36 +57,16 @@ def test_killed_between_two_renames(tmp_path):
         assert not any(stage.iterdir()) and (tmp_path / "out/summary.json").exists()
 
 
-def test_what_decides_a_result_is_derived():
-    """A run is reused only by the same code: every module that assembly.py imports, directly or
-    not, counts except those in HARMLESS.
-
-    A new module counts, too.
-    """
-    decisive = run.imported(run.ENTRANCE) - run.HARMLESS
-    assert run.HARMLESS < run.imported(run.ENTRANCE) and {"scenes/scene", "scenes/entries", "scenes/assembly", "input/parameters", "mesh/mesh", "mesh/solid_mesh", "geometry/tumbling"} <= decisive
-    assert not decisive & {"running/run", "output/folder", "report/report", "sweeps/study", "running/solver"}
-
-
-def test_an_import_anywhere_is_found(tmp_path):
-    """Imports are found at the top, inside functions, of modules or names, and in cycles. Names
-    that are not modules are ignored."""
-    (tmp_path / "room").mkdir()
-    for name, text in {"a": "from . import b, VERSION\nimport os\n", "b": "def f():\n    from .room.c import g\n", "room/c": "from ..a import x\nfrom . import e\n",
-                       "d": "", "room/e": "from ..elsewhere import y"}.items():
-        (tmp_path / f"{name}.py").write_text(text)
-    assert run.imported("a", tmp_path) == {"a", "b", "room/c", "room/e"} and run.imported("d", tmp_path) == {"d"}
-
-
 def test_a_changed_module_is_other_code(tmp_path, monkeypatch):
-    """The module that sets mesh sizes, scene.py, is part of the hash."""
+    """A run is reused only by the same code: of all modules that make mesh and scene, new ones too; not
+    of those that evaluate and draw."""
     before = run.code_hash()
-    for name in run.imported(run.ENTRANCE):
-        (tmp_path / f"{name}.py").parent.mkdir(exist_ok=True)
-        (tmp_path / f"{name}.py").write_bytes((run.PACKAGE / f"{name}.py").read_bytes())
-    monkeypatch.setattr(run, "PACKAGE", tmp_path)
+    shutil.copytree(run.PACKAGE, tmp_path / "package")
+    monkeypatch.setattr(run, "PACKAGE", tmp_path / "package")
     assert run.code_hash() == before
-    (tmp_path / "failure.py").write_text("")
+    (tmp_path / "package/report/report.py").write_text("")
     assert run.code_hash() == before
-    (tmp_path / "scenes/scene.py").write_text("")
-    assert run.code_hash() != before
+    for name in ("scenes/scene.py", "mesh/new.py"):
+        (tmp_path / "package" / name).write_text("")
+        assert run.code_hash() != before
+        before = run.code_hash()

@@ -14,7 +14,6 @@ import subprocess
 import time
 from collections.abc import Iterable
 from dataclasses import replace as changed
-from functools import cache
 from pathlib import Path
 
 from .. import __version__
@@ -55,24 +54,21 @@ from .plan import Plan, measure
 from .solver import USED, Solver
 
 __all__ = [
-    "ENTRANCE",
-    "HARMLESS",
+    "DECISIVE",
     "states",
     "code_hash",
     "commit",
-    "imported",
     "plan",
     "reusable",
     "run",
 ]
 
+SCRIPTS = (".edp", ".idp", ".hpp", ".cpp")
 STATES = 60  # states that a run keeps by default, for figures and the player
-# The module that makes flags, mesh and scene.dat. Results depend on it and on all that it imports.
-ENTRANCE = "scenes/assembly"
-# Of these modules, the ones that only query, start, report or read. Results do not depend on them.
-HARMLESS = {"failure", "places", "progress", "freefem/describe", "freefem/freefem"}
-# Further modules, on which the error estimates depend.
-ESTIMATING = ("output/estimate", "output/notes", "output/rest", "output/results", "scenes/finer")
+# Folders of the package on which results depend: what makes mesh and scene, and starts the solver.
+DECISIVE = ("freefem", "geometry", "input", "mesh", "scenes")
+# Modules of other folders on which the error estimates depend.
+ESTIMATING = ("output/estimate", "output/notes", "output/rest", "output/results")
 
 
 def run(
@@ -115,7 +111,7 @@ def run(
         }
         request_entries = {
             "asked": scene.decisive_entries,
-            "estimate": estimate and _hash(ESTIMATING),
+            "estimate": estimate and _estimate_hash(),
         }
         request = request_entries | provenance
         if force or unfinished(stage) != request:
@@ -262,7 +258,7 @@ def reusable(scene: Scene, folder: Path, estimate: bool = False) -> Record | Non
         summary
         and (folder / "history.csv").exists()
         and summary.get("provenance", {}).get("code") == code_hash()
-        and (summary["provenance"].get("estimate") == _hash(ESTIMATING) or not estimate)
+        and (summary["provenance"].get("estimate") == _estimate_hash() or not estimate)
         and read_scene(folder)
         and _same_scene(folder, scene)
     ):
@@ -273,44 +269,21 @@ def reusable(scene: Scene, folder: Path, estimate: bool = False) -> Record | Non
 
 def code_hash() -> str:
     """Returns the sha256 of the code that results depend on besides the scene: the FreeFEM scripts,
-    their kernels and the Python modules that make meshes and scene.dat.
+    their kernels and the Python modules in the folders DECISIVE.
     """
-    return _hash(
-        sorted(imported(ENTRANCE) - HARMLESS),
-        sorted(
-            path
-            for path in (ROOT / "edp").rglob("*")
-            if path.suffix in (".edp", ".idp", ".hpp", ".cpp")
-        ),
-    )
+    scripts = [path for path in (ROOT / "edp").rglob("*") if path.suffix in SCRIPTS]
+    modules = [path for folder in DECISIVE for path in (PACKAGE / folder).glob("*.py")]
+    return _hash(sorted(scripts) + sorted(modules))
 
 
-@cache
-def imported(name: str, package: Path = PACKAGE) -> set[str]:
-    """Returns a module of the package together with all modules of the package that it imports
-    directly or indirectly, at any place in their code. The modules are given as paths in the
-    package without .py.
-    """
-    modules, open_ones = set(), {name}
-    while open_ones:
-        modules.add(module := open_ones.pop())
-        for dots, source, listed in re.findall(
-            r"(?m)^\s*from (\.+)([\w.]*) import (\([^)]*\)|.*)",
-            (package / f"{module}.py").read_text("utf-8"),
-        ):
-            room = Path(module).parents[len(dots) - 1] / source.replace(".", "/")
-            names = {str(room), *(str(room / name) for name in re.findall(r"\w+", listed))}
-            open_ones |= {name for name in names if (package / f"{name}.py").exists()} - modules
-    return modules
+def _estimate_hash() -> str:
+    return _hash(PACKAGE / f"{module}.py" for module in ESTIMATING)
 
 
-def _hash(modules: Iterable[str], files: Iterable[Path] = ()) -> str:
+def _hash(files: Iterable[Path]) -> str:
     digest = hashlib.sha256()
-    named = {path.relative_to(ROOT): path for path in files} | {
-        f"{name}.py": PACKAGE / f"{name}.py" for name in modules
-    }
-    for name, path in named.items():
-        digest.update(f"{name}\n".encode() + path.read_bytes())
+    for path in files:
+        digest.update(f"{path.name}\n".encode() + path.read_bytes())
     return digest.hexdigest()
 
 
