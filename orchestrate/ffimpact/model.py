@@ -21,6 +21,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from . import scene as files
 from .failure import BadInput
+from .geometry.time_functions import tabulated
 from .input import models
 from .input.dimension import AXISYMMETRIC, DIMENSIONS, PLANE_STRAIN, SOLID, Dimension
 from .input.models import Body, Contact, Obstacle
@@ -96,7 +97,28 @@ class Scene(models.Top):
         tables["body"] = [body.table() for body in self.bodies]
         tables["obstacle"] = [obstacle.table() for obstacle in self.obstacles]
         tables["contact"] = self.contact.table()
+        self._tabulate(tables)
         return {name: value for name, value in tables.items() if value not in ({}, [])}
+
+    def _tabulate(self, tables: dict[str, Any]) -> None:
+        """Puts tables in place of Python functions of time."""
+        places = [
+            (f"{key}.{k}", table)
+            for key in ("body", "obstacle")
+            for k, table in enumerate(tables[key], 1)
+        ]
+        places += [
+            (f"{entry}.{key}.{k}", table)
+            for entry, holder in list(places)
+            for key in ("support", "load")
+            for k, table in enumerate(holder.get(key, []), 1)
+        ]
+        letters = dict.fromkeys(("motion", "traction"), "xyz"[: self.kind.axes])
+        for entry, table in places:
+            for name, own in (letters | {"pressure": "p", "rotation": "r"}).items():
+                if name in table:
+                    at = f"{entry}.{name}"
+                    table[name] = tabulated(at, table[name], own, self.end_time or 0.0)
 
     def checked(self, name: str = "scene") -> reading.Scene:
         """Returns the scene as the program reads it. Raises BadInput if the program does not accept

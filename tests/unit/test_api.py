@@ -97,6 +97,45 @@ def test_a_scene_saved_elsewhere_finds_its_files(tmp_path):
 MATERIAL = {"young": 7e6, "nu": 0.45, "density": 1722}
 
 
+def moved(motion, **entries) -> ff.Scene:
+    """A disc whose left side moves, under a plane that comes down and turns."""
+    disc = ff.Disc(radius=0.05, material=RUBBER, position=(0, 0.051),
+                   support=ff.Support(where="left", motion=motion))  # fmt: skip
+    return ff.Scene(bodies=[disc], **{"end_time": 0.1} | entries)
+
+
+def test_a_python_function_of_time_is_a_table():
+    """Of one component or of all; the table follows the function to 1e-5 of its largest value."""
+    whole = moved(lambda t: (0, -0.01 * np.sin(200 * t)))
+    single = moved([0, lambda t: -0.01 * np.sin(200 * t)])
+    table = whole.table()["body"][0]["support"][0]["motion"]
+    assert set(table) == {"t", "x", "y"} and table["t"][-1] == 0.1
+    for scene in (whole, single):
+        motion = scene.checked().bodies[0].supports[0].motion
+        t = np.linspace(0, 0.1, 5000)
+        assert abs(motion[1](t) + 0.01 * np.sin(200 * t)).max() < 2e-7 and motion[0].is_zero
+    assert ff.Scene.from_tables(whole.table()) == whole
+    plane = ff.Plane(rotation=lambda t: 30 * t, pivot=(0, -1))
+    turned = moved([0, "t"], obstacles=[plane], end_time=0.5).table()["obstacle"][0]["rotation"]
+    assert turned["r"][-1] == 15
+
+
+@pytest.mark.parametrize(
+    "motion, more, words",
+    [
+        (lambda t: 3, {}, ("body.1.support.1.motion", "2 numbers")),
+        (lambda t: (0, "a"), {}, ("body.1.support.1.motion", "2 numbers")),
+        (lambda t: (0, float("nan")), {}, ("motion", "not finite at 0 s")),
+        (lambda t: (0, t), {"end_time": None}, ("motion", "end_time")),
+        ([0, lambda t: float(t > 0.05123)], {}, ("motion.2", "too fast")),
+    ],
+)  # fmt: skip
+def test_what_no_table_follows_is_refused(motion, more, words):
+    with pytest.raises(ff.BadInput) as caught:
+        moved(motion, **more)
+    assert all(word in str(caught.value) for word in words)
+
+
 def test_a_scene_is_shown_as_a_table():
     lines = repr(drop(accuracy=0.02)).splitlines()
     assert [line.split()[0] for line in lines] == ["Scene", "body", "obstacle", "contact", "run"]

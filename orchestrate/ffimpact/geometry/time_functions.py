@@ -36,11 +36,14 @@ __all__ = [
     "of_csv",
     "of_entry",
     "of_table",
+    "tabulated",
 ]
 
 # Largest error of the interpolation, relative to the largest value of the expression so far; that
 # which is accepted if CLOSE takes more than MOST intervals.
 CLOSE, ROUGH = 1e-8, 1e-6
+# Largest error of the table of a Python function, relative to its largest value; most of its times.
+FOLLOWED, LARGEST = 1e-5, 2**15
 NOTHING = 1e-20  # value [m, rad, Pa] that is round-off
 STEEPEST = 1e30  # largest slope, per second; larger slopes are refused
 # Intervals between two powers of two, before they are divided; the exponent of the first one; the
@@ -236,6 +239,55 @@ def of_table(entry: str, times: object, values: object) -> TimeFunction:
         for k, side in ((0, -1), (-1, 1))
     )
     return TimeFunction(np.array([*before, *np.column_stack([t, value, slope]), *after]))
+
+
+def tabulated(entry: str, definition: Any, names: str, end_time: float) -> Any:
+    """The definition of a function of time with tables in place of Python functions of t [s].
+
+    A Python function stands for one component, or for all in `names`. Its table is that of even
+    times from 0 to end_time [s], so many that of_table() is within FOLLOWED times its largest value
+    in the middle between them. Raises BadInput if the function is not finite there, returns no
+    numbers, or changes so fast that more than LARGEST times would be needed.
+    """
+    if isinstance(definition, list):
+        return [
+            tabulated(f"{entry}.{k}", component, name, end_time)
+            for k, (name, component) in enumerate(zip(names, definition), 1)
+        ]
+    if not callable(definition):
+        return definition
+    if end_time <= 0:
+        raise BadInput(f"{entry}: a Python function of time needs an end_time (accepted: above 0)")
+
+    def at(times: np.ndarray) -> np.ndarray:
+        try:
+            rows = [np.atleast_1d(np.asarray(definition(float(t)), float)) for t in times]
+            values = np.array(rows).reshape(len(times), len(names))
+        except (TypeError, ValueError) as error:
+            raise BadInput(
+                f"{entry}: {error} (accepted: a function of t that returns {len(names)} numbers)"
+            ) from None
+        if not np.isfinite(values).all():
+            t = times[~np.isfinite(values).all(axis=1)][0]
+            raise BadInput(f"{entry}: is not finite at {t:g} s (accepted: finite numbers)")
+        return values
+
+    times = np.linspace(0.0, end_time, 65)
+    values = at(times)
+    while len(times) <= LARGEST:
+        middle = (times[1:] + times[:-1]) / 2
+        between = at(middle)
+        columns = [of_table(entry, times, column)(middle) for column in values.T]
+        largest = abs(np.concatenate([values, between])).max(initial=NOTHING)
+        if abs(np.transpose(columns) - between).max() <= FOLLOWED * largest:
+            return {"t": times.tolist()} | dict(zip(names, values.T.tolist()))
+        order = np.argsort(np.concatenate([times, middle]))
+        times = np.concatenate([times, middle])[order]
+        values = np.concatenate([values, between])[order]
+    raise BadInput(
+        f"{entry}: changes too fast for a table of {LARGEST} times up to end_time = {end_time:g} s "
+        f"(accepted: a smoother function, an expression of t in quotes, or a table of your own)"
+    )
 
 
 def is_csv(definition: object) -> bool:
