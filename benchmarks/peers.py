@@ -11,6 +11,7 @@ Debian's python3-getfem, in /usr/bin/python3 or in $GETFEM_PYTHON. Only the benc
 import json
 import os
 import resource
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -26,8 +27,9 @@ from ffimpact.report.impact import impact_of
 from ffimpact.scene import Scene
 from ffimpact.sweeps.study import Point
 
-PYTHONS = {"ffimpact": ("", sys.executable), "ngsolve": ("NGSOLVE_PYTHON", sys.executable), "getfem": ("GETFEM_PYTHON", "/usr/bin/python3")}
-INSTALL = {"ngsolve": "pip install ngsolve==6.2.2608", "getfem": "apt-get install python3-getfem"}
+PYTHONS = {"ffimpact": ("", sys.executable), "ngsolve": ("NGSOLVE_PYTHON", sys.executable), "getfem": ("GETFEM_PYTHON", "/usr/bin/python3"),
+           "calculix": ("", sys.executable)}
+INSTALL = {"ngsolve": "pip install ngsolve==6.2.2608", "getfem": "apt-get install python3-getfem", "calculix": "apt-get install calculix-ccx"}
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 # Radius [m] of the scene disc-normal and default of the other programs.
 RADIUS = 0.05
@@ -45,12 +47,14 @@ def sized(factor: float, **entries: Value) -> Point:
 
 @cache
 def find(program: str) -> str | None:
-    """The Python executable that imports `program` (ngsolve or getfem). Returns None if there is
-    none."""
+    """The Python executable that imports `program` (ngsolve or getfem), or that starts it
+    (calculix). Returns None if there is none."""
     variable, usual = PYTHONS[program]
     python = os.environ.get(variable, usual)
     if program == "ffimpact":
         return python
+    if program == "calculix":
+        return python if shutil.which("ccx") else None
     try:
         exists = subprocess.run([python, "-c", f"import {program}"], capture_output=True, timeout=60).returncode == 0
     except (OSError, subprocess.TimeoutExpired):
@@ -78,8 +82,13 @@ def run(program: str, form: str, mesh_size: float, contact_mesh_size: float, dt:
 def two_bodies(limit: float, **flags: Value) -> tuple[dict | None, str]:
     """As run(), for benchmarks/programs/ngsolve_two_bodies.py in SI units. The flags are law, nu,
     penalty, speed, refine and others."""
+    return scripted("ngsolve", "two_bodies", limit, **flags)
+
+
+def scripted(program: str, body: str, limit: float, **flags: Value) -> tuple[dict | None, str]:
+    """As run(), for any script of a program in benchmarks/programs/ with flags in SI units."""
     with tempfile.TemporaryDirectory() as folder:
-        return _printed("ngsolve", "ngsolve_two_bodies.py", folder, limit, flags)
+        return _printed(program, f"{program}_{body}.py", folder, limit, flags)
 
 
 def ours(limit: float, scene: str, **entries: Value) -> tuple[dict | None, str]:

@@ -7,7 +7,6 @@ users-references.csv. A second table varies the stiffness of a block under a sof
 
 import json
 import math
-import shutil
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
@@ -37,7 +36,7 @@ FINER = (2.0, estimate.COARSER)
 AUTOMATIC, BY_HAND = "automatic", "by hand"
 RATIO = "stiffness-ratio"  # name of the study of the disc on the block
 RIGID = math.inf  # ratio of the disc on a rigid plane
-OTHERS = {"ngsolve": lambda: peers.find("ngsolve"), "calculix": lambda: shutil.which("ccx")}
+OTHERS = ("ngsolve", "calculix")
 Row = dict[str, str | float | None]
 
 
@@ -120,6 +119,39 @@ def first_peak(record: Record) -> float:
     return float(first.peak_force.max())
 
 
+# Flags of the scripts of other programs: entries of the scene and of its body.
+ENTRIES, OF_BODY = ("dt", "end_time", "gravity"), ("law", "young", "nu", "density", "width", "height", "mesh_size")
+
+
+@dataclass(frozen=True)
+class Peer:
+    """A scene in other programs (benchmarks/programs/PROGRAM_BODY.py).
+
+    programs: those that have a script
+    body: the second part of the name of the script
+    answer: the number that it prints for the first answer of the scene
+    more: further flags, from the scene as used by the run by hand
+    without: flags that the script does not know
+    """
+
+    programs: tuple[str, ...]
+    body: str
+    answer: str
+    more: Callable[[dict], dict] = lambda used: {}
+    without: tuple[str, ...] = ()
+
+    def flags(self, used: dict) -> dict:
+        """The flags for a scene of one body: its mesh, step and penalty are those of the run."""
+        flags = {name: used[name] for name in ENTRIES} | {name: used["body"][0][name] for name in OF_BODY}
+        return {name: value for name, value in (flags | self.more(used)).items() if name not in self.without}
+
+
+def falls(used: dict) -> dict:
+    """The flags of a body that falls on a plane."""
+    body = used["body"][0]
+    return {"speed": -body["velocity"][1], "penalty": used["contact"]["pair"][0]["penalty"], "across": body["mesh_size"] * body["mesh_stretch"]}
+
+
 @dataclass(frozen=True)
 class Case:
     """A scene of benchmarks/scenes/.
@@ -127,12 +159,14 @@ class Case:
     answers: what its user wants, the most important first
     by_hand: step and sizes that a user with experience would give
     entries: entries set in the scene
+    peer: the same scene in other programs
     """
 
     scene: str
     answers: tuple[Answer, ...]
     by_hand: study.Point
     entries: study.Point = field(default_factory=dict)
+    peer: Peer = Peer((), "", "")
 
     def open(self) -> scene.Scene:
         return scene.load(str(draws.OWN / f"{self.scene}.toml")).override(self.entries)
@@ -141,8 +175,9 @@ class Case:
 USERS = {case.scene: case for case in (
     Case("beam-rubber-disc", (speed("velocity of the disc", "final_vy_1", 3), Answer("half period of the beam [ms]", half_period)),
          {"dt": 4e-5}),
-    Case("strip-gravity", (Answer("sag of the centre [mm]", sag),), {"dt": 4e-3}),
-    Case("rod-flat", (same("impulse [N s/m]", "impulse"), same("contact time above 1 % [s]", "thresholded_contact_time")), {"dt": 2e-5}),
+    Case("strip-gravity", (Answer("sag of the centre [mm]", sag),), {"dt": 4e-3}, peer=Peer(OTHERS, "strip", "sag")),
+    Case("rod-flat", (same("impulse [N s/m]", "impulse"), same("contact time above 1 % [s]", "thresholded_contact_time")), {"dt": 2e-5},
+         peer=Peer(("ngsolve",), "rod", "impulse", falls, ("end_time", "gravity"))),
     Case("weight-pad-plate", (same("peak force on a clamp [N/m]", "support_peak_1"), speed("velocity of the weight", "final_vy_1", 2)),
          {"dt": 2e-5, "contact.penalty": 5e10, "body.1.contact_mesh_size": 2e-3, "body.2.contact_mesh_size": 4e-3,
           "body.3.contact_mesh_size": 5e-3, "body.3.mesh_size": 5e-3}),
@@ -218,7 +253,7 @@ def measure(cases: dict[str, Case], out: Path, limit: float) -> pd.DataFrame:
 
 def _rows(name: str, case: Case, setting: str, out: Path, limit: float) -> list[Row]:
     """The rows of one run, one for each answer; a failed run has one row."""
-    common: Row = {"scene": name, "setting": setting, "message": ""} | {other: _other(other) for other in OTHERS}
+    common: Row = {"scene": name, "setting": setting, "message": ""}
     try:
         with freefem.limited(limit):
             record = run.run(case.open(), case.by_hand if setting == BY_HAND else {}, out / f"{name}-{setting.replace(' ', '-')}", progress=False)
@@ -236,8 +271,9 @@ def _rows(name: str, case: Case, setting: str, out: Path, limit: float) -> list[
         row = common | {"answer": answer.words, "value": value, "stated %": _percent((summary["estimated_error"] or {}).get(answer.stated))}
         if (name, answer.words) in best.index:
             reference = best.loc[(name, answer.words)]
-            row |= {"error %": _percent(abs(value - reference.value) / (answer.scale or abs(reference.value))),
-                    "reference %": reference["bar %"]}
+            row |= {"error %": _error(answer, value, reference.value), "reference %": reference["bar %"]}
+            if setting == BY_HAND and not rows:
+                row |= {other: _other(other, case, record, reference.value, limit) for other in case.peer.programs}
         rows.append(row)
     return rows
 
@@ -246,9 +282,21 @@ def _percent(share: float | None) -> float | None:
     return None if share is None else 100 * share
 
 
-def _other(name: str) -> str:
-    """What another program has to say: none has a script of these scenes yet."""
-    return "no script" if OTHERS[name]() else "not installed"
+def _error(answer: Answer, value: float, reference: float) -> float:
+    """The error of an answer [%]."""
+    return 100 * abs(value - reference) / (answer.scale or abs(reference))
+
+
+def _other(program: str, case: Case, record: Record, reference: float, limit: float) -> str:
+    """Processor time and error of the first answer in another program, with the step, penalty and
+    element sizes of our run."""
+    if not peers.find(program):
+        return "not installed"
+    flags = case.peer.flags(read_answers(record.folder).used)
+    output, reason = peers.scripted(program, case.peer.body, limit, **flags)
+    if output is None:
+        return reason
+    return f"{output['cpu_seconds']:.3g} s, {_error(case.answers[0], output[case.peer.answer], reference):.2g} %"
 
 
 # ---- the references
