@@ -54,6 +54,32 @@ def test_tangent_is_the_derivative_of_the_residual(measure, body, flags):
         assert numbers["area"] == pytest.approx(4 / 3 * math.pi * 0.05**3, rel=3e-3 if degree == 2 else 0.15)
 
 
+ELASTIC = [{"law": "neohookean", "nu": 0.3}, {"law": "svk", "nu": 0.4999}, {"law": "neohookean", "nu": 0.4999}]
+DAMPED = [{"law": "neohookean", "nu": 0.3, "viscosity": 300, "bulk_viscosity": 100},
+          {"law": "neohookean", "nu": 0.3, "relaxation_modulus": 7e6, "relaxation_time": 1e-3}]
+
+
+@pytest.mark.few(4)
+@pytest.mark.parametrize("body", COARSE)
+@pytest.mark.parametrize("flags", ELASTIC + DAMPED, ids=str)
+def test_terms_agree_with_differences_of_their_work(measure, body, flags):
+    """In a step of energy-momentum d times the forces of a term is the energy that it stores and
+    dissipates, with a history from the step before.
+
+    The forces of elastic bodies are the slope of their energy. The tangent at d = 0 is the
+    derivative of all forces, those of damping among them."""
+    if body == "3d" and flags["law"] == "svk":
+        flags = flags | {"nu": 0.3}
+    numbers = measure(f"terms-{body}", **COARSE[body] | flags)
+    assert numbers["smallest"] < 0.6
+    assert abs(numbers["workBodies"]) < 1e-12 and abs(numbers["workInertia"]) < 1e-12
+    assert numbers["tangent"] < 1e-7
+    if flags in DAMPED:
+        assert numbers["dissipated"] > 0.1
+    else:
+        assert abs(numbers["slope"]) < 1e-6 and numbers["dissipated"] == 0
+
+
 def test_curved_outline_has_the_area_of_the_disc(measure):
     """The weights of the isoparametric half disc add up to its area; straight triangles miss about
     2 % of it."""

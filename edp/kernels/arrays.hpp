@@ -51,11 +51,11 @@ struct Archive {
   void operator()(int &x) { number(x); }
   void operator()(long &x) { number(x); }
   void operator()(double &x) { number(x); }
-  void operator()(std::vector<int> &v) {
+  template <class R> void operator()(std::vector<R> &v) {
     long n = v.size();
     number(n);
     v.resize(n);
-    for (int &x : v) number(x);
+    for (R &x : v) number(x);
   }
   template <int columns> void operator()(Eigen::Matrix<double, Eigen::Dynamic, columns> &A) {
     long rows = A.rows(), size = A.cols();

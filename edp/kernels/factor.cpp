@@ -3,7 +3,7 @@
 #include <xmmintrin.h>
 #endif
 #include <algorithm>
-#include "bodies.hpp"
+#include "elements.hpp"
 #include "factor.hpp"
 #include "failure.hpp"
 
@@ -138,7 +138,7 @@ Factor::Factor() {
   common.print = 0;                      // factorise() returns that A is not positive definite
 }
 
-void Factor::pattern(const bodies::Bodies &B) {
+void Factor::pattern(const bodies::Elements &B) {
   n = B.ndof;
   const std::vector<Entry> entries = entriesOf(B);
   storeColumns(entries);
@@ -150,7 +150,7 @@ void Factor::pattern(const bodies::Bodies &B) {
   cholmod_free_factor(&analysis, &common);
 }
 
-void Factor::numbers(const bodies::Bodies &B) {
+void Factor::numbers(const bodies::Elements &B) {
   for (int j = 0; j < n; j++)
     for (int e = column[j]; e < column[j + 1]; e++)
       value[e] = B.free[j] == 0 || B.free[row[e]] == 0 ? row[e] == j : B.block[from[e]];
@@ -238,7 +238,7 @@ std::vector<Factor::Triplet> Factor::entries() const {
   return all;
 }
 
-std::vector<Factor::Entry> Factor::entriesOf(const bodies::Bodies &B) {
+std::vector<Factor::Entry> Factor::entriesOf(const bodies::Elements &B) {
   // The entries of A by columns.
   std::vector<Entry> entries;
   int D = B.D;

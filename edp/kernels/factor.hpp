@@ -9,17 +9,17 @@
 #include <cholmod.h>
 #include <vector>
 
-namespace bodies { class Bodies; }
+namespace bodies { class Elements; }
 
 class Factor {
 public:
   Factor();
 
   // Sets the sparsity pattern of A from the node pairs of B, and CHOLMOD's order of the unknowns.
-  void pattern(const bodies::Bodies &B);
+  void pattern(const bodies::Elements &B);
 
   // Copies the entries of A from B. Unknowns held by supports have rows and columns of identity.
-  void numbers(const bodies::Bodies &B);
+  void numbers(const bodies::Elements &B);
 
   // Computes L with the unknowns w last. Returns false if S (by blocks also A) is not positive
   // definite or not finite. An L larger than the caches is computed in single precision if
@@ -57,7 +57,7 @@ private:
   cholmod_dense *solution = nullptr, *work1 = nullptr, *work2 = nullptr;
   struct Beside { int unknown, entry; };
   // A: entries of the lower triangle, column j from column[j] on; from: position of an entry in the
-  // blocks of Bodies; beside: entries of both triangles, those of unknown j from firstOf[j] on
+  // blocks of Elements; beside: entries of both triangles, those of unknown j from firstOf[j] on
   std::vector<int> column, row, firstOf;
   std::vector<Beside> beside;
   // CHOLMOD's order; w; position of an unknown in L; block of columns of a position
@@ -71,7 +71,7 @@ private:
 
   struct Entry { int row, column;  size_t from; };   // of the lower triangle; its number in B
 
-  static std::vector<Entry> entriesOf(const bodies::Bodies &B);
+  static std::vector<Entry> entriesOf(const bodies::Elements &B);
   void storeColumns(const std::vector<Entry> &entries);
   void storeNeighbours(const std::vector<Entry> &entries);
   void order(const std::vector<int> &w);

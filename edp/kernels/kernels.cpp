@@ -11,25 +11,15 @@
 #include "pairs.hpp"
 #include "step.hpp"
 
-static bodies::Bodies body;
-static struct {
-  Kept<double> F0, C0, F1, C1, jacobian1, Fs, Ss,    // set by kernelDeformation
-    damping,                                         // by kernelMaterial
-    star;                                            // by kernelVolume
-} arrays;
-static bodies::Deformation deformation() {
-  return {arrays.F0, arrays.C0, arrays.F1, arrays.C1, arrays.jacobian1, arrays.Fs, arrays.Ss};
-}
-static bodies::Bodies &bodyNow() {
-  // The bodies, with the present addresses of the script arrays.
-  body.damping = arrays.damping;
-  body.volume.star = arrays.star;
-  return body;
-}
+static bodies::Elements elements;
+static bodies::Bodies body(elements);
+static bodies::Inertia inertia(elements);
+static const Terms terms = {&body, &inertia};        // of (2), beside contact
+static Step stepNow;                                 // set by kernelIntegrator
 static std::vector<const laws::Law *> law;           // by its number in lawOfPoint
 static Factor factor;
-static contact::Contact touching(factor, body.ndof);
-static ImplicitStep step(body, factor, touching);
+static contact::Contact touching(factor, elements.ndof);
+static ImplicitStep step(elements, body, terms, factor, touching);
 static ExplicitContact substep(touching);
 static std::unique_ptr<pairs::AnyPairs> pairsOfBodies;
 static obstacles::Obstacles sceneObstacles;                   // the obstacles
@@ -41,10 +31,15 @@ static Triplets entries(Sparse A) {
   return {H->n, H->m, H->nnz, H->i, H->j, H->aij};
 }
 
+static void fill(Reals array, const std::vector<double> &values) {
+  array.resize(long(values.size()));
+  std::copy(values.begin(), values.end(), static_cast<double *>(array));
+}
+
 static void addBodies() {
   // Kernels of bodies.hpp: materials, discretisation, forces, energy and stresses.
   add("kernelComponent", +[](long i, long dimensions, Sparse pick) {
-    body.component(int(i), int(dimensions), entries(pick));
+    elements.component(int(i), int(dimensions), entries(pick));
   });
   add("kernelKnows", +[](std::string &name) { return long(laws::find(name) != nullptr); });
   add("kernelLawNumber", +[](long number, std::string &name) {
@@ -53,62 +48,91 @@ static void addBodies() {
     law[number] = laws::find(name);
   });
   add("kernelMaterial", +[](Reals lambda, Reals mu, Reals own, Reals eta, Reals zeta,
-                           Reals relaxing, Reals relaxTime, Reals bulk, Reals dampingState,
-                           Ints lawOfPoint, Ints volumeByTrace, Ints incompressible, Reals weight) {
+                           Reals relaxing, Reals relaxTime, Reals bulk, Ints lawOfPoint,
+                           Ints volumeByTrace, Ints incompressible, Reals weight) {
     // Arrays over the nq quadrature points; `own` has mostOwn stacked components.
     const long nq = weight.N();
     ffassert(own.N() == laws::mostOwn * nq);
-    body.weight = copied<double>(weight);
-    arrays.damping = {&dampingState};
+    elements.weight = copied<double>(weight);
     for (long q = 0; q < nq; q++) {
       laws::Material m = {law[lawOfPoint[q]], lambda[q], mu[q], {}, eta[q], zeta[q], relaxing[q],
                           relaxTime[q], bulk[q], volumeByTrace[q], incompressible[q]};
       for (int k = 0; k < laws::mostOwn; k++) m.own[k] = own[k * nq + q];
-      body.addPoint(m);
+      elements.addPoint(m);
     }
   });
   add("kernelBodies", +[](Sparse gradient, Sparse mass, Reals free) {
-    body.free = copied<double>(free);
-    body.make(entries(gradient), entries(mass));
-    factor.pattern(body);
+    elements.free = copied<double>(free);
+    elements.make(entries(gradient));
+    inertia.setMass(entries(mass));
+    factor.pattern(elements);
+    body.make();
   });
-  add("kernelMass", +[](Sparse mass) { body.setMass(entries(mass)); });
+  add("kernelMass", +[](Sparse mass) { inertia.setMass(entries(mass)); });
   // after a change of the unknowns that supports hold
-  add("kernelFree", +[](Reals free) { body.free = copied<double>(free); });
-  add("kernelDeformation", +[](Reals F0, Reals C0, Reals F1, Reals C1, Reals jacobian1, Reals Fs,
-                              Reals Ss) {
-    arrays.F0 = {&F0};  arrays.C0 = {&C0};  arrays.F1 = {&F1};  arrays.C1 = {&C1};
-    arrays.jacobian1 = {&jacobian1};
-    arrays.Fs = {&Fs};  arrays.Ss = {&Ss};
+  add("kernelFree", +[](Reals free) { elements.free = copied<double>(free); });
+  add("kernelBegin", +[](Reals F) { body.start(F); });   // a step begins at the deformation F
+  add("kernelIntegrator", +[](double t, double dt, double massScale, double stiffnessScale,
+                             long stressInstant, double staticShare, Reals inertiaKnown) {
+    stepNow = {t, dt, massScale, stiffnessScale, int(stressInstant), staticShare, false};
+    inertia.known = {&inertiaKnown};
   });
-  add("kernelVolume", +[](Ints elementOfPoint, Reals star) {
-    arrays.star = {&star};
-    body.elements(copied<int>(elementOfPoint));
+  add("kernelForces", +[](Reals d, Reals residual) {
+    Eigen::VectorXd sum;
+    const long ended = sumForces(terms, stepNow, Kept<double>{&d}.numbers(), sum);
+    Kept<double>{&residual}.numbers() = sum;
+    return ended;
   });
-  add("kernelForces", +[](Reals d, Reals inertiaKnown, Reals bodyForce, double massScale,
-                         double rate, long stressInstant, bool breaks, Reals residual) {
-    return long(bodyNow().forces(d, inertiaKnown, bodyForce,
-      {massScale, rate, int(stressInstant), breaks, false}, deformation(), residual));
+  add("kernelTerm", +[](std::string &name, Reals d, Reals forces, double &work) {
+    // Forces and work of one term at d (for verification).
+    Term *term = name == "inertia" ? (Term *)&inertia : &body;
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(d.N());
+    const Eigen::VectorXd increment = Kept<double>{&d}.numbers();
+    const long ended = term->addForces(stepNow, increment, sum);
+    Kept<double>{&forces}.numbers() = sum;
+    work = term->work(stepNow, increment);
+    return ended;
   });
+  add("kernelAccept", +[]() { for (Term *term : terms) term->accept(stepNow); });
+  add("kernelRelax", +[]() { body.relax(); });
+  // F, C, det F at the start of a step; det F at its end; pressures of the elements; energy
+  // dissipated so far (nq) [J/m3]
+  add("kernelDeformation", +[](Reals F, Reals C, Reals jacobian) {
+    fill(F, body.F0);  fill(C, body.C0);  fill(jacobian, body.J0);
+  });
+  add("kernelEndJacobian", +[](Reals jacobian) { fill(jacobian, body.J1); });
+  add("kernelPressures", +[](Reals p) {
+    if (body.volume) fill(p, body.volume->start); else p.resize(0);
+  });
+  add("kernelMeans", +[](Reals values, Reals means) { elements.means(values, means); });
+  add("kernelDissipated", +[](Reals W) { body.dissipated(W); });
   add("kernelStress", +[](Reals C, Reals S) { body.lawStresses(C, S); });
   add("kernelGradientCorrection", +[](Reals M, Reals H, Reals e) { body.corrections(M, H, e); });
-  add("kernelEnergy", +[](Reals C, Reals W) { bodyNow().energies(C, W); });
-  add("kernelDamp", +[](Reals C0, Reals C1, double dt) { bodyNow().damp(C0, C1, dt); });
+  add("kernelEnergy", +[](Reals C, Reals W) { body.energies(C, W); });
   add("kernelSmallestStretch", +[](Reals C, Reals stretch) {
     body.smallestStretches(C, stretch);
   });
   add("kernelEllipticity", +[](Reals C, Reals e) { body.ellipticities(C, e); });
   add("kernelStresses", +[](Reals F, Reals p, Reals sigma, Reals mises) {
-    bodyNow().stresses(F, p, sigma, mises);
+    body.stresses(F, p, sigma, mises);
   });
 }
 
 static void addFactor() {
   // Kernels of factor.hpp: the tangent A, its factorisation and its compliance.
-  add("kernelTangent", +[](Reals F, Reals S, Reals p, double massScale, double stiffnessScale,
-                          double rate) {
-    bodyNow().tangent(F, S, p, massScale, stiffnessScale, rate);
-    factor.numbers(body);
+  add("kernelTangentAtRest", +[](double massScale) {
+    // massScale M + K of the undeformed bodies without damping
+    Step rest;
+    rest.massScale = massScale;
+    rest.staticShare = 1;
+    body.lineariseAtRest();
+    sumTangents(terms, rest, elements.block);
+    factor.numbers(elements);
+  });
+  add("kernelTangent", +[]() {             // at the last evaluation (for verification)
+    body.linearise(true);
+    sumTangents(terms, stepNow, elements.block);
+    factor.numbers(elements);
   });
   add("kernelTangentEntries", +[](Ints row, Ints column, Reals value) {
     // The entries of both triangles of A.
@@ -137,31 +161,28 @@ static void addStep() {
       {&value}, {&termValue}, {&termStiffness}};
     touching.takeJacobian();
   });
-  add("kernelStepArrays", +[](Reals d, Reals v, Reals inertiaKnown, Reals bodyForce,
-                             Reals loadForce, Reals frameMotion, Reals heldResidual,
-                             Reals jacobian0, Reals pressureStart, Reals pressureStar,
-                             Reals seconds, Ints counts, Sparse translations) {
-    step.script = {{&d}, {&v}, {&inertiaKnown}, {&bodyForce}, {&loadForce}, {&frameMotion},
-                   {&heldResidual}, {&jacobian0}, {&pressureStart}, {&pressureStar}, {&seconds},
-                   {&counts}};
+  add("kernelStepArrays", +[](Reals d, Reals v, Reals bodyForce, Reals loadForce,
+                             Reals frameMotion, Reals heldResidual, Reals seconds, Ints counts,
+                             Sparse translations) {
+    step.script = {{&d}, {&v}, {&bodyForce}, {&loadForce}, {&frameMotion}, {&heldResidual},
+                   {&seconds}, {&counts}};
     step.translations = entries(translations);
   });
   add("kernelSettings", +[](double tolerance, double correctionTolerance, double momentumShare,
                            double leastVolumeRatio, bool breaks, bool newMatrix,
-                           bool allCandidates, bool damped, bool loads, long fallbackCost) {
-    step.settings = {tolerance, correctionTolerance, momentumShare, leastVolumeRatio, breaks,
-                     newMatrix, allCandidates, damped, loads, fallbackCost};
+                           bool allCandidates, bool loads, long fallbackCost) {
+    step.settings = {tolerance, correctionTolerance, momentumShare, newMatrix, allCandidates, loads,
+                     fallbackCost};
+    body.breaks = breaks;
+    body.leastVolumeRatio = leastVolumeRatio;
   });
-  add("kernelStep", +[](double dt, double massScale, double stiffnessScale, long stressInstant,
-                       long lawInstant, double searchDistance, double energyScale,
+  add("kernelStep", +[](long lawInstant, double searchDistance, double energyScale,
                        double momentumScale, double roundOff, long mostContactMatrices,
                        double &residualWorkRatio, Callback gaps, Callback terms, Callback loads,
                        Callback search) {
-    bodyNow();
     touching.mostContactMatrices = mostContactMatrices;
-    const long ended = step.take({dt, massScale, stiffnessScale, stressInstant, lawInstant,
-      searchDistance, energyScale, momentumScale, roundOff}, {gaps, terms, loads, search},
-      deformation());
+    const long ended = step.take({stepNow, lawInstant, searchDistance, energyScale, momentumScale,
+                                  roundOff}, {gaps, terms, loads, search});
     residualWorkRatio = step.residualWorkRatio;
     return ended;
   });
@@ -206,7 +227,6 @@ static void addStep() {
     archive.reads = true;
     sceneObstacles.archive(archive);
     step.archive(archive);
-    bodyNow();
     if (step.isFactorised()) step.restore();
   });
   add("kernelSubsteps", +[](Reals compliance, double distance) {

@@ -1,7 +1,7 @@
 // laws.cpp: the laws of laws.hpp. A new law is a struct derived from Conserving, a line in find(),
 // and one in program/law/laws.idp.
 #include <map>
-#include "laws.hpp"
+#include "logarithm.hpp"
 
 namespace laws {
 
@@ -59,56 +59,6 @@ struct Svk : Conserving<Svk> {
       least = std::min(least, e + (k - 1) / 2 * (L[n] - 1));
     }
     return least;
-  }
-};
-
-inline double atanhRest(double x) {
-  // atanh x - x without cancellation: the series x^3/3 + x^5/5 + ... to round-off for |x| <= 0.3,
-  // the logarithm beyond.
-  static const double enough[] = {1e-18, 1e-9, 1e-6, 3.1622776601683795e-5, 2.5118864315095822e-4,
-    1e-3};   // 10^(-18/(k + 1)): below it terms 0 to k of the series suffice
-  double y = x * x, rest = 0;
-  int k = 0;
-  if (std::abs(x) > 0.3) return 0.5 * std::log((1 + x) / (1 - x)) - x;
-  if (y == 0) return 0;
-  if (y < enough[5]) while (y >= enough[k]) k++; else k = int(18 / -std::log10(y));
-  for (; k >= 0; k--) rest = rest * y + 1. / (2 * k + 3);
-  return rest * y * x;
-}
-
-// The logarithmic volume term W = -m ln J + l/2 (ln J)^2. The results are nan for det C <= 0.
-// algorithmicStress() calls stress() and gradientCorrection() with the same C. They are inlined,
-// and ln() is declared free of side effects, so that the compiler evaluates the logarithm once for
-// both.
-__attribute__((const, noinline)) inline double ln(double x) { return std::log(x); }
-#define SHARED __attribute__((always_inline)) inline
-struct Logarithm {
-  double l, m;                             // [Pa]
-  SHARED Symmetric stress(const Symmetric &C) const {   // (l ln J - m) C^-1
-    const double det = determinant(C);
-    return (l / 2 * ln(det) - m) / det * cofactor(C);
-  }
-  SHARED double gradientCorrection(const Symmetric &M, const Symmetric &H) const {
-    // det(M +- H) = det M (1 + b +- (a + c)), x = (a + c)/(1 + b), D = ln(J1/J0) - a; the
-    // correction is (2 l ln J_M - 2 m) D + l ln(J1 J0/J_M^2) (a + D).
-    const double det = determinant(M), a = contract(cofactor(M), H) / det,
-      b = contract(M, cofactor(H)) / det, c = determinant(H) / det;
-    const double x = (a + c) / (1 + b), D = atanhRest(x) - x * b + c;
-    if (l == 0) return -2 * m * D;
-    return (l * ln(det) - 2 * m) * D
-      + l / 2 * ln((1 + b) * (1 + b) - (a + c) * (a + c)) * (a + D);
-  }
-  void addModuli(const Symmetric &C, Moduli &D) const {
-    // l C^-1_IJ C^-1_KL + (m - l ln J)(C^-1_IK C^-1_JL + C^-1_IL C^-1_JK)
-    const double det = determinant(C);
-    const Symmetric inverse = 1 / det * cofactor(C);
-    D.add(inverse, inverse, l, m - l / 2 * ln(det));
-  }
-  double ellipticity(const Symmetric &C, bool spatial, double first, double mu) const {
-    // Smallest eigenvalue over mu and over all directions N of Q(N) = first I + a g (x) g,
-    // g = F^-T N, a = m + l (1 - ln J), if a < 0; else 1.
-    const double a = m + l * (1 - 0.5 * ln(determinant(C)));
-    return a < 0 ? (first + a / std::max(0., principal(C, spatial)[spatial ? 2 : 1])) / mu : 1;
   }
 };
 
@@ -279,103 +229,6 @@ const Law *find(const std::string &name) {
 double energy(const Material &m, const Symmetric &C) {
   const Symmetric M = 0.5 * (C + identity), H = 0.5 * (C - identity);
   return m.law->gradientCorrection(m, M, H) / 2 + contract(m.law->stress(m, M), H);
-}
-
-// G (1 - theta/2) [Pa] of the Maxwell branch, dt = 1/rate.
-static double relaxedShare(const Material &m, double rate) {
-  return m.relaxing > 0 ? m.relaxing * (1 + std::exp(-1 / (rate * m.relaxTime))) / 2 : 0;
-}
-
-// S_v [Pa] of a step from C0 to C1, rate = 1/dt [1/s], with C = (C0 + C1)/2:
-// S_v = eta C^-1 (dC/dt) C^-1 + zeta/2 tr(C^-1 dC/dt) C^-1. Its work is never negative, and a
-// rigid rotation has none.
-static Symmetric viscousStress(const Material &m, const Symmetric &C0, const Symmetric &C1,
-                               double rate) {
-  const Symmetric H = 0.5 * (C1 - C0), B = inverse(0.5 * (C0 + C1));
-  return 2 * rate * m.eta * symmetric(full(B) * full(H) * full(B))
-    + rate * m.zeta * contract(B, H) * B;
-}
-
-Symmetric dampingStress(const Material &m, const Symmetric &C0, const Symmetric &C1,
-                        const Symmetric &A, double rate) {
-  const Symmetric C = 0.5 * (C0 + C1), H = 0.5 * (C1 - C0);
-  Symmetric S = Symmetric::Zero();
-  if (m.eta > 0 || m.zeta > 0) S = viscousStress(m, C0, C1, rate);
-  if (m.relaxing > 0) S += relaxedShare(m, rate) * (A - inverse(C))
-    + Logarithm{0, m.relaxing}.gradientCorrection(C, H) / (2 * contract(H, H) + 1e-300) * H;
-  return S;
-}
-
-Vector<3> invariantsBeyond(const Symmetric &C, const Symmetric &A) {
-  const Tensor X = full(C) * full(A) - Tensor::Identity();
-  const double minors = X.topLeftCorner<2, 2>().determinant()
-    + X.bottomRightCorner<2, 2>().determinant() + X(0, 0) * X(2, 2) - X(0, 2) * X(2, 0);
-  return {X.trace(), minors, X.determinant()};
-}
-
-double stored(const Material &m, const Vector<3> &I, double s) {
-  double r = s * s * (I[1] + s * I[2]), p = s * I[0] + r, z = p / (2 + p);
-  return m.relaxing / 2 * (p * z - 2 * atanhRest(z) - r);
-}
-
-double damp(const Material &m, const Symmetric &C0, const Symmetric &C1, double dt, Symmetric &A) {
-  const Symmetric K = 0.5 * (C0 + C1);
-  double taken = 0;
-  if (m.eta > 0 || m.zeta > 0)
-    taken = contract(viscousStress(m, C0, C1, 1 / dt), 0.5 * (C1 - C0));
-  if (m.relaxing > 0) {
-    const double s = std::exp(-dt / m.relaxTime);
-    const Vector<3> I = invariantsBeyond(K, A);
-    A = s * (A - inverse(K)) + inverse(K);
-    taken += std::max(0., stored(m, I, 1) - stored(m, I, s));
-  }
-  return taken;
-}
-
-double volumeEnergy(const Material &m, double theta) {
-  double e = m.volumeByTrace ? theta : std::log(theta);
-  return m.bulk / 2 * e * e;
-}
-
-double pressure(const Material &m, double theta) {
-  return m.bulk * (m.volumeByTrace ? theta : std::log(theta) / theta);
-}
-
-double pressureSlope(const Material &m, double theta) {
-  return m.bulk * (m.volumeByTrace ? 1 : (1 - std::log(theta)) / (theta * theta));
-}
-
-double pressure(const Material &m, double theta0, double theta1) {
-  if (m.volumeByTrace) return m.bulk * (theta0 + theta1) / 2;
-  double x = (theta1 - theta0) / (theta1 + theta0);
-  return m.bulk * std::log(theta0 * theta1) * (1 + (x == 0 ? 0 : atanhRest(x) / x))
-    / (theta0 + theta1);
-}
-
-Moduli moduli(const Material &m, const Symmetric &C, double p, double scale, double rate) {
-  Moduli D;
-  m.law->addModuli(m, C, D);
-  double l = 0, n = 0;
-  if (p != 0 && !m.volumeByTrace)
-    n = -(l = p * std::sqrt(determinant(C)));   // p J (C^-1 C^-1 - ...)
-  if (rate > 0) {
-    l += rate / scale * m.zeta;
-    n += rate / scale * m.eta + relaxedShare(m, rate);
-  }
-  if (l != 0 || n != 0) D.add(inverse(C), inverse(C), l, n);
-  return D;
-}
-
-double cauchy(const Material &m, const Tensor &F, double p, Symmetric &sigma) {
-  const Symmetric C = rightCauchyGreen(F);
-  const double J = F.determinant();
-  Symmetric S = m.law->stress(m, C);
-  if (m.bulk > 0) S += p * volumeDirection(m, C, J);
-  sigma = 1 / J * symmetric(F * full(S) * F.transpose());   // (3): J sigma = P F^T
-  double mises = 0;
-  for (int k = 0; k < 3; k++)
-    mises += std::pow(sigma[k] - sigma[(k + 1) % 3], 2) / 2 + 3 * sigma[3 + k] * sigma[3 + k];
-  return std::sqrt(mises);
 }
 
 }

@@ -7,9 +7,8 @@
 
 using Vector = Eigen::VectorXd;
 
-Status ImplicitStep::take(const StepParameters &parameters, const Scripts &stepScripts,
-                          const bodies::Deformation &arrays) {
-  begin(parameters, stepScripts, arrays);
+Status ImplicitStep::take(const StepParameters &parameters, const Scripts &stepScripts) {
+  begin(parameters, stepScripts);
   evaluatePrediction();
   const Status failed = status != succeeded ? status : iterate();
   script.counts[iterationsMade] = iterations;
@@ -18,13 +17,14 @@ Status ImplicitStep::take(const StepParameters &parameters, const Scripts &stepS
 }
 
 void ImplicitStep::forget() {
-  massScaleOfA = -1;
+  ofA.massScale = -1;
   contact.reset();
 }
 
 void ImplicitStep::archive(Archive &archive) {
-  archive(massScaleOfA);  archive(motion.stiffnessScale);  archive(FofA);  archive(SofA);
-  archive(pOfA);  archive(fewestIterations);  archive(surplusIterations);
+  archive(ofA.massScale);  archive(ofA.stiffnessScale);  archive(ofA.dt);  archive(ofA.staticShare);
+  archive(fewestIterations);  archive(surplusIterations);
+  for (Term *term : terms) term->archive(archive);
   history.archive(archive);
   contact.archive(archive);
 }
@@ -39,7 +39,7 @@ Status ImplicitStep::iterate() {
   // Newton's iterations. An old matrix costs iterations, a new one about as much as `cost` of
   // them. It is renewed when the surplus over the best step since the last factorisation has
   // reached this cost.
-  if (massScaleOfA != motion.massScale || surplusIterations > cost() || settings.newMatrix)
+  if (ofA.massScale != motion.massScale || surplusIterations > cost() || settings.newMatrix)
     if (!factorise()) return diverged;
   residualNow = residualFirst = residual.norm();
   double contraction = 0.1;
@@ -50,7 +50,7 @@ Status ImplicitStep::iterate() {
     iterations++;
     testConvergence();
     if (convergence <= 1 && consecutive) {
-      if (collapses()) return inverted;
+      if (!isValid()) return inverted;
       if (scripts->search() == 0) return accept();
       if (!contact.jacobianFixed) contact.clearActiveSet();
       evaluate();
@@ -61,7 +61,7 @@ Status ImplicitStep::iterate() {
     contraction = iterations - renewedAt < 2
       ? 0.1 : std::sqrt(contraction * residualNow / residualBefore);
     if (!consecutive && isAtJump())
-      return scripts->search() == 0 && !collapses() ? accept() : diverged;
+      return scripts->search() == 0 && isValid() ? accept() : diverged;
     if (wearsOut(contraction)) {
       const Status failed = renew();
       if (failed != succeeded) return failed;
@@ -70,11 +70,10 @@ Status ImplicitStep::iterate() {
   return diverged;
 }
 
-void ImplicitStep::begin(const StepParameters &parameters, const Scripts &stepScripts,
-                         const bodies::Deformation &arrays) {
+void ImplicitStep::begin(const StepParameters &parameters, const Scripts &stepScripts) {
   motion = parameters;
+  motion.carries = projected();
   scripts = &stepScripts;
-  at = arrays;
   contact.law.dt = motion.dt;
   contact.law.lawInstant = int(motion.lawInstant);
   contact.beginStep();
@@ -92,10 +91,10 @@ void ImplicitStep::begin(const StepParameters &parameters, const Scripts &stepSc
 
 void ImplicitStep::evaluatePrediction() {
   // Evaluates at the prediction, which is halved, up to six times, while its evaluation fails.
-  const Eigen::Map<const Vector> start(script.pressureStart, script.pressureStart.size());
+  const Vector start = projected() ? Vector(mapped(body.volume->start)) : Vector();
   evaluateAt(d, start);
   for (int cut = 0; status != succeeded && cut < 6; cut++) {
-    for (int j = 0; j < d.size(); j++) if (body.free[j] != 0) d[j] /= 2;
+    for (int j = 0; j < d.size(); j++) if (elements.free[j] != 0) d[j] /= 2;
     evaluateAt(d, start);
   }
 }
@@ -104,8 +103,8 @@ void ImplicitStep::evaluateAt(const Vector &increment, const Vector &pressures) 
   // Evaluates the residual at an increment with the carried pressures of the elements.
   setD(increment);
   if (projected()) {
-    mapped(body.volume.dBase) = d;
-    mapped(body.volume.carried) = pressures;
+    mapped(body.volume->dBase) = d;
+    mapped(body.volume->carried) = pressures;
   }
   evaluate();
 }
@@ -119,20 +118,18 @@ void ImplicitStep::evaluateBodies() {
   // Residual of the bodies, with 0 at held unknowns; heldResidual is that before.
   const Timed timed(seconds(assembly));
   script.counts[evaluations]++;
-  bodyResidual.resize(d.size());
-  status = body.forces(d.data(), script.inertiaKnown, script.bodyForce,
-    {motion.massScale, settings.damped ? 1 / motion.dt : 0, int(motion.stressInstant),
-     settings.breaks, projected()}, at, bodyResidual.data());
+  status = sumForces(terms, motion, d, bodyResidual);
+  bodyResidual -= script.bodyForce.numbers();    // (1): Div P + rho0 b = rho0 A, weak, times -1
   if (settings.loads && status == succeeded) {
     scripts->loads();
     bodyResidual -= script.loadForce.numbers();
   }
   if (script.heldResidual.size() > 0) {
     script.heldResidual.numbers() = bodyResidual;
-    if (projected()) script.heldResidual.numbers() += mapped(body.volume.pressureRemainder);
+    if (projected()) script.heldResidual.numbers() += mapped(body.volume->pressureRemainder);
   }
-  bodyResidual = bodyResidual.cwiseProduct(mapped(body.free));
-  if (projected()) mapped(body.volume.pressureRemainder).array() *= mapped(body.free).array();
+  bodyResidual = bodyResidual.cwiseProduct(mapped(elements.free));
+  if (projected()) mapped(body.volume->pressureRemainder).array() *= mapped(elements.free).array();
 }
 
 void ImplicitStep::evaluateContact() {
@@ -158,14 +155,14 @@ void ImplicitStep::computeCorrection() {
       trial += solved(contact.script.force.numbers());
   }
   else if (!contact.jacobianFixed) trial = d;
-  if (projected()) pressureResidual = script.pressureStar.numbers() - mapped(body.volume.now);
+  if (projected()) pressureResidual = mapped(body.volume->star) - mapped(body.volume->now);
   if (consecutive) history.learn(searchDirection, correction - correctionBefore,
                              pressureDirection + pressureResidual - pressureResidualBefore);
   correctionBefore = searchDirection = correction;
   pressureResidualBefore = pressureDirection = pressureResidual;
   history.apply(correction, searchDirection, pressureDirection);
   // held unknowns have no residual; otherwise their round-off would grow
-  searchDirection = searchDirection.cwiseProduct(mapped(body.free));
+  searchDirection = searchDirection.cwiseProduct(mapped(elements.free));
 }
 
 Vector ImplicitStep::solved(const Vector &force) {   // A^-1 force
@@ -182,7 +179,7 @@ void ImplicitStep::lineSearch() {
   const bool fresh = renewed > 0 && iterations == renewedAt;   // A was factorised at dBack
   const Eigen::Matrix<long, Eigen::Dynamic, 1> sticks = contact.script.sticks.numbers(),
     changes = contact.script.statusChanges.numbers();
-  if (projected()) pressureBack = mapped(body.volume.now);
+  if (projected()) pressureBack = mapped(body.volume->now);
   consecutive = false;
   residualBefore = residualNow;
   for (int cut = 0; cut < 7; cut++) {
@@ -190,8 +187,8 @@ void ImplicitStep::lineSearch() {
     if (cut > 0 && !contact.jacobianFixed) evaluateAt(dBack, pressureBack);
     const Vector tried = trial + scale * searchDirection;
     if (projected()) {
-      mapped(body.volume.carried) = pressureBack + scale * pressureDirection;
-      mapped(body.volume.dBase) = dBack;
+      mapped(body.volume->carried) = pressureBack + scale * pressureDirection;
+      mapped(body.volume->dBase) = dBack;
     }
     solveForContact(tried);
     if (status == succeeded) {
@@ -273,7 +270,7 @@ void ImplicitStep::testConvergence() {
   // the last correction, quadratic. Both may vanish by chance, so the residual must not change
   // the momentum of any body, either. A residual that no longer halves is taken for round-off.
   const Vector moved = d - dBack;
-  if (projected()) residual += mapped(body.volume.pressureRemainder);
+  if (projected()) residual += mapped(body.volume->pressureRemainder);
   residualWorkRatio = work() / motion.energyScale;
   const double scale = settings.correctionTolerance * motion.energyScale;
   convergence = std::max(residualWorkRatio / settings.tolerance,
@@ -282,7 +279,7 @@ void ImplicitStep::testConvergence() {
   if (residualNow < residualBefore / 2 && off > motion.roundOff)
     convergence = std::max(convergence,
                            off * motion.dt / (settings.momentumShare * motion.momentumScale));
-  if (projected()) residual -= mapped(body.volume.pressureRemainder);
+  if (projected()) residual -= mapped(body.volume->pressureRemainder);
 }
 
 double ImplicitStep::largestResultant() const {   // of the residual on a body [N/m; N]
@@ -309,12 +306,11 @@ bool ImplicitStep::isAtJump() {
   return accepted;
 }
 
-bool ImplicitStep::collapses() const {
-  // Whether a point loses four fifths of its volume in the step. An implicit step has more than
-  // one solution, and this one is no motion that it can follow: a smaller step is taken.
-  for (int q = 0; q < body.nq; q++)
-    if (at.jacobian1[q] / script.jacobian0[q] < settings.leastVolumeRatio) return true;
-  return false;
+bool ImplicitStep::isValid() const {
+  // An implicit step has more than one solution. One that a term refuses is no motion that the step
+  // can follow: a smaller step is taken.
+  for (const Term *term : terms) if (!term->isValid()) return false;
+  return true;
 }
 
 Status ImplicitStep::accept() {
@@ -358,30 +354,26 @@ bool ImplicitStep::factorise() {
   // indefinite, A takes the material stiffness alone; the residual stays exact.
   contact.reset();
   for (int pass = 0; pass < 2; pass++) {
-    FofA = ofPoints(at.Fs, body.sizeOfF());
-    SofA = ofPoints(at.Ss, body.sizeOfC());
-    pOfA = projected() ? Vector(mapped(body.volume.now)) : Vector::Zero(1);
-    if (pass == 1) { SofA.setZero();  pOfA.setZero(); }
-    massScaleOfA = motion.massScale;
+    body.linearise(pass == 0);
+    ofA = motion;
     { const Timed timed(seconds(assembly));  assemble(); }
     const Timed timed(seconds(factorisation));
     script.counts[factorisations]++;
     if (!factor.factorise(contact.orderedLast)) continue;
     if (projected()) {                         // pressureRemainder belonged to the previous A
-      residual += mapped(body.volume.pressureRemainder);
-      mapped(body.volume.pressureRemainder).setZero();
+      residual += mapped(body.volume->pressureRemainder);
+      mapped(body.volume->pressureRemainder).setZero();
     }
-    history.forget(d.size(), projected() ? script.pressureStart.size() : 0);
+    history.forget(d.size(), projected() ? body.volume->start.size() : 0);
     fewestIterations = 1000;
     surplusIterations = 0;
     return true;
   }
-  massScaleOfA = -1;
+  ofA.massScale = -1;
   return false;
 }
 
 void ImplicitStep::assemble() {
-  body.tangent(FofA.data(), SofA.data(), pOfA.data(), massScaleOfA, motion.stiffnessScale,
-               settings.damped ? std::sqrt(massScaleOfA / 2) : 0);
-  factor.numbers(body);
+  sumTangents(terms, ofA, elements.block);
+  factor.numbers(elements);
 }

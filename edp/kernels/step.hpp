@@ -1,5 +1,5 @@
 // step.hpp: the increment d of an implicit step of (2), by Newton's method with a frozen
-// factorisation A of the tangent of the bodies, massScale M + stiffnessScale K. An iteration
+// factorisation A of the tangent of the terms, massScale M + stiffnessScale K. An iteration
 // computes the correction -A^-1 r of the residual r, applies it to the trial state w (the motion
 // without contact forces; d itself if B changes), and solves contact and friction for
 // d = w - A^-1 B^T t(d). A line search limits the correction; a poor A is factorised anew. Exports
@@ -15,16 +15,15 @@ namespace contact { class Contact; }
 
 // Numbers that do not change in a run. `newMatrix`: factorise in every iteration.
 struct Settings {
-  double tolerance, correctionTolerance, momentumShare, leastVolumeRatio;   // step.idp
-  bool breaks, newMatrix, allCandidates, damped, loads;
+  double tolerance, correctionTolerance, momentumShare;   // step.idp
+  bool newMatrix, allCandidates, loads;
   long fallbackCost;                             // of a factorisation, in iterations
 };
-// Numbers of a step, as setIntegrator() of integrators.idp sets them; scales of energy [J/m; J] and
-// momentum; search distance of contact [m]; residual force [N/m; N] that is round-off.
-struct StepParameters {
-  double dt, massScale, stiffnessScale;
-  long stressInstant, lawInstant;
-  double searchDistance, energyScale, momentumScale, roundOff;
+// A step, as setIntegrator() of integrators.idp sets it; scales of energy [J/m; J] and momentum;
+// search distance of contact [m]; residual force [N/m; N] that is round-off.
+struct StepParameters : Step {
+  long lawInstant = 0;
+  double searchDistance = 0, energyScale = 1, momentumScale = 1, roundOff = 0;
 };
 // What scripts do in a step: gaps: B, q0 and gapSlipOffset at d; terms: geometric contact stiffness
 // under the forces; loads: loadForce at d; search: 1 if d moves beyond the last contact search,
@@ -33,8 +32,8 @@ struct Scripts { std::function<long()> gaps, terms, loads, search; };
 
 // Arrays of the scripts (integrators.idp, reactions.idp): v (ndof) and so on.
 struct StepArrays {
-  Kept<double> d, v, inertiaKnown, bodyForce, loadForce, frameMotion, heldResidual, jacobian0,
-    pressureStart, pressureStar, seconds;        // seconds, counts: see evaluations ... below
+  Kept<double> d, v, bodyForce, loadForce, frameMotion, heldResidual,
+    seconds;                                     // seconds, counts: see evaluations ... below
   Kept<long> counts;
 };
 
@@ -46,31 +45,31 @@ class ImplicitStep {
   Triplets translations = {};            // (ndof x 3 bodies)
   double residualWorkRatio = 0;                  // work of the residual over energyScale
 
-  ImplicitStep(bodies::Bodies &allBodies, Factor &factorOfA, contact::Contact &contactOfStep)
-    : body(allBodies), factor(factorOfA), contact(contactOfStep) {}
+  ImplicitStep(bodies::Elements &all, bodies::Bodies &allBodies, const Terms &allTerms,
+               Factor &factorOfA, contact::Contact &contactOfStep)
+    : elements(all), body(allBodies), terms(allTerms), factor(factorOfA),
+      contact(contactOfStep) {}
 
   // Finds d from the prediction in d. Returns succeeded, or the reason of failure (status.hpp).
-  Status take(const StepParameters &parameters, const Scripts &stepScripts,
-              const bodies::Deformation &arrays);
+  Status take(const StepParameters &parameters, const Scripts &stepScripts);
 
   void forget();   // for the next step, A is factorised anew
-  bool isFactorised() const { return massScaleOfA >= 0; }
+  bool isFactorised() const { return ofA.massScale >= 0; }
   // The state that lasts from step to step.
   void archive(Archive &archive);
   void restore();   // A of an archived state
 
  private:
+  bodies::Elements &elements;
   bodies::Bodies &body;
+  const Terms &terms;
   Factor &factor;
   contact::Contact &contact;
   StepParameters motion = {};
   const Scripts *scripts = nullptr;
-  bodies::Deformation at = {};
   Anderson history;
   Status status = succeeded;
-  // A: its massScale (-1: there is none), F, S and pressures at which it was assembled
-  double massScaleOfA = -1;
-  Vector FofA, SofA, pOfA;
+  Step ofA;                                      // the step of A; massScale -1: there is no A
   // iterations: least of a step with this A; surplus over it, summed over steps
   long fewestIterations = 1000, surplusIterations = 0;
   // of this step; factorisations, and the iteration of the last one
@@ -94,14 +93,12 @@ class ImplicitStep {
   enum { assembly, factorisation, solution, contacts };   // entries of `seconds`
   enum { iterationsMade, evaluations, factorisations, contactMatrices };   // entries of `counts`
   double &seconds(int phase) { return script.seconds[phase]; }
-  bool projected() const { return !body.cell.empty(); }
-  Eigen::Map<const Vector> ofPoints(const double *values, long n) const { return {values, n}; }
+  bool projected() const { return body.volume != nullptr; }
   Eigen::Map<Vector> mapped(std::vector<double> &v) const { return {v.data(), long(v.size())}; }
   void setD(const Vector &next) { script.d.numbers() = d = next; }
   Status iterate();
 
-  void begin(const StepParameters &parameters, const Scripts &stepScripts,
-             const bodies::Deformation &arrays);
+  void begin(const StepParameters &parameters, const Scripts &stepScripts);
 
   void evaluatePrediction();
   void evaluateAt(const Vector &increment, const Vector &pressures);
@@ -117,7 +114,7 @@ class ImplicitStep {
   void testConvergence();
   double largestResultant() const;
   bool isAtJump();
-  bool collapses() const;
+  bool isValid() const;
   Status accept();
   long cost() const;
   bool wearsOut(double contraction) const;

@@ -60,6 +60,15 @@ inline Vector<3> principal(const Symmetric &C, bool spatial) {
   return {solver.eigenvalues()[1], solver.eigenvalues()[0], C[2]};
 }
 
+// sigma = F S F^T / det F [Pa]; returns the von Mises stress [Pa].
+inline double cauchy(const Tensor &F, const Symmetric &S, Symmetric &sigma) {
+  double mises = 0;
+  sigma = 1 / F.determinant() * symmetric(F * full(S) * F.transpose());   // (3): J sigma = P F^T
+  for (int k = 0; k < 3; k++)
+    mises += std::pow(sigma[k] - sigma[(k + 1) % 3], 2) / 2 + 3 * sigma[3 + k] * sigma[3 + k];
+  return std::sqrt(mises);
+}
+
 // Unit tangents (A, A - 1), perpendicular to n and to each other.
 inline Vector<2> tangentsOf(const Vector<2> &n) { return {n[1], -n[0]}; }
 inline Eigen::Matrix<double, 3, 2> tangentsOf(const Vector<3> &n) {

@@ -1,0 +1,309 @@
+// stress-terms.cpp: the stresses of stress-terms.hpp.
+#include <algorithm>
+#include "logarithm.hpp"
+#include "stress-terms.hpp"
+
+namespace bodies {
+
+void Elasticity::addStress(const Step &step, Deformed &e) {
+  for (int p = 0; p < e.points; p++) {
+    const laws::Material &m = material(e.first + p);
+    e.S[p] += step.stressInstant == stepMean ? m.law->algorithmicStress(m, e.C0[p], e.C1[p])
+      : m.law->stress(m, e.Cs[p]);         // (4): S = g(E), C = I + 2 E
+  }
+}
+
+void Elasticity::addModuli(const Step &, size_t, int q, const Symmetric &C,
+                           laws::Moduli &D) const {
+  material(q).law->addModuli(material(q), C, D);
+}
+
+void Elasticity::addEnergy(Time, const Deformed &e, double *W) const {
+  for (int p = 0; p < e.points; p++) W[p] += laws::energy(material(e.first + p), e.C1[p]);
+}
+
+Viscosity::Viscosity(const Elements &all)
+  : StressTerm(all), lost(history.add("dissipated", all.nq, {0})) {}
+
+Symmetric Viscosity::stress(double rate, const Deformed &e, int p) const {
+  const laws::Material &m = material(e.first + p);
+  const Symmetric H = 0.5 * (e.C1[p] - e.C0[p]), B = tensors::inverse(0.5 * (e.C0[p] + e.C1[p]));
+  return 2 * rate * m.eta * tensors::symmetric(laws::full(B) * laws::full(H) * laws::full(B))
+    + rate * m.zeta * tensors::contract(B, H) * B;
+}
+
+void Viscosity::addStress(const Step &step, Deformed &e) {
+  if (step.isStatic()) return;
+  for (int p = 0; p < e.points; p++) {
+    const laws::Material &m = material(e.first + p);
+    if (m.eta > 0 || m.zeta > 0) e.S[p] += stress(step.rate(), e, p);
+  }
+}
+
+void Viscosity::addModuli(const Step &step, size_t, int q, const Symmetric &C,
+                          laws::Moduli &D) const {
+  if (step.isStatic()) return;
+  const Symmetric inverse = tensors::inverse(C);
+  const double rate = step.rate() / step.stiffnessScale;
+  D.add(inverse, inverse, rate * material(q).zeta, rate * material(q).eta);
+}
+
+void Viscosity::advance(const Step &step, const Deformed &e) {
+  for (int p = 0; p < e.points; p++) {
+    const int q = e.first + p;
+    *lost.trialAt(q) = *lost.startAt(q);
+    if (!step.isStatic()) *lost.trialAt(q) +=
+      tensors::contract(stress(step.rate(), e, p), 0.5 * (e.C1[p] - e.C0[p]));
+  }
+}
+
+// G (1 - theta/2) [Pa] of the branch, dt = 1/rate.
+static double relaxedShare(const laws::Material &m, double rate) {
+  return m.relaxing * (1 + std::exp(-1 / (rate * m.relaxTime))) / 2;
+}
+
+// Invariants of X = C A - I: tr X, [(tr X)^2 - tr X^2]/2, det X.
+static tensors::Vector<3> invariantsBeyond(const Symmetric &C, const Symmetric &A) {
+  const Tensor X = laws::full(C) * laws::full(A) - Tensor::Identity();
+  const double minors = X.topLeftCorner<2, 2>().determinant()
+    + X.bottomRightCorner<2, 2>().determinant() + X(0, 0) * X(2, 2) - X(0, 2) * X(2, 0);
+  return {X.trace(), minors, X.determinant()};
+}
+
+// G/2 [tr(s X) - ln det(I + s X)] [J/m3], I the invariants of X.
+static double stored(const laws::Material &m, const tensors::Vector<3> &I, double s) {
+  double r = s * s * (I[1] + s * I[2]), p = s * I[0] + r, z = p / (2 + p);
+  return m.relaxing / 2 * (p * z - 2 * laws::atanhRest(z) - r);
+}
+
+Relaxation::Relaxation(const Elements &all)
+  : StressTerm(all), state(history.add("A", all.nq, {1, 1, 1, 0, 0, 0})),
+    lost(history.add("dissipated", all.nq, {0})) {}
+
+void Relaxation::addStress(const Step &step, Deformed &e) {
+  if (step.isStatic()) return;
+  for (int p = 0; p < e.points; p++) {
+    const laws::Material &m = material(e.first + p);
+    if (!(m.relaxing > 0)) continue;
+    const Symmetric K = 0.5 * (e.C0[p] + e.C1[p]), H = 0.5 * (e.C1[p] - e.C0[p]);
+    e.S[p] += relaxedShare(m, step.rate()) * (A(atStart, e.first + p) - tensors::inverse(K))
+      + laws::Logarithm{0, m.relaxing}.gradientCorrection(K, H)
+        / (2 * tensors::contract(H, H) + 1e-300) * H;
+  }
+}
+
+void Relaxation::addModuli(const Step &step, size_t, int q, const Symmetric &C,
+                           laws::Moduli &D) const {
+  if (step.isStatic() || !(material(q).relaxing > 0)) return;
+  const Symmetric inverse = tensors::inverse(C);
+  D.add(inverse, inverse, 0, relaxedShare(material(q), step.rate()));
+}
+
+void Relaxation::addEnergy(Time time, const Deformed &e, double *W) const {
+  for (int p = 0; p < e.points; p++) {
+    const laws::Material &m = material(e.first + p);
+    if (m.relaxing > 0) W[p] += stored(m, invariantsBeyond(e.C1[p], A(time, e.first + p)), 1);
+  }
+}
+
+void Relaxation::advance(const Step &step, const Deformed &e) {
+  for (int p = 0; p < e.points; p++) {
+    const int q = e.first + p;
+    const laws::Material &m = material(q);
+    if (step.isStatic() || !(m.relaxing > 0)) continue;
+    const double s = std::exp(-step.dt / m.relaxTime);
+    const Symmetric K = 0.5 * (e.C0[p] + e.C1[p]), A0 = A(atStart, q);
+    const tensors::Vector<3> I = invariantsBeyond(K, A0);
+    *lost.trialAt(q) = *lost.startAt(q) + std::max(0., stored(m, I, 1) - stored(m, I, s));
+    Eigen::Map<Symmetric>(state.trialAt(q)) =
+      s * (A0 - tensors::inverse(K)) + tensors::inverse(K);
+  }
+}
+
+void Relaxation::relax(const Deformed &e) {
+  for (int p = 0; p < e.points; p++)
+    state.set(e.first + p, Symmetric(tensors::inverse(e.C0[p])).data());
+}
+
+// The volume measure j = J or tr E and its derivative T = 2 dj/dC. The second direction() is T of a
+// step, T : (C1 - C0)/2 = j1 - j0; sumJ = J0 + J1.
+static double measure(const laws::Material &m, const Symmetric &C) {
+  return m.volumeByTrace ? tensors::trace(C - tensors::identity) / 2
+    : std::sqrt(tensors::determinant(C));
+}
+static Symmetric direction(const laws::Material &m, const Symmetric &C, double J) {
+  return m.volumeByTrace ? tensors::identity : 1 / J * tensors::cofactor(C);
+}
+static Symmetric direction(const laws::Material &m, const Symmetric &C0, const Symmetric &C1,
+                           double sumJ) {
+  return m.volumeByTrace ? tensors::identity
+    : 2 / sumJ
+      * (tensors::cofactor(0.5 * (C0 + C1)) + 1. / 3 * tensors::cofactor(0.5 * (C1 - C0)));
+}
+
+// p = U' [Pa] and U'' [Pa] at theta; p of a step, (U1 - U0)/(theta1 - theta0).
+static double pressureAt(const laws::Material &m, double theta) {
+  return m.bulk * (m.volumeByTrace ? theta : std::log(theta) / theta);
+}
+static double pressureSlope(const laws::Material &m, double theta) {
+  return m.bulk * (m.volumeByTrace ? 1 : (1 - std::log(theta)) / (theta * theta));
+}
+static double pressureAt(const laws::Material &m, double theta0, double theta1) {
+  if (m.volumeByTrace) return m.bulk * (theta0 + theta1) / 2;
+  double x = (theta1 - theta0) / (theta1 + theta0);
+  return m.bulk * std::log(theta0 * theta1) * (1 + (x == 0 ? 0 : laws::atanhRest(x) / x))
+    / (theta0 + theta1);
+}
+
+Volume::Volume(const Elements &all)
+  : StressTerm(all), start(all.count(), 0.), star(start), carried(start), now(start),
+    dBase(all.ndof, 0.), pressureRemainder(dBase), ofTangent(start), slope(start),
+    g0(all.node.size() * all.D, 0.) {}
+
+double Volume::share(int q, size_t g) const {
+  return elements.weight[q] / elements.elementWeight[g];
+}
+
+void Volume::begin(const Step &step, const std::vector<double> &d) {
+  if (!step.carries) return;
+  elements.gather(dBase.data(), increment);
+  for (size_t i = 0; i < increment.size(); i++) increment[i] = d[i] - increment[i];
+  ownRemainders.assign(g0.size(), 0.);
+}
+
+void Volume::end(const Step &step) {
+  if (!step.carries) return;
+  elements.sum(ownRemainders, remainders);
+  elements.scatter(remainders, pressureRemainder.data());
+}
+
+double Volume::alongG0(size_t g) const {   // g0.(d - dBase) of element g
+  double sum = 0;
+  const int D = elements.D;
+  for (int a = elements.firstNode[g]; a < elements.firstNode[g + 1]; a++)
+    for (int i = 0; i < D; i++) sum += g0[size_t(a) * D + i] * increment[elements.node[a] * D + i];
+  return sum;
+}
+
+void Volume::addStress(const Step &step, Deformed &e) {
+  // p* from the mean volume measures theta0, theta1 at both ends of the step; p is p*, or, if it
+  // is carried, carried + slope g0.(d - dBase). Incompressible: p* = p + kappa/2 (theta1 - 1).
+  const laws::Material &m = material(e.first);
+  const bool mean = step.stressInstant == stepMean;
+  double theta0 = 0, theta1 = 0;
+  for (int p = 0; p < e.points; p++) {
+    const double w = share(e.first + p, e.element), j = measure(m, e.Cs[p]);
+    theta1 += w * j;
+    if (mean) {
+      const double j0 = measure(m, e.C0[p]);
+      e.T[p] = direction(m, e.C0[p], e.Cs[p], j0 + j);
+      theta0 += w * j0;
+    }
+    else e.T[p] = direction(m, e.Cs[p], j);
+  }
+  double atD = mean ? pressureAt(m, theta0, theta1) : pressureAt(m, theta1);
+  e.pressure = atD;
+  if (step.carries) {
+    e.pressure = carried[e.element];
+    if (slopeKnown) e.pressure += slope[e.element] * alongG0(e.element);
+  }
+  if (m.incompressible)
+    atD = e.pressure + m.bulk / 2 * (theta1 - 1);   // (6): J = 1: S = mu (I - C^-1) + p C^-1
+  e.rest = atD - e.pressure;
+  star[e.element] = atD;
+  now[e.element] = e.pressure;
+  for (int p = 0; p < e.points; p++) e.S[p] += e.pressure * e.T[p];
+}
+
+void Volume::addElementForces(const Step &step, const Deformed &e, const Tensor *F,
+                              double *force) {
+  // Forces of p* - p: force += g0 (p* - p), if g0 is known, else g (p* - p). The remainder of the
+  // element is (g - g0)(p* - p).
+  if (!step.carries) return;
+  const int n = elements.nodesOf(e.element), D = elements.D;
+  const size_t from = size_t(elements.firstNode[e.element]) * D;
+  double all[mostNodes * 3] = {};
+  elements.dispatch([&](auto stored) {
+    typedef decltype(stored) T;
+    const double *N = &elements.shape[elements.firstShape[e.element]];
+    for (int p = 0; p < e.points; p++, N += n * T::derivatives)
+      elements.addPointForces<T>(e.first + p, n, N, F[p], e.rest * e.T[p], all);
+  });
+  for (int i = 0; i < n * D; i++) {
+    const double along = slopeKnown ? e.rest * g0[from + i] : all[i];
+    force[i] += along;
+    ownRemainders[from + i] = all[i] - along;
+  }
+}
+
+void Volume::linearise(bool stressed) {
+  if (stressed) ofTangent = now; else std::fill(ofTangent.begin(), ofTangent.end(), 0.);
+}
+
+void Volume::addModuli(const Step &, size_t g, int q, const Symmetric &C,
+                       laws::Moduli &D) const {
+  const double p = ofTangent[g];           // p J (C^-1 C^-1 - ...)
+  if (p == 0 || material(q).volumeByTrace) return;
+  const double l = p * std::sqrt(tensors::determinant(C));
+  D.add(tensors::inverse(C), tensors::inverse(C), l, -l);
+}
+
+void Volume::addElementTangent(const Step &step, Elements &all, size_t g, const double *F) {
+  // g0 = sum of w dj/du and slope = scale U''/(sum of w) of the element; block += slope g0 g0^T.
+  const int n = all.nodesOf(g), D = all.D, first = all.firstPoint[g];
+  const laws::Material &m = material(first);
+  double *ownG0 = &g0[size_t(all.firstNode[g]) * D], theta = 0;
+  std::fill(ownG0, ownG0 + n * D, 0.);
+  all.dispatch([&](auto stored) {
+    typedef decltype(stored) T;
+    const double *N = &all.shape[all.firstShape[g]];
+    for (int q = first; q < all.firstPoint[g + 1]; q++, N += n * T::derivatives) {
+      const Tensor f = all.whole<T>(F, q);
+      const Symmetric C = laws::rightCauchyGreen(f);
+      const double j = measure(m, C);
+      theta += all.weight[q] * j / all.elementWeight[g];
+      all.addPointForces<T>(q, n, N, f, direction(m, C, j), ownG0);
+    }
+  });
+  slope[g] = step.stiffnessScale * pressureSlope(m, theta) / all.elementWeight[g];
+  const int *to = &all.pairOf[all.firstPair[g]];
+  for (int a = 0; a < n; a++)
+    for (int b = 0; b <= a; b++, to++)
+      for (int i = 0; i < D; i++)
+        for (int k = 0; k < D; k++)
+          all.block[size_t(*to) * D * D + i * D + k] +=
+            slope[g] * ownG0[a * D + i] * ownG0[b * D + k];
+  slopeKnown = true;
+}
+
+double Volume::mean(const Deformed &e) const {
+  double theta = 0;
+  for (int p = 0; p < e.points; p++)
+    theta += share(e.first + p, e.element) * measure(material(e.first + p), e.C1[p]);
+  return theta;
+}
+
+void Volume::addEllipticity(const Deformed &e, double *ellipticity) const {
+  const laws::Material &m = material(e.first);
+  if (!m.volumeByTrace) return;
+  const double p = pressureAt(m, mean(e));
+  for (int k = 0; k < e.points; k++)
+    ellipticity[k] += (p - m.bulk * measure(m, e.C1[k])) / m.mu;
+}
+
+Symmetric Volume::stress(int q, const Symmetric &C, double J, double p) const {
+  const laws::Material &m = material(q);
+  if (m.bulk > 0) return p * direction(m, C, J);
+  return Symmetric::Zero();
+}
+
+void Volume::addEnergy(Time, const Deformed &e, double *W) const {
+  const double theta = mean(e);
+  for (int p = 0; p < e.points; p++) {
+    const laws::Material &m = material(e.first + p);
+    const double strain = m.volumeByTrace ? theta : std::log(theta);
+    W[p] += m.bulk / 2 * strain * strain;
+  }
+}
+
+}
