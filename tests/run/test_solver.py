@@ -52,15 +52,16 @@ def test_two_at_a_time_give_the_same_to_the_last_digit(order, monkeypatch, tmp_p
     assert {path.name for path in runs[1].folder.iterdir()} == {path.name for path in runs[2].folder.iterdir()}
 
 
-@pytest.mark.parametrize("why", ["a thread of a study", "no estimate", "one core"])
+@pytest.mark.parametrize("why", ["a thread of a study", "no estimate", "one core", "auto"])
 def test_one_at_a_time(order, monkeypatch, tmp_path, why):
     """A study has a run on every core, so that its runs start no second process; nor do runs
-    without an estimate or on one core."""
+    without an estimate, on one core, or whose integrator is not known yet. None starts twice."""
     monkeypatch.setattr(freefem, "CORES", 1 if why == "one core" else 2)
     with ThreadPoolExecutor(1) as pool:
         call = (lambda act: pool.submit(act).result()) if why == "a thread of a study" else lambda act: act()
-        call(lambda: run.run(scene.load("disc-normal"), SCENES["disc-normal"], tmp_path / "out", progress=False, estimate=why != "no estimate"))
-    assert order[:2] == ["out.part starts", "out.part ends"]
+        entries = SCENES["disc-normal"] | ({"integrator": "auto"} if why == "auto" else {})
+        call(lambda: run.run(scene.load("disc-normal"), entries, tmp_path / "out", progress=False, estimate=why != "no estimate"))
+    assert order[:2] == ["out.part starts", "out.part ends"] and len(order) == len(set(order))
 
 
 def test_sizes_that_are_used_otherwise_are_run_again(order, monkeypatch, tmp_path):

@@ -45,8 +45,12 @@ class Solver(AbstractContextManager["Solver", None]):
         self.program, self.scene = program, scene
         self.scaled = partial(scaled, scene)
         self.stage, self.lock, self.line = stage, lock, line
+        # The integrator that `auto` takes, and all levels have, is known after the main run only.
         self.pair = (
-            pair and freefem.CORES > 1 and threading.current_thread() is threading.main_thread()
+            pair
+            and freefem.CORES > 1
+            and scene.values["integrator"] != "auto"
+            and threading.current_thread() is threading.main_thread()
         )
         self.own_mesh = not scene.of_files
         self.number = 0
