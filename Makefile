@@ -6,7 +6,7 @@ SWEEPS := oblique friction-jump friction-steps slip-limit contact-time-svk law-c
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws $(SWEEPS) stick-slip verify paper-scripts paper movie docs pictures check unit coverage test robustness bench bench-quick scaling equal-errors promise disc-block-errors oblique-angles viscoelastic rubber users clean
+.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws $(SWEEPS) stick-slip verify paper-scripts paper movie docs pictures check unit coverage mutants test robustness bench bench-quick scaling equal-errors promise disc-block-errors oblique-angles viscoelastic rubber users clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
@@ -101,6 +101,9 @@ unit: $(READY) ## the tests that need no FreeFEM, some twenty seconds
 
 coverage: $(READY) ## the lines of the package that the tests without FreeFEM run
 	@$(PYTHON) -m pytest -q -n 2 --dist worksteal --cov=ffimpact --cov-report=term:skip-covered tests/unit $(ARGS)
+
+mutants: $(READY) ## thirty alterations of the package, one at a time: how many the tests without FreeFEM notice; about half an hour
+	@$(PYTHON) tests/mutants.py $(ARGS)
 
 test: $(READY) ## run all tests, on two cores: some seven minutes
 	@$(PYTHON) -m pytest -q -n 2 --dist worksteal $(if $(filter check unit,$(MAKECMDGOALS)),--ignore=tests/unit) $(ARGS)

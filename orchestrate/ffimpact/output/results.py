@@ -282,7 +282,11 @@ def read_answers(folder: Path) -> Answers:
     # Change of the kinetic energy from the frame of the scene to the moving frame.
     shared = mass * (seen * (seen / 2 - common)).sum(axis=1)
     energy = float((mechanical_energy(history) + shared).max())
-    last = np.array([summary.get(f"rebound_v{axis}", 0.0) for axis in axes])
+    # Without an entry `final_...` the velocities of the rebound are those at the end of the run.
+    final = {axis: summary.get(f"final_v{axis}") for axis in axes}
+    last = np.array(
+        [summary.get(f"rebound_v{axis}", 0.0) if v is None else v for axis, v in final.items()]
+    )
     at = last if frame is None else frame
     extended = summary | {
         "largest_energy": energy,

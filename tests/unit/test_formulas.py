@@ -1,0 +1,74 @@
+"""Formulas of meshes, motion and sizes against exact answers and scaling laws."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ffimpact import scene
+from ffimpact.freefem.freefem import At
+from ffimpact.geometry import tumbling
+from ffimpact.mesh import curved, mesh
+from ffimpact.running import forecast
+from ffimpact.scenes.sizes import Impact
+
+BALL = Impact(sphere=True, radius=0.05, young=7e6, nu=0.45, density=1722.0, closing=1.0, accuracy=0.02)
+
+
+def test_rotation_vector():
+    """A vector along an axis turns about it, counter-clockwise, and stays orthogonal; half a turn is
+    exact."""
+    c, s = math.cos(0.3), math.sin(0.3)
+    assert tumbling.rotation(np.array([0, 0, 0.3])) == pytest.approx(np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]))
+    assert (tumbling.rotation(np.array([math.pi, 0, 0])) == np.diag([1, -1, -1])).all()
+    turn = tumbling.rotation(np.array([0.3, -0.7, 1.1]))
+    assert turn @ turn.T == pytest.approx(np.eye(3)) and np.linalg.det(turn) == pytest.approx(1)
+    assert turn @ [0.3, -0.7, 1.1] == pytest.approx([0.3, -0.7, 1.1])
+
+
+def octants(parts: int) -> tuple[np.ndarray, np.ndarray]:
+    """The unit sphere as an octahedron whose faces are split into parts * parts triangles."""
+    points, faces = [], []
+    for x in (1, -1):
+        for y in (1, -1):
+            for z in (1, -1):
+                grid = {(i, j): len(points) + k for k, (i, j) in enumerate((i, j) for i in range(parts + 1) for j in range(parts + 1 - i))}
+                points += [np.array([x * (parts - i - j), y * i, z * j]) for i, j in grid]
+                own = [[(i, j), (i + 1, j), (i, j + 1)] for i, j in grid if i + j < parts]
+                own += [[(i + 1, j), (i + 1, j + 1), (i, j + 1)] for i, j in grid if i + j < parts - 1]
+                faces += [[grid[corner] for corner in triangle[::x * y * z]] for triangle in own]
+    unique, number = np.unique(np.array(points), axis=0, return_inverse=True)
+    return unique / np.linalg.norm(unique, axis=1, keepdims=True), number.ravel()[np.array(faces)]
+
+
+def test_sphere_through_the_points_of_a_mesh():
+    """All faces of a sphere lie on one surface, with its centre and radius."""
+    points, faces = octants(8)
+    assert len(np.unique(mesh.pieces(len(points), faces))) == 1
+    centre, radius = np.array([1.0, -2.0, 3.0]), 0.5
+    ((sphere, own),) = curved.surfaces(centre + radius * points, faces)
+    assert sphere.centre == pytest.approx(centre) and sphere.radius == pytest.approx(radius) and not len(sphere.axis) and len(own) == len(faces)
+
+
+def test_forecast_of_a_uniform_run():
+    """A quarter of a run has taken 10 s since its first report, so it takes 40 s, 400 steps."""
+    seen = [At(share=0.025 * k, t=0.0, steps=10 * k, wall=5.0 + k) for k in range(11)]
+    assert forecast.forecast(seen) == ((pytest.approx(40), pytest.approx(40)), (pytest.approx(400), pytest.approx(400)))
+
+
+def test_half_width_of_a_slow_ball():
+    """A ball that hits a plane with v makes a contact of 1.31 R (v/c)^0.4: five doublings of v widen it
+    by four. The slip velocity is a hundredth of the sliding speed."""
+    slow = replace(BALL, closing=BALL.closing / 32)
+    speed = math.sqrt(BALL.young / BALL.density)
+    assert [BALL.half_width, 4 * slow.half_width] == pytest.approx([1.31 * BALL.radius * (1 / speed) ** 0.4] * 2)
+    assert replace(BALL, sliding=300.0).slip_velocity == pytest.approx(3.0)
+
+
+def test_moduli_of_a_damped_body():
+    """A wave crosses a body of the thickness h in h/c: at omega = pi c/h its modulus of shear is
+    |mu + i omega eta|."""
+    body = replace(scene.load("disc-normal").bodies[0], nu=0.0, viscosity=50.0)
+    mu, omega = body.young / 2, math.pi * math.sqrt(body.young / body.density) / 0.1
+    assert body.moduli[1] == pytest.approx(math.hypot(mu, omega * 50)) and body.moduli[0] == pytest.approx(2 * body.moduli[1])
