@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .failure import BadInput, NotInstalled, Unreadable, unknown
+from .failure import BadInput, Unreadable, unknown
 from .input import dimension
 from .output import vtu
 from .places import PACKAGE
@@ -104,13 +104,11 @@ def view(
 
     `field` is the name in FIELDS that is shown first. A body of revolution is shown cut open, or
     with `revolved=False` as its section. A body in space that has a plane of symmetry is shown cut
-    along that plane. Raises NotInstalled without k3d, BadInput for a wrong path or field, and
-    Unreadable without states.
+    along that plane. Raises BadInput for a wrong path or field, and Unreadable
+    without states.
     """
-    try:
-        import k3d
-    except ImportError:
-        raise NotInstalled("view: needs k3d; install it: pip install k3d") from None
+    import k3d  # slow to load, so it is imported only here
+
     if path is not None and Path(path).suffix.lower() not in (".html", ".htm"):
         raise BadInput(f"view: '{path}' is no HTML file (accepted: a name that ends in .html)")
     if field not in FIELDS:

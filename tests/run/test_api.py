@@ -148,14 +148,12 @@ def test_a_state_is_a_grid(result):
 
 
 def test_a_player_is_one_file(result, tmp_path):
-    pytest.importorskip("k3d")
     path = result.view(tmp_path / "new folder/impact.html")
     assert path.stat().st_size > 1e5 and "<script" in path.read_text()[:10_000]
 
 
 def test_a_player_shows_itself_as_html(result):
     """A notebook, and a page that keeps its output, contains the whole animation."""
-    pytest.importorskip("k3d")
     shown = result.view()._repr_html_()
     assert len(shown) > 1e5 and shown.startswith("<iframe") and "&lt;script" in shown[:10_000]
 

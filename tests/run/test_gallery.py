@@ -1,7 +1,6 @@
 """The pages of the gallery run. Their numbers agree with published and exact ones, or a note has
 the reason."""
 
-import importlib.util
 
 import numpy as np
 import pandas as pd
@@ -20,8 +19,6 @@ MARKED = [
 def test_a_page_runs_and_its_numbers_are_consistent(page, tmp_path, monkeypatch):
     """In an empty working folder each number agrees within error and uncertainty, or has a note
     with the reason."""
-    if ".view(" in page.read_text("utf-8") and not importlib.util.find_spec("k3d"):
-        pytest.skip("k3d is not installed")
     monkeypatch.chdir(tmp_path)
     assert not gallery.complaints(gallery.numbers(page))
 

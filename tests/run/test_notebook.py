@@ -61,10 +61,8 @@ def test_figures_are_shown(outputs, cell, pictures):
     assert count(outputs[cell], "image/png") == pictures
 
 
-@pytest.mark.parametrize("cell, package", [(STATE, "pyvista"), (PLAYER, "k3d")], ids=["pyvista", "k3d"])
-def test_what_is_not_installed_is_a_line(folder, outputs, cell, package):
-    """States need pyvista and the player needs k3d. If one is missing, a line has the installation
-    command."""
+@pytest.mark.parametrize("cell", [STATE, PLAYER], ids=["state", "player"])
+def test_states_and_player(folder, outputs, cell):
+    """Both print a line; the player is a file."""
     (message,) = ["".join(output.text for output in outputs[cell] if output.output_type == "stream" and output.name == "stdout")]
-    assert message.count("\n") == 1 and (find_spec(package) is not None or f"pip install {package}" in message), message
-    assert find_spec("k3d") is None or (folder / "impact.html").stat().st_size > 1e4
+    assert message.count("\n") == 1 and (folder / "impact.html").stat().st_size > 1e4

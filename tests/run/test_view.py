@@ -14,7 +14,6 @@ from ffimpact.output import vtu
 from ffimpact.view import FIELDS
 from tests.support.api import RUBBER, drop
 
-pytest.importorskip("k3d")
 BALL = {"radius": 0.05, "material": RUBBER}
 SCENES = {
     "plane": drop(),

@@ -17,12 +17,7 @@ STATE = """
 last = result.fields[-1]
 print(last.von_mises.max(), last.positions.min(axis=0), result.probe(0, -0.05).y.min())
 """
-PLAYER = """
-try:
-    print(result.view("impact.html"))
-except ff.NotInstalled as missing:
-    print(missing)
-"""
+PLAYER = 'print(result.view("impact.html"))'
 SWEEP = """
 study = ff.sweep(scene, {"body.1.velocity.2": [-2, -4, -8], "contact.friction_static": [0.1, 0.3]}, workers=2)
 study.table
