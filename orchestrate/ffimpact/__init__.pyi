@@ -4,6 +4,7 @@ use.
 
 from .api import (
     Plan as Plan,
+    Progress as Progress,
     Study as Study,
     plan as plan,
     run as run,

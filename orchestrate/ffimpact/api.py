@@ -5,11 +5,13 @@ foretell what a run will take.
 from __future__ import annotations
 
 import hashlib
+import io
 import itertools
 import json
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -32,7 +34,7 @@ from .sweeps.study import place, study
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["Plan", "Study", "plan", "run", "sweep"]
+__all__ = ["Plan", "Progress", "Study", "plan", "run", "sweep"]
 
 
 def run(
@@ -44,6 +46,7 @@ def run(
     estimate: bool = True,
     figures: bool = True,
     progress: bool | None = None,
+    watch: Callable[[Progress], object] | None = None,
     **more: Any,
 ) -> Result:
     """Runs a scene and returns its result. `scene` is a Scene, the name of a built-in scene or the
@@ -54,7 +57,9 @@ def run(
     file or a built-in scene; a Scene object gets a folder of its own. A finished run in the folder
     is reused unless `force` is set. With `estimate` coarser runs estimate the errors, and with
     `figures` the figures are drawn. Progress is shown unless `progress` is False: as a line that
-    changes, in a pipe or a file as a line every 20 s or more. If the scene leaves `fields` open, the run keeps 60 states. The
+    changes, in a pipe or a file as a line every 20 s or more. `watch` is called with the Progress of
+    the main run every 0.2 s or so; if it returns True the run ends there, without an error estimate,
+    and is never reused. If the scene leaves `fields` open, the run keeps 60 states. The
     folder is that of the command `ffimpact run`. Raises the exceptions of ffimpact: BadInput,
     StepFailed and so on.
     """
@@ -70,10 +75,29 @@ def run(
             force=force,
             progress=progress,
             estimate=estimate,
+            watch=watch and (lambda at, where: watch(Progress(at.t, at.steps, at.share, where))),
         )
         if figures:
             report.draw(record)
     return Result(record)
+
+
+@dataclass(frozen=True)
+class Progress:
+    """A run that is under way: its time t [s], the number of its steps, the share of its steps that
+    is done (estimated, 0 to 1), and the folder of its files.
+    """
+
+    t: float
+    steps: int
+    share: float
+    folder: Path
+
+    @property
+    def history(self) -> pd.DataFrame:
+        """The time history up to now, as Result.history."""
+        text = (self.folder / "history.csv").read_text()
+        return pd.read_csv(io.StringIO(text[: text.rindex("\n") + 1]))
 
 
 def plan(

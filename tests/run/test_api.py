@@ -354,6 +354,32 @@ def test_python_and_the_command_leave_the_same_folder(tmp_path):
     )
 
 
+def test_a_run_is_watched_and_stopped(tmp_path):
+    """The function sees time, steps and history; what it stops has no estimate and is not reused."""
+    seen = []
+
+    def watch(progress: ff.Progress) -> bool:
+        seen.append((progress.t, len(progress.history)))
+        return progress.steps > 20
+
+    given = {"dt": 1e-6, "fields": 0, "end_time": 0.05}  # 50,000 steps
+    result = ff.run(drop(**given), out=tmp_path / "run", watch=watch)
+    assert result["ended"] == "stopped" and result["steps"] < 40_000 and not result.errors
+    assert len(seen) > 1 and seen[-1][0] > seen[0][0] and result.history.t.iloc[-1] >= 0.9999 * seen[-1][0]
+    assert not (result.folder / "stop").exists()
+    again = ff.run(drop(**given), out=tmp_path / "run", watch=lambda progress: True)
+    assert not again.reused and again["ended"] == "stopped"
+
+
+def test_an_error_of_the_function_that_watches_ends_the_run(tmp_path):
+    def watch(progress: ff.Progress) -> None:
+        raise ValueError("mine")
+
+    with pytest.raises(ValueError, match="mine"):
+        ff.run(drop(accuracy=0.2), out=tmp_path / "run", watch=watch)
+    assert not (tmp_path / "run/summary.json").exists()
+
+
 def test_without_estimate_there_is_one_run(tmp_path, capsys):
     """The option --no-estimate makes no second run. Report and summary say that the error is not
     estimated."""

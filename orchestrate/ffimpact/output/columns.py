@@ -332,7 +332,7 @@ ENTRIES = (
     _whole("status", "", "ok, or the name of the failure"),
     _whole("message", "", "empty, or why the run failed"),
     _whole("ended", "", "what ended the run: impact (it is over), rest, rolling (on, rigid, where "
-        "rest was asked for) or end_time"),
+        "rest was asked for), end_time, or stopped (by the function `watch` of ff.run)"),
     _whole("made_by", "", "script: the run is one of the paper's scripts; else left out"),
     _whole("later_contact_possible", "", "true: the run ended before a possible contact that "
         "belongs to the impact, or that vibration may cause soon after it"),

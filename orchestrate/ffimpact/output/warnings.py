@@ -752,9 +752,11 @@ def _next_contact(e: Evidence) -> Iterator[Sentence]:
     if again < 0:
         return
     who = e.pair(facts["pairs"][facts["pair_ahead"]]) if facts["pair_ahead"] >= 0 else "bodies"
-    within, cut = again <= facts["impact_until"], e.record["ended"] == "end_time"
+    within = again <= facts["impact_until"]
+    cuts = {"end_time": "the end_time cuts the impact", "stopped": "the run was stopped"}
+    cut = e.record["ended"] in cuts
     if cut:
-        why = "the end_time cuts the impact"
+        why = cuts[e.record["ended"]]
     elif within:
         why = "gravity bends their flight, which ends the run"
     else:

@@ -51,7 +51,7 @@ from ..scenes.mirror import symmetric_along
 from .forecast import cure, runs
 from .outcome import FAILURES
 from .plan import Plan, measure
-from .solver import USED, Solver
+from .solver import USED, Solver, Watch
 
 __all__ = [
     "DECISIVE",
@@ -64,6 +64,7 @@ __all__ = [
 ]
 
 SCRIPTS = (".edp", ".idp", ".hpp", ".cpp")
+STOPPED = "stopped"  # entry `ended` of a run that `watch` has ended
 STATES = 60  # states that a run keeps by default, for figures and the player
 # Folders of the package on which results depend: what makes mesh and scene, and starts the solver.
 DECISIVE = ("freefem", "geometry", "input", "mesh", "scenes")
@@ -79,6 +80,7 @@ def run(
     force: bool = False,
     progress: bool | None = None,
     estimate: bool = True,
+    watch: Watch | None = None,
 ) -> Record:
     """Runs `scene`, with the parameters `overrides`, in the folder `out` (default:
     results/<scene>), or reuses the finished run in that folder. Returns the Record of the run.
@@ -86,8 +88,9 @@ def run(
     `force` runs again from the start, even if the folder is up to date. Otherwise an interrupted
     run continues from its last checkpoint. Progress is shown unless `progress` is False
     (progress.py). With `estimate` coarser runs estimate the error;
-    finer runs follow until the error is below the requested accuracy (output/estimate.py). Raises
-    Failure with the exit code of the run contract.
+    finer runs follow until the error is below the requested accuracy (output/estimate.py). If
+    `watch` ends the run, it has no estimate and is never reused. Raises Failure with the exit code
+    of the run contract.
     """
     started = time.monotonic()
     scene = scene.override(overrides or {})
@@ -119,8 +122,9 @@ def run(
             write_json(stage / "checkpoint.json", request)
 
         try:
-            with Solver(program, scene, stage, lock, line, pair=estimate) as solve:
+            with Solver(program, scene, stage, lock, line, estimate, watch) as solve:
                 solve({}, stage)
+                estimate = estimate and read_summary(stage)["ended"] != STOPPED
                 estimated = (
                     estimates.settle(
                         stage,
@@ -259,6 +263,7 @@ def reusable(scene: Scene, folder: Path, estimate: bool = False) -> Record | Non
         and (folder / "history.csv").exists()
         and summary.get("provenance", {}).get("code") == code_hash()
         and (summary["provenance"].get("estimate") == _estimate_hash() or not estimate)
+        and summary["ended"] != STOPPED
         and read_scene(folder)
         and _same_scene(folder, scene)
     ):

@@ -3,6 +3,7 @@
 import os
 import shutil
 import threading
+from collections.abc import Callable
 from contextlib import AbstractContextManager, ExitStack, suppress
 from functools import partial
 from pathlib import Path
@@ -20,16 +21,23 @@ from ..scenes.finer import scaled
 from .forecast import Display
 from .outcome import check
 
-__all__ = ["USED", "Solver"]
+__all__ = ["USED", "Solver", "Watch"]
 
 # Name of the scene.toml that Python writes before the run. When the run has finished, this file
 # replaces the scene.toml of the script.
 USED = "scene.used"
 
 
+# A file in the folder of a run that ends it at its next report (edp/program/run/march.idp).
+STOP = "stop"
+# Sees the progress of the main run and its folder; True ends the run.
+Watch = Callable[[freefem.At, Path], object]
+
+
 class Solver(AbstractContextManager["Solver", None]):
     """Runs a scene with given values in given folders, one run after the other. If `pair` is set
-    and a core is free, the coarser runs start at the same time as the main run. In a thread other
+    and a core is free, the coarser runs start at the same time as the main run. `watch` may end the
+    main run. In a thread other
     than the main thread they do not, because a study already has a run on every core.
     """
 
@@ -41,6 +49,7 @@ class Solver(AbstractContextManager["Solver", None]):
         lock: int,
         line: Line,
         pair: bool,
+        watch: Watch | None = None,
     ):
         self.program, self.scene = program, scene
         self.scaled = partial(scaled, scene)
@@ -52,6 +61,7 @@ class Solver(AbstractContextManager["Solver", None]):
             and scene.values["integrator"] != "auto"
             and threading.current_thread() is threading.main_thread()
         )
+        self.watch = watch
         self.own_mesh = not scene.of_files
         self.number = 0
         # The coarser runs that have started, by folder, with the entries that they override.
@@ -93,8 +103,11 @@ class Solver(AbstractContextManager["Solver", None]):
                 def show(at: freefem.At) -> None:
                     setting_up.close()  # the first report comes with the first steps
                     display.show(at)
+                    if self.watch and where == self.stage and self.watch(at, where):
+                        (where / STOP).touch()
 
                 exit_code, message = process.end(show)
+        (where / STOP).unlink(missing_ok=True)
         if (where / USED).exists() and (where / "scene.toml").exists():
             os.replace(where / USED, where / "scene.toml")
         evaluate(where)
