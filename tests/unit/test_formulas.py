@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,8 +11,14 @@ from ffimpact import scene
 from ffimpact.freefem.freefem import At
 from ffimpact.geometry import tumbling
 from ffimpact.mesh import curved, mesh
+from ffimpact.output.results import Contents
+from ffimpact.report import impacts, report
+from ffimpact.report.impact import impact_of
 from ffimpact.running import forecast
+from ffimpact.scenes import front
+from ffimpact.scenes.approach import onsets_of
 from ffimpact.scenes.sizes import Impact
+from tests.support.front import BLOCK, scene_of
 
 BALL = Impact(sphere=True, radius=0.05, young=7e6, nu=0.45, density=1722.0, closing=1.0, accuracy=0.02)
 
@@ -72,3 +79,43 @@ def test_moduli_of_a_damped_body():
     body = replace(scene.load("disc-normal").bodies[0], nu=0.0, viscosity=50.0)
     mu, omega = body.young / 2, math.pi * math.sqrt(body.young / body.density) / 0.1
     assert body.moduli[1] == pytest.approx(math.hypot(mu, omega * 50)) and body.moduli[0] == pytest.approx(2 * body.moduli[1])
+
+
+@pytest.mark.parametrize("accuracy", [0.002, 0.2])
+def test_rise_of_a_front(accuracy, tmp_path):
+    """The penalty lets the front of a flat strike rise in 2/3 of its transit of an element, and in a
+    fiftieth of its transit of the body where elements are coarse."""
+    block = scene_of(BLOCK, tmp_path, accuracy=accuracy)
+    strike, = front.fronts(block, onsets_of(block))
+    assert strike.rise == pytest.approx(min(strike.tau / 1.5, strike.transit / 50), rel=1e-9)
+    assert (strike.rise < 0.99 * strike.transit / 50) == (accuracy < 0.01)
+
+
+def test_an_impact_to_the_left_is_its_mirror_image():
+    """Left and right are alike: an impact moves to the right, and its spin turns with it."""
+    tables = scene.load("disc-oblique").content
+    body = tables["body"][0] | {"spin": 3.0}
+    right = impact_of(tables | {"body": [body]})
+    left = impact_of(tables | {"body": [body | {"direction": 180 - body["direction"]}]})
+    assert right["spin"] == 3.0 == -left["spin"] and [right["angle"], left["angle"]] == pytest.approx([60, 60])
+
+
+def test_a_flight_is_a_parabola():
+    """A history has two rows of a flight. Rows between them lie on y = h - g t^2 / 2, and the kinetic
+    energy is that of their velocities."""
+    g, m, h = 10.0, 2.0, 5.0
+    t = np.array([0.0, 1.0, 1.1])
+    v = -g * np.minimum(t, 1.0)
+    rows = {"t": t, "dt": np.diff(t, prepend=0.0), "newton_iterations": [0, 0, 3], "normal_force": [0, 0, 5],
+            "y": h - g * np.minimum(t, 1.0)**2 / 2, "vy": v, "momentum_y": m * v, "kinetic": m * v**2 / 2, "external_work": m * v**2 / 2}
+    filled = impacts.with_flights(Contents({name: np.array(column, float) for name, column in rows.items()}, Path("history.csv")))
+    inside = filled["t"] <= 1
+    assert inside.sum() > 10 and filled["y"][inside] == pytest.approx(h - g * filled["t"][inside]**2 / 2)
+    assert filled["kinetic"][inside] == pytest.approx(m * filled["vy"][inside]**2 / 2)
+
+
+def test_units_of_the_report():
+    """The rows of the report print times in ms, forces in kN and lengths in mm."""
+    texts = {row.key: row.text(0.0123) for row in report.rows("/m")}
+    assert texts["contact_time"] == "12.3 ms" and texts["peak_force"] == "1.23e-05 kN/m" and texts["max_penetration"] == "12.3 mm"
+    assert texts["impulse"] == "0.0123 N s/m" and texts["rest_time"] == "0.0123 s" and texts["energy_drift"] == "1.2e-02 of the energy supplied"
