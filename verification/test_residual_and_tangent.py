@@ -5,6 +5,7 @@ import math
 
 import pytest
 
+from verification import measure as runs
 from verification.tangents import COARSE, MOONEY, OGDEN
 
 LAWS = ["svk", "neohookean"]
@@ -78,6 +79,19 @@ def test_terms_agree_with_differences_of_their_work(measure, body, flags):
         assert numbers["dissipated"] > 0.1
     else:
         assert abs(numbers["slope"]) < 1e-6 and numbers["dissipated"] == 0
+
+
+@pytest.mark.parametrize("degree", [1, 2])
+def test_forces_of_a_gas_agree_with_differences_of_its_energy(degree, tmp_path):
+    """In a step the work of a gas on its body is the energy that it loses by p V^n = const, and its
+    forces are the slope of that energy."""
+    ring = {"shape": "ring", "radius": 0.05, "inner_radius": 0.04, "position": [0, 0.053], "velocity": [0, -3],
+            "load": [{"where": "inner", "gas": {"gauge_pressure": 5e4, "exponent": 1.4}}]}
+    tables = {"law": "neohookean", "young": 3e6, "nu": 0.45, "density": 1100, "accuracy": 0.1, "degree": degree, "body": [ring],
+              "obstacle": [{"kind": "plane", "point": [0, 0], "normal": [0, 1]}]}
+    numbers = runs.measure("loads", **runs.prepared(tmp_path, tables))
+    assert abs(numbers["grows"]) > 0.01
+    assert abs(numbers["gas"]) < 1e-9 and abs(numbers["work"]) < 1e-9 and abs(numbers["slope"]) < 1e-7
 
 
 def test_curved_outline_has_the_area_of_the_disc(measure):

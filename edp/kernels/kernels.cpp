@@ -7,6 +7,7 @@
 #include "contact.hpp"
 #include "explicit.hpp"
 #include "factor.hpp"
+#include "loads.hpp"
 #include "obstacles.hpp"
 #include "pairs.hpp"
 #include "step.hpp"
@@ -14,7 +15,10 @@
 static bodies::Elements elements;
 static bodies::Bodies body(elements);
 static bodies::Inertia inertia(elements);
-static const Terms terms = {&body, &inertia};        // of (2), beside contact
+static bodies::Loads loads;
+static bodies::Supports supports(elements, body);
+// of (2), beside contact
+static const Terms terms = {&body, &inertia, &loads, &supports};
 static Step stepNow;                                 // set by kernelIntegrator
 static std::vector<const laws::Law *> law;           // by its number in lawOfPoint
 static Factor factor;
@@ -85,7 +89,7 @@ static void addBodies() {
   });
   add("kernelTerm", +[](std::string &name, Reals d, Reals forces, double &work) {
     // Forces and work of one term at d (for verification).
-    Term *term = name == "inertia" ? (Term *)&inertia : &body;
+    Term *term = name == "inertia" ? (Term *)&inertia : name == "loads" ? (Term *)&loads : &body;
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(d.N());
     const Eigen::VectorXd increment = Kept<double>{&d}.numbers();
     const long ended = term->addForces(stepNow, increment, sum);
@@ -115,6 +119,62 @@ static void addBodies() {
   add("kernelEllipticity", +[](Reals C, Reals e) { body.ellipticities(C, e); });
   add("kernelStresses", +[](Reals F, Reals p, Reals sigma, Reals mises) {
     body.stresses(F, p, sigma, mises);
+  });
+}
+
+static Eigen::SparseMatrix<double, Eigen::RowMajor> byRows(Sparse A) {
+  const Triplets all = entries(A);
+  std::vector<Eigen::Triplet<double>> list;
+  for (size_t e = 0; e < all.size; e++) list.emplace_back(all.row[e], all.column[e], all.value[e]);
+  Eigen::SparseMatrix<double, Eigen::RowMajor> B(all.n, all.m);
+  B.setFromTriplets(list.begin(), list.end());
+  return B;
+}
+
+static void addLoads() {
+  // Kernels of loads.hpp. The first six are called at the start.
+  add("kernelConditions", +[](Reals u, Reals bodyForce, Reals loadForce, Reals heldResidual,
+                             Reals gasVolume, Table gas, Reals inflation) {
+    loads.u = {&u};  loads.bodyForce = {&bodyForce};  loads.force = {&loadForce};
+    loads.volume = {&gasVolume};  loads.gas = &gas;
+    loads.inflation = {&inflation};
+    supports.reaction = {&heldResidual};
+  });
+  add("kernelLoad", +[](long kind, bool ofRigidBody) {   // appends a load
+    loads.load.push_back({int(kind), ofRigidBody, {}});
+  });
+  add("kernelLoadFunction", +[](long k, long c, Reals time, Reals value, Reals slope) {
+    loads.load[k].function[c] =
+      {copied<double>(time), copied<double>(value), copied<double>(slope)};
+  });
+  add("kernelLoadShapes", +[](long c, Sparse place, Sparse alongR, Sparse alongS) {
+    loads.place[c] = byRows(place);
+    loads.alongR[c] = byRows(alongR);
+    loads.alongS[c] = byRows(alongS);
+  });
+  add("kernelLoadPoints", +[](Reals position, Ints loadOfPoint, Reals weight, Table outward,
+                             long axes, bool revolves, double symmetryFactor) {
+    loads.position = {&position};
+    loads.loadOf = copied<int>(loadOfPoint);
+    loads.weight = Kept<double>{&weight}.numbers();
+    loads.axes = int(axes);
+    loads.revolves = revolves;
+    loads.symmetryFactor = symmetryFactor;
+    loads.outwards(&outward(0, 0));
+    loads.unstressed = loads.volumes(loads.position.numbers());
+  });
+  add("kernelLoadedAreas", +[](Reals area) { Kept<double>{&area}.numbers() = loads.areas(); });
+  add("kernelGasVolumes", +[](Reals x, Reals volume) {
+    Kept<double>{&volume}.numbers() = loads.volumes(Kept<double>{&x}.numbers());
+  });
+  add("kernelLoads", +[](Reals d, double t, double dt, double staticShare) {
+    // loadForce and gasVolume of a step by d
+    Step at;
+    at.t = t;
+    at.dt = dt;
+    at.staticShare = staticShare;
+    Eigen::VectorXd residual = Eigen::VectorXd::Zero(d.N());
+    loads.addForces(at, Kept<double>{&d}.numbers(), residual);
   });
 }
 
@@ -161,28 +221,24 @@ static void addStep() {
       {&value}, {&termValue}, {&termStiffness}};
     touching.takeJacobian();
   });
-  add("kernelStepArrays", +[](Reals d, Reals v, Reals bodyForce, Reals loadForce,
-                             Reals frameMotion, Reals heldResidual, Reals seconds, Ints counts,
+  add("kernelStepArrays", +[](Reals d, Reals v, Reals frameMotion, Reals seconds, Ints counts,
                              Sparse translations) {
-    step.script = {{&d}, {&v}, {&bodyForce}, {&loadForce}, {&frameMotion}, {&heldResidual},
-                   {&seconds}, {&counts}};
+    step.script = {{&d}, {&v}, {&frameMotion}, {&seconds}, {&counts}};
     step.translations = entries(translations);
   });
   add("kernelSettings", +[](double tolerance, double correctionTolerance, double momentumShare,
                            double leastVolumeRatio, bool breaks, bool newMatrix,
-                           bool allCandidates, bool loads, long fallbackCost) {
-    step.settings = {tolerance, correctionTolerance, momentumShare, newMatrix, allCandidates, loads,
-                     fallbackCost};
+                           bool allCandidates, long fallbackCost) {
+    step.settings = {tolerance, correctionTolerance, momentumShare, newMatrix, allCandidates, fallbackCost};
     body.breaks = breaks;
     body.leastVolumeRatio = leastVolumeRatio;
   });
   add("kernelStep", +[](long lawInstant, double searchDistance, double energyScale,
                        double momentumScale, double roundOff, long mostContactMatrices,
-                       double &residualWorkRatio, Callback gaps, Callback terms, Callback loads,
-                       Callback search) {
+                       double &residualWorkRatio, Callback gaps, Callback terms, Callback search) {
     touching.mostContactMatrices = mostContactMatrices;
     const long ended = step.take({stepNow, lawInstant, searchDistance, energyScale, momentumScale,
-                                  roundOff}, {gaps, terms, loads, search});
+                                  roundOff}, {gaps, terms, search});
     residualWorkRatio = step.residualWorkRatio;
     return ended;
   });
@@ -372,6 +428,7 @@ static void addKernels() {
   limitThreads();
   addStatuses();
   addBodies();
+  addLoads();
   addFactor();
   addStep();
   addPairs();

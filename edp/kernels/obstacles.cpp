@@ -4,30 +4,6 @@
 
 namespace obstacles {
 
-size_t TimeFunction::before(double t) const {
-  return std::upper_bound(time.begin(), time.end(), t) - time.begin() - 1;
-}
-
-double TimeFunction::at(double t) const {
-  if (time.empty()) return 0;
-  if (t <= time.front()) return value.front() + (t - time.front()) * slope.front();
-  if (t >= time.back()) return value.back() + (t - time.back()) * slope.back();
-  const size_t k = before(t);
-  const double h = time[k + 1] - time[k], s = (t - time[k]) / h, r = 1 - s;
-  return r * r * ((1 + 2 * s) * value[k] + h * s * slope[k])
-    + s * s * ((1 + 2 * r) * value[k + 1] - h * r * slope[k + 1]);
-}
-
-double TimeFunction::rate(double t) const {
-  if (time.empty()) return 0;
-  if (t <= time.front()) return slope.front();
-  if (t >= time.back()) return slope.back();
-  const size_t k = before(t);
-  const double h = time[k + 1] - time[k], s = (t - time[k]) / h;
-  return 6 * s * (1 - s) * (value[k + 1] - value[k]) / h + (1 - s) * (1 - 3 * s) * slope[k]
-    + s * (3 * s - 2) * slope[k + 1];
-}
-
 Point Obstacle::shift(double t) const {
   if (!driven) return t * velocity;
   Point s;

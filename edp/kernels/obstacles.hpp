@@ -9,21 +9,12 @@
 #include <eigen3/Eigen/Sparse>
 #include "arrays.hpp"
 #include "shapes.hpp"
+#include "time-function.hpp"
 
 namespace obstacles {
 
 typedef Eigen::Vector3d Point;             // z = 0 in the plane
 typedef Eigen::Matrix3d Rotation;
-
-// A function of time, of cubic Hermite polynomials between knots, linear before and after them
-// (functionAt() of program/input/conditions.idp).
-struct TimeFunction {
-  std::vector<double> time, value, slope;
-
-  size_t before(double t) const;   // the last knot at or before t
-  double at(double t) const;
-  double rate(double t) const;
-};
 
 // Displacement s [m] and rotation R about the pivot: the point X of the frame of an obstacle, its
 // position at time 0, is at x = pivot + s + R (X - pivot).

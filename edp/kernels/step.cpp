@@ -115,21 +115,9 @@ void ImplicitStep::evaluate() {
 }
 
 void ImplicitStep::evaluateBodies() {
-  // Residual of the bodies, with 0 at held unknowns; heldResidual is that before.
   const Timed timed(seconds(assembly));
   script.counts[evaluations]++;
   status = sumForces(terms, motion, d, bodyResidual);
-  bodyResidual -= script.bodyForce.numbers();    // (1): Div P + rho0 b = rho0 A, weak, times -1
-  if (settings.loads && status == succeeded) {
-    scripts->loads();
-    bodyResidual -= script.loadForce.numbers();
-  }
-  if (script.heldResidual.size() > 0) {
-    script.heldResidual.numbers() = bodyResidual;
-    if (projected()) script.heldResidual.numbers() += mapped(body.volume->pressureRemainder);
-  }
-  bodyResidual = bodyResidual.cwiseProduct(mapped(elements.free));
-  if (projected()) mapped(body.volume->pressureRemainder).array() *= mapped(elements.free).array();
 }
 
 void ImplicitStep::evaluateContact() {

@@ -16,7 +16,7 @@ namespace contact { class Contact; }
 // Numbers that do not change in a run. `newMatrix`: factorise in every iteration.
 struct Settings {
   double tolerance, correctionTolerance, momentumShare;   // step.idp
-  bool newMatrix, allCandidates, loads;
+  bool newMatrix, allCandidates;
   long fallbackCost;                             // of a factorisation, in iterations
 };
 // A step, as setIntegrator() of integrators.idp sets it; scales of energy [J/m; J] and momentum;
@@ -26,14 +26,12 @@ struct StepParameters : Step {
   double searchDistance = 0, energyScale = 1, momentumScale = 1, roundOff = 0;
 };
 // What scripts do in a step: gaps: B, q0 and gapSlipOffset at d; terms: geometric contact stiffness
-// under the forces; loads: loadForce at d; search: 1 if d moves beyond the last contact search,
-// which is then made anew.
-struct Scripts { std::function<long()> gaps, terms, loads, search; };
+// under the forces; search: 1 if d moves beyond the last contact search, which is then made anew.
+struct Scripts { std::function<long()> gaps, terms, search; };
 
-// Arrays of the scripts (integrators.idp, reactions.idp): v (ndof) and so on.
+// Arrays of the scripts (integrators.idp): v (ndof) and so on.
 struct StepArrays {
-  Kept<double> d, v, bodyForce, loadForce, frameMotion, heldResidual,
-    seconds;                                     // seconds, counts: see evaluations ... below
+  Kept<double> d, v, frameMotion, seconds;       // seconds, counts: see evaluations ... below
   Kept<long> counts;
 };
 
