@@ -229,7 +229,8 @@ static void addStep() {
   add("kernelSettings", +[](double tolerance, double correctionTolerance, double momentumShare,
                            double leastVolumeRatio, bool breaks, bool newMatrix,
                            bool allCandidates, long fallbackCost) {
-    step.settings = {tolerance, correctionTolerance, momentumShare, newMatrix, allCandidates, fallbackCost};
+    step.settings = {tolerance, correctionTolerance, momentumShare, newMatrix, allCandidates,
+                     fallbackCost};
     body.breaks = breaks;
     body.leastVolumeRatio = leastVolumeRatio;
   });

@@ -1,5 +1,5 @@
-// loads.hpp: the terms of (2) that a scene prescribes (section 2.2.1): Loads, the body force and the
-// stresses on parts of the boundary (Gamma_F), and Supports, the parts that are held or moved
+// loads.hpp: the terms of (2) that a scene prescribes (section 2.2.1): Loads, the body force and
+// the stresses on parts of the boundary (Gamma_F), and Supports, the parts that are held or moved
 // (Gamma_D). Exports Loads and Supports.
 #pragma once
 #include <eigen3/Eigen/Sparse>
