@@ -15,9 +15,10 @@ an impact runs agree by chance. So the error estimate of a result is
 
 All results of all scenes have the same factor SAFETY (benchmarks/promise.py lists the scenes of its
 calibration). The estimate contains the error in 95 of 100 runs and is about four times the usual
-error; of rigid weights and clamped beams it contains nine of ten. The order is not taken from the
-three levels: its scatter is larger than its difference from p. The estimate covers mesh and steps:
-penalty and slip velocity are the same in all runs, except the penalty of a flat strike.
+error; of rigid weights that fall on blocks it contains six of seven. The order is not taken from
+the three levels: its scatter is larger than its difference from p. The estimate covers mesh and
+steps: penalty, slip velocity and the growth of elements away from the contact are the same in all
+runs, except the penalty of a flat strike.
 
 Finer runs follow if the estimate of a promised result is above WORTH times the request. The former
 runs are then the levels of the new one. The contact time scatters with the vibration at the end of
