@@ -15,6 +15,7 @@ import numpy as np
 
 from ffimpact.failure import Failure, TooLong
 from ffimpact.freefem import freefem
+from ffimpact.freefem.arrays import Entries, joined, packed, unpacked
 from ffimpact.input import dimension, parameters
 from ffimpact.input.models import CONTACT
 from ffimpact.input.parameters import ROOT, Value
@@ -22,6 +23,7 @@ from ffimpact.output import results
 from ffimpact.output.evaluate import evaluate
 from ffimpact.scene import read as read_scene
 from ffimpact.scenes import assembly
+from ffimpact.scenes.arrays import law_numbers, parameter_arrays
 
 from . import solids
 
@@ -46,13 +48,18 @@ def measure(script: str, **flags: Value | Path) -> dict[str, float]:
     Raises Failure if the script does not finish.
     """
     # FreeFem++ resolves includes relative to the folder in which it starts.
-    output = _start(f"{script}.edp", flags, SCRIPTS)
+    output = _start(f"{script}.edp", flags if "scene" in flags else FALLING | flags, SCRIPTS)
     values = dict(LINE.findall(output))
     if values.pop("done", None) != "1":
         raise Failure(f"{script}: did not finish: {_end(output)}")
     return {name: float(value) for name, value in values.items()}
 
 
+# Entries of the scripts of one falling body (falling-flags.idp), with their defaults.
+FALLING = {"law": "svk", "young": 7e6, "nu": 0.45, "density": 1722, "law_parameters": "none", "viscosity": 0, "bulk_viscosity": 0,
+           "relaxation_modulus": 0, "relaxation_time": 0, "radius": 0.05, "speed": 8, "angle": 90, "spin": 0, "height": 0,
+           "symmetry": "auto", "mesh_size": 0, "contact_mesh_size": 0, "penalty": 1e10, "slip_velocity": 0.1}
+OF_THE_RUN = ("scene", "out", "restart")  # flags of the scripts; all others are entries of their file
 # The paper's bodies by name: dimension, and the shapes with the entries of their own.
 IMPACTS = {"disc": ("plane-strain", {"shape": "disc"}), "ball": ("3d", {"shape": "ball"}),
            "ball-axisymmetric": ("axisymmetric", {"shape": "ball"}), "disc-block": ("plane-strain", {"shape": "disc"})}
@@ -115,22 +122,38 @@ def solid_bodies(folder: Path, scene: solids.Scene, **flags: Value | Path) -> Ou
 
 
 def prepared(folder: Path, tables: dict) -> dict[str, Value | Path]:
-    """The flags of the scene in these tables. Writes its mesh and its bodies to `folder`."""
-    scene = read_scene(tables, ROOT, "scene")
-    made = assembly.assemble(scene)
+    """The flag of the file of the scene in these tables, which is written to `folder` with its mesh."""
+    made = assembly.assemble(read_scene(tables, ROOT, "scene"))
     folder.mkdir(parents=True, exist_ok=True)
     made.write(folder)
-    flags = {name: value for name, value in made.values.items() if name in parameters.PARAMETERS}
-    return flags | {"mesh": folder / scene.mesh_name, "bodies": folder / "scene.dat"}
+    return {"scene": folder / assembly.SCENE_FILE}
+
+
+def entries(script: str, flags: dict[str, Value | Path]) -> Entries:
+    """The entries of a scene file for a script: those of the file flags["scene"], or the defaults of
+    parameters, changed by the other flags."""
+    own = {name: value for name, value in flags.items() if name not in OF_THE_RUN}
+    if "scene" in flags:
+        made = unpacked(Path(flags["scene"]).read_bytes())
+    else:
+        own = {"friction_dynamic": own.get("friction_static", 0.0)} | own
+        made = parameter_arrays({name: own[name] for name in parameters.names() if name in own})
+        made |= joined("law_numbers", [law_numbers(str(own.get("law_parameters", "none")))])
+    whole = [name for name, row in parameters.PARAMETERS.items() if row.kind == "int"]
+    made |= {name: value if name in whole else str(value) if isinstance(value, str | Path) else float(value) for name, value in own.items()}
+    return made | {"script": Path(script).stem, "identity": str(sorted(own.items()))}
 
 
 def _start(script: str, flags: dict[str, Value | Path], folder: Path = ROOT) -> str:
     """The output of FreeFem++. Raises Failure unless it ends with exit code 0 within LIMIT seconds.
     """
-    with tempfile.NamedTemporaryFile("r", errors="replace") as log:
+    with tempfile.NamedTemporaryFile("r", errors="replace") as log, tempfile.NamedTemporaryFile() as file:
+        file.write(packed(entries(script, flags)))
+        file.flush()
+        of_the_run = {name: flags[name] for name in OF_THE_RUN if name in flags} | {"scene": file.name}
         try:
             with freefem.limited(LIMIT):
-                code, line = freefem.run(freefem.find(), script, flags, Path(log.name), folder=folder)
+                code, line = freefem.run(freefem.find(), script, of_the_run, Path(log.name), folder=folder)
         except TooLong as error:
             raise Failure(f"{script}: {error}") from None
         output = log.read()

@@ -9,9 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
+from ffimpact.freefem.arrays import Entries, joined, packed, table
 from ffimpact.mesh import solid_mesh
 from ffimpact.mesh.mesh import AXIS, FREE, boundary
 from ffimpact.mesh.solid_mesh import DEPTH, right_handed
+from ffimpact.scenes.arrays import SHAPES, Arc, mesh_arrays, padded, parameter_arrays
 from ffimpact.scenes.assembly import stack
 from ffimpact.scenes.sizes import Impact
 
@@ -101,17 +103,13 @@ def mirrored(points: np.ndarray, cells: np.ndarray, axis: int) -> tuple[np.ndarr
 
 
 def write(scene: Scene, folder: Path) -> dict[str, Path | float]:
-    """Writes mesh.mesh and scene.dat to `folder`. Returns the flags -mesh and -bodies, and the automatic
-    values of the contact."""
+    """Writes scene.bin to `folder`. Returns the flag -scene, and the automatic values of the contact."""
     folder.mkdir(parents=True, exist_ok=True)
-    meshes = [_mesh(body, scene.copies) for body in scene.bodies]
-    solid_mesh.write(*stack(meshes, np.zeros((len(meshes), 3))), folder / "mesh.mesh")
-    (folder / "scene.dat").write_text(data(scene))
+    (folder / "scene.bin").write_bytes(packed(entries(scene)))
     radius, young, nu, density, speed, angle, spin = scene.ball
     turn = math.radians(angle)
     like = Impact(True, radius, young, nu, density, speed * math.sin(turn), 0.005, sliding=speed * math.cos(turn), spin=spin)
-    automatic = {"penalty": like.penalty, "slip_velocity": like.slip_velocity, "friction_dynamic": 0.0}
-    return {"mesh": folder / "mesh.mesh", "bodies": folder / "scene.dat"} | automatic
+    return {"scene": folder / "scene.bin", "penalty": like.penalty, "slip_velocity": like.slip_velocity, "friction_dynamic": 0.0}
 
 
 def _mesh(body: Body, copies: int) -> solid_mesh.SolidMesh:
@@ -122,14 +120,19 @@ def _mesh(body: Body, copies: int) -> solid_mesh.SolidMesh:
     return solid_mesh.SolidMesh(body.points, body.cells, faces, np.select([on_z & (copies > 1), on_x & (copies > 2)], [DEPTH, AXIS], FREE))
 
 
-def data(scene: Scene) -> str:
-    """The text of scene.dat (edp/program/input/scene-file.idp)."""
-    def numbers(*groups) -> str:
-        return " ".join(repr(float(x)) for group in groups for x in group)
-    lines = ["ffimpact-bodies-3d 1", f"copies {scene.copies}", "pressure 0.0", f"bodies {len(scene.bodies)}"]
-    lines += [f"body{b} {body.material[0]} " + numbers(body.material[1:], body.centre, body.shift, body.velocity, body.spin, [1e30]) for b, body in enumerate(scene.bodies)]
-    spheres = [f"{b} " + numbers(sphere) for b, body in enumerate(scene.bodies) for sphere in body.spheres]
-    lines += [f"spheres {len(spheres)}", *spheres, "cylinders 0", "files 0", f"obstacles {len(scene.obstacles)}"]
-    lines += [f"obstacle{k} {kind} {len(values)} " + numbers(values, velocity) for k, (kind, values, velocity) in enumerate(scene.obstacles, 1)]
-    lines += [f"pairs {len(scene.pairs)}", *(f"{a} {b} " + numbers(values) for a, b, *values in scene.pairs), ""]
-    return "\n".join(lines)
+def entries(scene: Scene) -> Entries:
+    """The entries of the scene file (edp/program/input/scene.idp)."""
+    bodies = [{"name": f"body{b}", "law": body.material[0], "law_parameters": "none", **dict(zip(("young", "nu", "density"), map(float, body.material[1:]))),
+               "damping": [0.0] * 4, "centre": padded(body.centre), "shift": padded(body.shift), "turn": 0.0, "velocity": padded(body.velocity),
+               "spin": padded(body.spin), "thickness": 1e30, "of_file": 0} for b, body in enumerate(scene.bodies)]
+    obstacles = [{"name": f"obstacle{k}", "kind": SHAPES.index(kind.replace("sphere", "circle")), "velocity": padded(velocity)}
+                 for k, (kind, _, velocity) in enumerate(scene.obstacles, 1)]
+    pairs = [{"first": a, "second": b, "values": [float(x) for x in values]} for a, b, *values in scene.pairs]
+    spheres = [Arc(b, padded(sphere[:3]), np.zeros(3), float(sphere[3])) for b, body in enumerate(scene.bodies) for sphere in body.spheres]
+    meshes = [_mesh(body, scene.copies) for body in scene.bodies]
+    return (parameter_arrays({"penalty": 1.0, "slip_velocity": 1.0, "friction_dynamic": 0.0})
+            | {"script": "bodies-3d", "symmetry_factor": scene.copies, "contact_pressure": 0.0, "implicit_why": "", "front_transit": 0.0, "front_rise": 0.0}
+            | table("bodies", bodies) | joined("bodies.law_numbers", [np.zeros(0)] * len(bodies)) | table("obstacles", obstacles)
+            | joined("obstacles.numbers", [np.array(numbers, float) for _, numbers, _ in scene.obstacles]) | table("pairs", pairs)
+            | {name: 0 for name in ("rigid", "functions", "kinks", "drives", "supports", "loads")}
+            | mesh_arrays(*stack(meshes, np.zeros((len(meshes), 3))), spheres, []))

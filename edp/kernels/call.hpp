@@ -1,6 +1,6 @@
 // call.hpp: add(name, f) makes the C++ function f callable from FreeFEM scripts under `name`.
 // f takes any number of arguments (long, double, bool, double &, std::string &, Reals, Ints,
-// Table, Sparse, Callback) and returns long or nothing; FreeFEM then gets 0.
+// Table, Sparse, Callback) and returns a number, a text, a mesh, or nothing; FreeFEM then gets 0.
 // Exports add() and the argument types Sparse and Callback.
 #pragma once
 #include <new>
@@ -38,22 +38,41 @@ template <> struct Argument<Callback> {
   static Callback value(Expression e, Stack s) { return {e, s}; }
 };
 
+// Converts the result of a C++ function to that of a FreeFEM function. FreeFEM has texts and meshes
+// by pointers, which it deletes behind the statement.
+template <class R> struct Result {
+  typedef R Type;
+  static R value(R result, Stack) { return result; }
+};
+template <> struct Result<std::string> {
+  typedef std::string *Type;
+  static Type value(const std::string &text, Stack s) {
+    return Add2StackOfPtr2Free(s, new std::string(text));
+  }
+};
+template <class M> struct Result<M *> {
+  typedef const M *Type;
+  static Type value(M *mesh, Stack s) { return Add2StackOfPtr2FreeRC(s, mesh); }
+};
+template <> struct Result<void> { typedef long Type; };
+
 // One call in a script: evaluates the argument expressions, then f.
-template <class F, class... A> struct Called : E_F0mps {
-  F f;
+template <class R, class... A> struct Called : E_F0mps {
+  typedef typename Result<R>::Type Type;
+  R (*f)(A...);
   Expression argument[sizeof...(A)];
-  explicit Called(F g) : f(g) {}
-  template <size_t... i>
-  long call(long (*)(A...), Stack s, std::index_sequence<i...>) const {
-    return f(Argument<A>::value(argument[i], s)...);
+  explicit Called(R (*g)(A...)) : f(g) {}
+  template <class Q, size_t... i>
+  Type call(Q (*)(A...), Stack s, std::index_sequence<i...>) const {
+    return Result<R>::value(f(Argument<A>::value(argument[i], s)...), s);
   }
   template <size_t... i>
-  long call(void (*)(A...), Stack s, std::index_sequence<i...>) const {
+  Type call(void (*)(A...), Stack s, std::index_sequence<i...>) const {
     f(Argument<A>::value(argument[i], s)...);
     return 0;
   }
   AnyType operator()(Stack s) const {
-    try { return SetAny<long>(call(f, s, std::index_sequence_for<A...>())); }
+    try { return SetAny<Type>(call(f, s, std::index_sequence_for<A...>())); }
     catch (const std::bad_alloc &) {
       giveUp("the compiled kernels");
     }
@@ -74,9 +93,10 @@ template <class R, class... A> struct Call : OneOperator {
   typedef R (*F)(A...);
   F f;
   explicit Call(F g)
-    : OneOperator(atype<long>(), Types{atype<typename Argument<A>::Type>()...}), f(g) {}
+    : OneOperator(atype<typename Result<R>::Type>(), Types{atype<typename Argument<A>::Type>()...}),
+      f(g) {}
   E_F0 *code(const basicAC_F0 &arguments) const {
-    auto *called = new Called<F, A...>(f);
+    auto *called = new Called<R, A...>(f);
     for (size_t i = 0; i < sizeof...(A); i++) called->argument[i] = t[i]->CastTo(arguments[i]);
     return called;
   }

@@ -7,6 +7,7 @@
 #include "contact.hpp"
 #include "explicit.hpp"
 #include "factor.hpp"
+#include "input.hpp"
 #include "loads.hpp"
 #include "obstacles.hpp"
 #include "pairs.hpp"
@@ -428,6 +429,7 @@ static void addStatuses() {                   // status.hpp
 static void addKernels() {
   limitThreads();
   addStatuses();
+  addInput();
   addBodies();
   addLoads();
   addFactor();

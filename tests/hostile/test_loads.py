@@ -52,11 +52,11 @@ def test_a_gas_begins_in_equilibrium(tmp_path):
 def test_half_a_run_with_a_gas_and_the_rest_are_the_whole(tmp_path):
     """A run with a gas, dead loads and follower loads is killed twice and continues with unchanged
     results."""
-    flags = prepared(tmp_path / "scene", PUSHED | {"end_time": 8e-3})
+    flags = prepared(tmp_path / "scene", PUSHED | {"end_time": 8e-3, "checkpoint_every": 10})
     straight = direct(flags, tmp_path / "straight", "bodies")
     assert straight.communicate(timeout=120) and straight.returncode == 0
     rows = len(outcome(tmp_path / "straight").history["t"])
-    flags, out = flags | {"checkpoint_every": 10}, tmp_path / "out"
+    out = tmp_path / "out"
     kill_at(direct(flags, out, "bodies"), out / "checkpoint", rows // 4)
     kill_at(direct(flags | {"restart": out / "checkpoint"}, out, "bodies"), out / "checkpoint", 2 * rows // 3)
     last = direct(flags | {"restart": out / "checkpoint"}, out, "bodies")

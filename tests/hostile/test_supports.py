@@ -60,11 +60,11 @@ def test_half_a_run_with_supports_and_the_rest_are_the_whole(tmp_path):
     """A run that is killed before and after the release of the support continues with unchanged
     results."""
     scene = RUBBED | {"body": [RUBBED["body"][0] | {"support": [RUBBED["body"][0]["support"][0] | {"release": 8e-3}]}, RUBBED["body"][1]]}
-    flags = prepared(tmp_path / "scene", scene)
+    flags = prepared(tmp_path / "scene", scene | {"checkpoint_every": 7})
     straight = direct(flags, tmp_path / "straight", "bodies")
     assert straight.communicate(timeout=120) and straight.returncode == 0
     rows = len(outcome(tmp_path / "straight").history["t"])
-    flags, out = flags | {"checkpoint_every": 7}, tmp_path / "out"
+    out = tmp_path / "out"
     kill_at(direct(flags, out, "bodies"), out / "checkpoint", rows // 5)
     kill_at(direct(flags | {"restart": out / "checkpoint"}, out, "bodies"), out / "checkpoint", 2 * rows // 3)
     last = direct(flags | {"restart": out / "checkpoint"}, out, "bodies")

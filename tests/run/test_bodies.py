@@ -81,7 +81,7 @@ def test_a_body_may_be_a_mesh_file(tmp_path):
     assert abs(body.mesh.points - (m.points - [0, 0.05])).max() < 1e-9
     built = assembly.assemble(scene)
     assert np.array_equal(built.mesh.labels, m.labels) and np.array_equal(built.mesh.triangles, m.triangles)
-    assert built.data.splitlines()[5] == "circles 1"
+    assert built.arrays["arcs"] == 1
 
 
 def test_a_body_may_be_a_file_of_gmsh(tmp_path):
@@ -110,7 +110,7 @@ def test_a_body_may_be_a_file_of_gmsh(tmp_path):
 def test_flats_among_the_arcs_of_a_file_stay_flat(tmp_path):
     """A shaft with two flats, with all corners on one circle, consists of arcs and flats.
 
-    Its area, centre and distances are correct, also rotated, and scene.dat has the circle once.
+    Its area, centre and distances are correct, also rotated, and scene.bin has the circle once.
     """
     radius, flat = 0.5, math.acos(0.6)
     angles = np.concatenate([np.linspace(side + flat, side + math.pi - flat, 10) for side in (0, math.pi)])
@@ -122,8 +122,9 @@ def test_flats_among_the_arcs_of_a_file_stay_flat(tmp_path):
     assert outline.area == pytest.approx(radius**2 * (math.pi - 2 * flat + math.sin(2 * flat)), rel=1e-12) and abs(outline.area_centre).max() < 1e-12
     assert placed.area_centre == pytest.approx([1, 2], abs=1e-12) and placed.extent == pytest.approx([2 * radius, 1.2 * radius], rel=1e-4)
     assert placed.gap(np.array([[1.0, 2.4], [1, 2], [1.6, 2]])) == pytest.approx([0.1, -0.3, 0.1], abs=1e-4)
-    lines = assembly.assemble(scene).data.splitlines()
-    assert lines[5] == "circles 1" and np.array(lines[6].split(), dtype=float) == pytest.approx([0, 0, 0, radius], abs=1e-12) and lines[7:9] == ["files 1", "0 1"]
+    made = assembly.assemble(scene).arrays
+    assert made["arcs"] == 1 and made["arcs.centre"][0] == pytest.approx([0, 0, 0], abs=1e-12) and made["arcs.radius"] == pytest.approx(radius, rel=1e-12)
+    assert made["bodies.of_file"].tolist() == [1] and sorted(made["mesh.arc_of"]) == [-1] * 2 + [0] * 18
 
 
 # ---- assembly
@@ -195,10 +196,9 @@ def test_pairs_inherit_from_contact():
     """A [[contact.pair]] overrides the entries of the scene and of its obstacle."""
     tables = changed(("contact.penalty", 1e9), ("contact.friction_static", 0.5), ("contact.slip_velocity", 0.1), ("obstacle.1.friction_static", 0.2))
     tables["contact"]["pair"] = [{"bodies": ["floor", "disc"], "friction_static": 0.3, "friction_dynamic": 0.1}, {"bodies": ["block", "disc"], "penalty": 2e9}]
-    lines = assembly.assemble(read(tables)).data.splitlines()
-    first = lines.index("pairs 3")
-    assert [list(map(float, line.split())) for line in lines[first + 1:]] == [
-        [0, -1, 1e9, 0.3, 0.1], [0, 1, 2e9, 0.5, 0.5], [1, -1, 1e9, 0.2, 0.2]]
+    made = assembly.assemble(read(tables)).arrays
+    assert (made["pairs.first"].tolist(), made["pairs.second"].tolist()) == ([0, 0, 1], [-1, 1, -1])
+    assert made["pairs.values"].tolist() == [[1e9, 0.3, 0.1], [2e9, 0.5, 0.5], [1e9, 0.2, 0.2]]
 
 
 @pytest.mark.few(5)
@@ -217,8 +217,8 @@ def test_the_scene_as_used_is_the_same_scene(name, tmp_path):
         assert "auto" not in {name: value for name, value in built.values.items() if name != "volume"}.values()
         built.write(folder)
         (folder / "scene.toml").write_text(to_toml(built.used))
-    for file in (scene.mesh_name, "scene.dat", "scene.toml"):
-        assert (first / file).read_text() == (second / file).read_text(), file
+    for file in (scene.mesh_name, "scene.bin", "scene.toml"):
+        assert (first / file).read_bytes() == (second / file).read_bytes(), file
 
 
 # ---- what is refused
@@ -367,9 +367,11 @@ OBSTACLES = [
 
 @pytest.mark.parametrize("entries, words, points, gaps", OBSTACLES)
 def test_obstacles_are_their_numbers_and_gaps(entries, words, points, gaps):
-    """The line of an obstacle in scene.dat has its numbers and its velocity. The gap is the signed
-    distance, negative inside."""
+    """scene.bin has the numbers and the velocity of an obstacle. The gap is the signed distance,
+    negative inside."""
     far = with_body(shape="disc", radius=0.01, position=[0.5, 5] if entries["kind"] != "bowl" else [1, 0]) | {"obstacle": [entries | {"velocity": [0.5, -0.25]}]}
     scene = read(far)
-    assert f"\nobstacle1 {words} 0.5 -0.25\n" in assembly.assemble(scene).data
+    made, (kind, _, *numbers) = assembly.assemble(scene).arrays, words.split()
+    assert made["obstacles.name"] == ["obstacle1"] and made["obstacles.kind"] == [SHAPES.index(kind)]
+    assert made["obstacles.numbers"].tolist() == list(map(float, numbers)) and made["obstacles.velocity"].tolist() == [[0.5, -0.25, 0.0]]
     assert scene.obstacles[0].gap(np.array(points, dtype=float)) == pytest.approx(gaps)

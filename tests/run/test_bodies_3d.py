@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ffimpact.failure import BadInput
-from ffimpact.freefem import freefem
+from ffimpact.freefem.arrays import unpacked
 from ffimpact.geometry import tumbling
 from ffimpact.input import parameters
 from ffimpact.input.toml_text import to_toml
@@ -94,11 +94,9 @@ def test_bodies_stand_apart_above_each_other():
     built = assembly.assemble(scene)
     heights = [built.mesh.points[np.unique(built.mesh.cells[built.regions == k])][:, 1] for k in (0, 1)]
     assert heights[0].max() < heights[1].min() and not built.centres[:, [0, 2]].any()
-    rows = [line.split() for line in built.data.splitlines()]
-    assert rows[0] == ["ffimpact-bodies-3d", "1"] and rows[1] == ["copies", "4"]
-    for row, body in zip(rows[4:6], scene.bodies):
-        assert len(row) == 18 and np.array(row[5:8], dtype=float) + np.array(row[8:11], dtype=float) == pytest.approx(body.position)
-    assert rows[6] == ["spheres", "1"]
+    made = built.arrays
+    assert made["script"] == "bodies-3d" and made["symmetry_factor"] == 4 and made["arcs"] == 1 and not made["arcs.axis"].any()
+    assert made["bodies.centre"] + made["bodies.shift"] == pytest.approx(np.array([body.position for body in scene.bodies]))
 
 
 def test_too_many_unknowns_are_refused(monkeypatch):
@@ -211,20 +209,20 @@ def test_files_that_cannot_be_used_are_named(files, name, words):
     assert not (files / "made").exists()
 
 
-@pytest.mark.parametrize("corners, section, outline, warned", [
-    (6, 1.5 * math.sqrt(3) * 0.05**2, "0 faces on spheres, 0 on cylinders, 20 flat faces; 20 may touch", ""),
-    (24, math.pi * 0.05**2, "0 faces on spheres, 48 on cylinders, 44 flat faces; 92 may touch", "mass: body1 has 1.2 % more than the mesh in its file")])
-def test_the_mass_of_a_file_is_kept_or_warned_about(tmp_path, corners, section, outline, warned):
+@pytest.mark.parametrize("corners, section, flat, warned", [
+    (6, 1.5 * math.sqrt(3) * 0.05**2, 20, ""),
+    (24, math.pi * 0.05**2, 44, "mass: body1 has 1.2 % more than the mesh in its file")])
+def test_the_mass_of_a_file_is_kept_or_warned_about(tmp_path, corners, section, flat, warned):
     """The body of a file has the mass of its shape; a hexagonal prism has that of a prism.
 
-    If its sides are round the log reports it, and a warning has the difference from the mass of the
-    file.
+    If its sides are round, a warning has the difference from the mass of the file.
     """
     prism(corners, tmp_path / "prism.mesh")
     body = {"shape": "mesh", "file": "prism.mesh", "position": [0, 0.0402, 0], "velocity": [0, -1, 0]}
     result = run.run(read(body, obstacles=[FLOOR | {"point": [0, 0, 0]}], folder=tmp_path, end_time=4e-4), {}, tmp_path / "run", estimate=False)
     assert result.summary["energy_initial"] == pytest.approx(section * 0.08 * 1722 / 2, rel=1e-4)
-    assert f"outline: body1: {outline}\n" in (result.folder / "log.txt").read_text()
+    arcs = unpacked((result.folder / "scene.bin").read_bytes())["mesh.arc_of"].ravel()
+    assert (arcs == -1).sum() == flat and (arcs >= 0).sum() == 2 * corners * bool(warned)
     assert [warning[:len(warned)] for warning in result.summary["warnings"] if warning.startswith("mass")] == [warned] * bool(warned)
 
 
@@ -244,10 +242,11 @@ def test_bodies_that_hang_together_by_less_than_a_face_are_refused(tmp_path, cel
 
 
 def test_three_numbers_of_obstacles():
-    """Planes, spheres and hollow spheres with points and vectors [x, y, z], as in scene.dat."""
+    """Planes, spheres and hollow spheres with points and vectors [x, y, z], as in scene.bin."""
     scene = read(BALL, obstacles=[FLOOR | {"normal": [0, 2, 0], "velocity": [0, 1, 0]}, {"kind": "sphere", "centre": [0, -1, 0], "radius": 0.5}])
-    lines = assembly.assemble(scene).data.splitlines()
-    assert "floor plane 6 0.0 -0.5 0.0 0.0 1.0 0.0 0.0 1.0 0.0" in lines and "obstacle2 circle 4 0.0 -1.0 0.0 0.5 0.0 0.0 0.0" in lines
+    made = assembly.assemble(scene).arrays
+    assert made["obstacles.name"] == ["floor", "obstacle2"] and made["obstacles.kind"] == [0, 1] and made["obstacles.velocity"].tolist() == [[0, 1, 0], [0, 0, 0]]
+    assert made["obstacles.numbers"].tolist() == [0, -0.5, 0, 0, 1, 0, 0, -1, 0, 0.5] and made["obstacles.numbers.first"].tolist() == [0, 6, 10]
     with pytest.raises(BadInput, match=r"obstacle.1.kind: 'polyline' is not known.*accepted: plane.sphere.bowl"):
         read(BALL, obstacles=[{"kind": "polyline", "vertices": [[0, 0], [1, 1]]}])
 
@@ -328,10 +327,8 @@ def test_the_scene_as_used_makes_the_same_run(falls, tmp_path):
     again = load(str(result.folder / "scene.toml"))
     assert again.script == SCRIPT and set(again.values) <= set(parameters.names(SCRIPT)) and again.content["symmetry"] == "quarter"
     made = assembly.assemble(again)
-    assert made.data == (result.folder / "scene.dat").read_text() and to_toml(made.used) == (result.folder / "scene.toml").read_text()
-    flags = freefem.words_of(made.values)
-    code, _, _ = call(*flags, "-mesh", str(result.folder / "mesh.mesh"), "-bodies", str(result.folder / "scene.dat"), "-out", str(tmp_path / "direct"),
-                      cwd=tmp_path, kind=SCRIPT)
+    assert made.data == (result.folder / "scene.bin").read_bytes() and to_toml(made.used) == (result.folder / "scene.toml").read_text()
+    code, _, _ = call("-scene", str(result.folder / "scene.bin"), "-out", str(tmp_path / "direct"), cwd=tmp_path, kind=SCRIPT)
     assert code == 0 and (tmp_path / "direct/history.csv").read_text() == (result.folder / "history.csv").read_text()
 
 

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from ffimpact.failure import BadInput
-from ffimpact.freefem import freefem
 from ffimpact.input import parameters
 from ffimpact.input.toml_text import to_toml
 from ffimpact.mesh import mesh
@@ -33,7 +32,7 @@ def volumes(m: mesh.Mesh) -> tuple[float, float]:
 @pytest.mark.parametrize("name", SHAPES)
 def test_bodies_are_half_sections_about_their_centres(name):
     """The mesh is the half x >= 0 of the section, with the volume of the body and the centre of
-    scene.dat.
+    scene.bin.
 
     Edges on the axis, and no others, have the label 2. Vertices of the boundary lie on the outline.
     """
@@ -52,15 +51,14 @@ def test_bodies_are_half_sections_about_their_centres(name):
 
 
 def test_bodies_stand_above_each_other():
-    """Bodies are on the axis, apart from each other, region k is body k, and scene.dat has one
+    """Bodies are on the axis, apart from each other, region k is body k, and scene.bin has one
     circle of the ball. A number as position is the height."""
     scene = load("ball-cylinder")
     built = assembly.assemble(scene)
     assert (built.centres[:, 0] == 0).all() and scene.bodies[0].position.tolist() == [0, 0.051]
     tops = [built.mesh.points[np.unique(built.mesh.triangles[built.regions == k])][:, 1] for k in (0, 1)]
     assert tops[0].max() < tops[1].min()
-    lines = built.data.splitlines()
-    assert lines[lines.index("circles 1") + 1].split()[0] == "0"
+    assert built.arrays["arcs"] == 1 and set(built.regions[(built.mesh.triangles == built.mesh.edges[built.arrays["mesh.arc_of"] == 0][0, 0]).any(axis=1)]) == {0}
 
 
 def test_meshes_are_fine_where_bodies_touch():
@@ -92,22 +90,6 @@ def test_open_values_are_those_of_a_ball():
     alone = assembly.assemble(load("ball-axisymmetric").override({"law": "svk", "penalty": "auto"})).used
     assert body["contact"]["penalty"] == pytest.approx(alone["contact"]["penalty"], rel=1e-9)
     assert body["body"][0]["contact_mesh_size"] == pytest.approx(alone["body"][0]["contact_mesh_size"], rel=1e-9)
-
-
-@pytest.mark.parametrize("old, new, message", [
-    ("0 1.5 0.0 0.0 -10", "0 1.5 0.0 1.0 -10", "ball leaves the axis of revolution: its x, angle, vx or spin is not 0"),
-    ("plane 4 0.0 -1.0 0.0 1.0", "plane 4 0.0 -1.0 1.0 1.0", "obstacle 1 is none of revolution"),
-    (" 2\n", " 1\n", "has the label 1 (accepted: 2 on x = 0")])
-def test_the_script_looks_at_its_files(tmp_path, old, new, message):
-    """The script refuses files made by hand that are not of revolution, with exit code 10 and one
-    line."""
-    assembly.assemble(read(BALL, mesh_size=0.3, contact_mesh_size=0.1)).write(tmp_path)
-    file = tmp_path / ("mesh.msh" if "\n" in old else "scene.dat")
-    text = file.read_text().replace("0.0 1.5 0.0 0.0 -10", "0 1.5 0.0 0.0 -10")
-    assert old in text
-    file.write_text(text.replace(old, new))
-    code, _, error = call("-mesh", "mesh.msh", "-bodies", "scene.dat", "-accuracy", "0.4", "-out", "out", cwd=tmp_path, kind=SCRIPT)
-    assert code == 10 and message in error and error.count("\n") == 1
 
 
 # ---- runs
@@ -149,10 +131,8 @@ def test_the_scene_as_used_makes_the_same_run(slow, tmp_path):
     again = load(str(slow.folder / "scene.toml"))
     assert again.script == SCRIPT and set(again.values) <= set(parameters.names(SCRIPT))
     made = assembly.assemble(again)
-    assert made.data == (slow.folder / "scene.dat").read_text() and to_toml(made.used) == (slow.folder / "scene.toml").read_text()
-    flags = freefem.words_of({name: value for name, value in (again.values | made.values).items() if name != "pair"})
-    code, _, _ = call(*flags, "-mesh", str(slow.folder / "mesh.msh"), "-bodies", str(slow.folder / "scene.dat"), "-out", str(tmp_path / "direct"),
-                      cwd=tmp_path, kind=SCRIPT)
+    assert made.data == (slow.folder / "scene.bin").read_bytes() and to_toml(made.used) == (slow.folder / "scene.toml").read_text()
+    code, _, _ = call("-scene", str(slow.folder / "scene.bin"), "-out", str(tmp_path / "direct"), cwd=tmp_path, kind=SCRIPT)
     assert code == 0 and (tmp_path / "direct/history.csv").read_text() == (slow.folder / "history.csv").read_text()
 
 

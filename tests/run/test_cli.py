@@ -12,8 +12,6 @@ import pytest
 
 from ffimpact import scene
 from ffimpact.__main__ import main
-from ffimpact.freefem import describe
-from ffimpact.mesh import mesh
 from ffimpact.running import run
 from tests.support.cli import call, is_alive, start, wait_for
 
@@ -57,17 +55,6 @@ def test_quiet_is_quiet(fake, tmp_path):
         code, out, error = call(*words)
         assert (code, out) == (0, "") and all(line.startswith("ffimpact: warning: ") for line in error.splitlines())
     assert (tmp_path / "out.1").exists()
-
-
-def test_scripts_that_do_not_answer_are_one_line(monkeypatch, capsys, tmp_path):
-    """If FreeFem++ does not finish the check of a mesh file in time, there is one line and exit code
-    13."""
-    mesh.write(mesh.disc(0.05, 0.02, 0.0123, False), tmp_path / "disc.msh")
-    (tmp_path / "disc.toml").write_text('[[body]]\nshape = "mesh"\nfile = "disc.msh"\nposition = [0, 0.05]\n[[obstacle]]\nkind = "plane"\n')
-    monkeypatch.setattr(describe, "LIMIT", 1e-3)
-    assert main(["run", str(tmp_path / "disc.toml")]) == 13
-    error = capsys.readouterr().err
-    assert re.match(r"ffimpact: \S+ does not finish edp/program/outline.edp in 0.001 s", error) and error.count("\n") == 1
 
 
 def test_quiet_leaves_warnings(fake, tmp_path, capsys, monkeypatch):

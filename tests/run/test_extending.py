@@ -32,7 +32,6 @@ def extended(tmp_path):
             (tmp_path / path).write_text(text)
         for change in re.findall(r"```diff\n(.*?)```", section, re.DOTALL):
             go(tmp_path, "git", "apply", "-", text=change)
-        go(tmp_path, sys.executable, "-m", "ffimpact.input.flags")
         for command in re.findall(r"```sh\n(.*?)```", section, re.DOTALL):
             go(tmp_path, "sh", "-c", command)
         return tmp_path

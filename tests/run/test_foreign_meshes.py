@@ -1,9 +1,7 @@
-"""Meshes of the user: reports of errors in a file, with and without Python; bodies of any outline;
-gmsh files."""
+"""Meshes of the user: reports of errors in a file; bodies of any outline; gmsh files."""
 
 import math
-import re
-import resource
+import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,11 +10,10 @@ import pytest
 
 from ffimpact import scene
 from ffimpact.failure import BadInput
-from ffimpact.freefem.describe import outline_of
-from ffimpact.mesh import gmsh_file, mesh, solid_file
+from ffimpact.mesh import gmsh_file, mesh, plane_file, solid_file
 from ffimpact.running import run
 from tests.support.foreign_meshes import DENSITY, NEAR, RADIUS, SIZE, agree, falling, go, shaped
-from tests.support.triangles import areas, whole_of
+from tests.support.triangles import areas
 from verification.measure import impact
 
 # ---- wrong files
@@ -48,27 +45,27 @@ APART = another((0.3, 0), lambda k: k + 9)
 # Its first vertex is vertex 9 of the first square.
 BY_A_POINT = another((0.1, 0.1), lambda k: k + 8)
 BAD = {
-    "empty": ("", "does not begin with its numbers of vertices, triangles and boundary edges"),
-    "words": ("hello world\n", "boundary edges (accepted: a 2D mesh as FreeFEM's savemesh writes it, .msh; through Python gmsh's .msh, too)"),
-    "medit": ("MeshVersionFormatted 2\nDimension 2\n", "does not begin with its numbers"),
-    "bytes": ("\x00\x01\x02", "does not begin with its numbers"),
-    "two counts": ("9 8", "does not begin with its numbers"),
-    "count 1e1": (square(counts="1e1 8 8"), "does not begin with its numbers"),
+    "empty": ("", "is no mesh (accepted: a 2D mesh as FreeFEM's savemesh or gmsh writes it, .msh)"),
+    "words": ("hello world\n", "is no mesh (accepted: a 2D mesh as FreeFEM's savemesh or gmsh writes it, .msh)"),
+    "medit": ("MeshVersionFormatted 2\nDimension 2\n", "is no mesh (accepted: a 2D mesh as FreeFEM's savemesh or gmsh writes it, .msh)"),
+    "bytes": ("\x00\x01\x02", "is no mesh (accepted: a 2D mesh as FreeFEM's savemesh or gmsh writes it, .msh)"),
+    "two counts": ("9 8", "is no mesh (accepted: a 2D mesh as FreeFEM's savemesh or gmsh writes it, .msh)"),
+    "count 1e1": (square(counts="1e1 8 8"), "is no mesh (accepted: a 2D mesh as FreeFEM's savemesh or gmsh writes it, .msh)"),
     "no vertices": (square(counts="0 8 8"), "0 vertices (accepted: 3 to 2000000)"),
     "negative vertices": (square(counts="-9 8 8"), "-9 vertices (accepted"),
     "absurd vertices": (square(counts="999999999999 8 8"), "999999999999 vertices (accepted"),
-    "vertices beyond any integer": (square(counts="99999999999999999999 8 8"), "does not begin with its numbers"),
+    "vertices beyond any integer": (square(counts="99999999999999999999 8 8"), "99999999999999999999 vertices (accepted"),
     "no triangles": (square(triangles=[]), "0 triangles (accepted: 1 to 2000000)"),
     "negative triangles": (square(counts="9 -8 8"), "-8 triangles"),
     "no boundary": (square(edges=[]), "0 boundary edges (accepted: 3 to 2000000)"),
     "negative edges": (square(counts="9 8 -8"), "-8 boundary edges"),
-    "too short": (square()[:-30], "the file ends at boundary edge 4 (it has to have 9 vertices, 8 triangles, 8 boundary edges)"),
-    "too few vertices": (square(counts="90 8 8"), "the file ends at vertex 28"),
-    "label missing": (square()[:-3], "the file ends at boundary edge 8"),
-    "cut in its last number": (square(edges=changed(EDGES, 8, "4 1 12"))[:-2], "the file ends at boundary edge 8 (accepted: a line end behind its label)"),
-    "garbage behind": (square() + "\n 7 8 9\n", "'7 8 9' follows behind the last boundary edge"),
-    "garbage in the last line": (square()[:-1] + "x\n", "boundary edge 8 ends with '1x' (accepted: its label, a whole number)"),
-    "broken last label": (square()[:-1] + ".5\n", "boundary edge 8 ends with '1.5'"),
+    "too short": (square()[:-30], "ends at boundary edge 4 of 8"),
+    "too few vertices": (square(counts="90 8 8"), "ends at vertex 28 of 90"),
+    "label missing": (square()[:-3], "ends at boundary edge 8 of 8"),
+    "cut in its last number": (square(edges=changed(EDGES, 8, "4 1 12"))[:-2], "ends at boundary edge 8 (accepted: a line end behind its label)"),
+    "garbage behind": (square() + "\n 7 8 9\n", "'7' follows behind the last boundary edge"),
+    "garbage in the last line": (square()[:-1] + "x\n", "boundary edge 8 is not v1 v2 label in numbers"),
+    "broken last label": (square()[:-1] + ".5\n", "boundary edge 8 is not v1 v2 label in numbers"),
     "nan": (square(points=changed(POINTS, 5, "0.05 nan 0")), "vertex 5 is not x y label in numbers"),
     "inf": (square(points=changed(POINTS, 5, "inf 0.05 0")), "vertex 5 is not x y label in numbers"),
     "beyond any number": (square(points=changed(POINTS, 5, "1e400 0.05 0")), "vertex 5 is not x y label in numbers"),
@@ -81,7 +78,7 @@ BAD = {
     "negative index": (square(triangles=changed(TRIANGLES, 3, "2 -3 6 0")), "triangle 3 (vertices 2, -3, 6) names a vertex that is not there"),
     "index 10": (square(triangles=changed(TRIANGLES, 3, "2 10 6 0")), "triangle 3 (vertices 2, 10, 6) names a vertex that is not there"),
     "edge index 10": (square(edges=changed(EDGES, 3, "3 10 1")), "boundary edge 3 (vertices 3, 10) names a vertex that is not there"),
-    "negative label": (square(edges=changed(EDGES, 3, "3 6 -1")), "boundary edge 3 has the label -1 (accepted: 0 to"),
+    "negative label": (square(edges=changed(EDGES, 3, "3 6 -1")), "boundary edge 3 has the label -1 (accepted: from 0)"),
     "clockwise": (square(triangles=changed(TRIANGLES, 3, "2 6 3 0")), "triangle 3 (vertices 2, 6, 3) is clockwise"),
     "all clockwise": (square(triangles=[" ".join((b, a, c, r)) for a, b, c, r in map(str.split, TRIANGLES)]), "triangle 1 (vertices 2, 1, 5) is clockwise"),
     "inverted": (square(points=changed(POINTS, 5, "0.2 0.05 0")), "is clockwise"),
@@ -111,38 +108,26 @@ BAD = {
 }
 
 
-def spent() -> float:
-    """Processor time [s] of the processes that have ended."""
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
-
-
 OF_AN_AXIS = ("slanted axis", "right of the body", "half an axis")  # of bodies of revolution
 
 
 @pytest.mark.few(14)
 @pytest.mark.parametrize("name", BAD)
 def test_bad_mesh_is_named(tmp_path, name):
-    """The error of a mesh and its place are one line with exit code 10. Python says of text that is no
-    mesh that it is none.
-
-    The check takes less than a second of processor time.
-    """
+    """The error of a mesh and its place are one line."""
     text, words = BAD[name]
     (tmp_path / "m.msh").write_text(text)
-    started = spent()
     with pytest.raises(BadInput) as error:
         scene.read(impact("ball-axisymmetric" if name in OF_AN_AXIS else "disc", file=tmp_path / "m.msh"), tmp_path, "mesh")
     message = str(error.value)
-    assert spent() - started < 1 and message.startswith("body.1.file: ") and "\n" not in message
-    assert words in message or "m.msh is no mesh" in message
+    assert message.startswith(f"body.1.file: {tmp_path}/m.msh: ") and "\n" not in message and words in message, message
 
 
 def test_the_square_without_a_fault_is_accepted(tmp_path):
     """The square without errors is a valid mesh: every refusal above is due to its error."""
     for number, text in enumerate([square(), square().replace("\n", "\r\n"), square() + "\n \n"]):
         (tmp_path / f"{number}.msh").write_text(text, newline="")
-        assert outline_of(tmp_path / f"{number}.msh") == {"circles": [], "circle_of": [-1] * 8}
+        assert np.isnan(plane_file.load(tmp_path / f"{number}.msh").arc_centres).all()
 
 
 def test_large_mesh_is_checked_within_a_second(tmp_path):
@@ -154,12 +139,9 @@ def test_large_mesh_is_checked_within_a_second(tmp_path):
     points = np.stack(np.meshgrid(np.linspace(0, 0.1, n), np.linspace(0, 0.1, n)), axis=-1).reshape(-1, 2)
     edges = mesh.boundary(triangles)
     mesh.write(mesh.Mesh(points, triangles, edges, np.ones(len(edges), dtype=int)), tmp_path / "m.msh")
-    mesh.write(whole_of(mesh.disc(RADIUS, RADIUS, RADIUS / 2, True)), tmp_path / "small.msh")
-    started = spent()
-    outline_of(tmp_path / "small.msh")  # a start for comparison
-    alone = spent() - started
-    assert outline_of(tmp_path / "m.msh")["circle_of"] == [-1] * 400
-    assert spent() - started - 2 * alone < 1
+    started = time.process_time()
+    made = plane_file.load(tmp_path / "m.msh")
+    assert time.process_time() - started < 1 and np.isnan(made.arc_centres).all() and len(made.edges) == 400
 
 
 def ellipse(occ):
@@ -178,10 +160,8 @@ def ring(occ):
 
 
 @pytest.mark.few(1)
-@pytest.mark.parametrize("draw, outline, size", [
-    (ellipse, r"0 edges on circles, \d+ straight edges", math.pi * 0.06 * 0.04), (tilted_square, r"0 edges on circles, \d+ straight edges", 0.08**2),
-    (ring, r"\d+ edges on circles, 0 straight edges", math.pi * (RADIUS**2 - 0.02**2))])
-def test_any_outline_falls_and_bounces(tmp_path, draw, outline, size):
+@pytest.mark.parametrize("draw, size", [(ellipse, math.pi * 0.06 * 0.04), (tilted_square, 0.08**2), (ring, math.pi * (RADIUS**2 - 0.02**2))])
+def test_any_outline_falls_and_bounces(tmp_path, draw, size):
     """An ellipse, a rotated square and a ring at any place in the file have the kinetic energy of
     their area.
 
@@ -192,8 +172,7 @@ def test_any_outline_falls_and_bounces(tmp_path, draw, outline, size):
     assert areas(m).sum() == pytest.approx(size, rel=0.05)
     result = go(tmp_path / "out", m)
     h, s = result.history, result.summary
-    line = re.search(r"^outline: (.*)$", (result.folder / "log.txt").read_text(), re.MULTILINE)[1]
-    assert re.search(outline, line)
+    assert (np.isnan(plane_file.load(tmp_path / "out.msh").arc_centres).any(axis=1) == (draw is not ring)).all()
     # Circles are curved, other outlines are as in the mesh.
     exact = size if draw is ring else areas(m).sum()
     assert s["energy_initial"] == pytest.approx(DENSITY * exact * 4**2 / 2, rel=1e-4 if draw is ring else 1e-9)
@@ -230,10 +209,11 @@ def test_edges_up_to_30_degrees_are_a_circle(tmp_path, angles, place, outline):
     """Consecutive edges that lie on a circle and span at most 30 degrees each are arcs. Longer
     ones, also flats among them, stay straight."""
     mesh.write(fan(angles, *place), tmp_path / "m.msh")
-    description = outline_of(tmp_path / "m.msh")
-    assert description["circles"] == [pytest.approx([*place, RADIUS], abs=1e-12)] * ("circle" in outline)
+    centres = plane_file.load(tmp_path / "m.msh").arc_centres
+    straight = np.isnan(centres).any(axis=1)
+    assert centres[~straight] == pytest.approx(np.tile(place, (np.count_nonzero(~straight), 1)), abs=1e-12)
     chords = abs(np.diff([*angles, angles[0] + 2 * math.pi]))
-    assert [c < 0 for c in description["circle_of"]] == [chord > math.pi / 6 + 1e-9 or "circle" not in outline for chord in chords]
+    assert straight.tolist() == [chord > math.pi / 6 + 1e-9 or "circle" not in outline for chord in chords]
 
 
 def test_another_mass_than_the_file_is_a_warning(tmp_path):
@@ -296,12 +276,6 @@ def the_same(a: mesh.Mesh, b: mesh.Mesh) -> bool:
     return a.points.shape == b.points.shape and abs(a.points - b.points).max() < 1e-15 and labelled[0] == labelled[1] and corners[0] == corners[1]
 
 
-def load(path: Path) -> mesh.Mesh:
-    made = path.with_suffix(".freefem")
-    made.write_bytes(gmsh_file.load(path))
-    return mesh.read(made)
-
-
 @pytest.mark.few(4)
 @pytest.mark.parametrize("version, binary", [(2.2, False), (2.2, True), (4.1, False), (4.1, True)])
 @pytest.mark.parametrize("half, named", [(True, False), (False, True)])
@@ -310,7 +284,7 @@ def test_gmsh_formats_are_our_own(tmp_path, version, binary, half, named):
     the disc in FreeFEM's format."""
     m = mesh.disc(RADIUS, 0.015, 0.006, half)
     in_gmsh(tmp_path / "disc.msh", m, version, binary, named)
-    assert the_same(load(tmp_path / "disc.msh"), m)
+    assert the_same(gmsh_file.load(tmp_path / "disc.msh"), m)
 
 
 def test_gmsh_file_gives_the_same_answer(tmp_path):
@@ -341,7 +315,7 @@ def test_gmsh_by_default_lets_all_of_the_boundary_touch(tmp_path):
             gmsh.model.mesh.generate(2)
             gmsh.model.mesh.setOrder(order)
             gmsh.write(str(tmp_path / "ring.msh"))
-        m = load(tmp_path / "ring.msh")
+        m = gmsh_file.load(tmp_path / "ring.msh")
         middle = np.hypot(*(m.points[m.edges].mean(axis=1) - (0.1, 0.1)).T)
         assert set(m.labels) == {1}
         alone = mesh.without_inner(m)
@@ -355,7 +329,7 @@ def test_gmsh_triangles_are_turned(tmp_path):
     """Clockwise triangles of gmsh are reversed."""
     m = mesh.disc(RADIUS, 0.03, 0.02, False)
     in_gmsh(tmp_path / "m.msh", replace(m, triangles=m.triangles[:, ::-1]), 2.2, False)
-    assert the_same(load(tmp_path / "m.msh"), m)
+    assert the_same(gmsh_file.load(tmp_path / "m.msh"), m)
 
 
 def test_names_come_before_numbers(tmp_path):
@@ -371,7 +345,7 @@ def test_names_come_before_numbers(tmp_path):
         gmsh.option.setNumber("Mesh.SaveAll", 1)
         gmsh.model.mesh.generate(2)
         gmsh.write(str(tmp_path / "m.msh"))
-    m = load(tmp_path / "m.msh")
+    m = gmsh_file.load(tmp_path / "m.msh")
     assert ((m.points[m.edges, 1].max(axis=1) == 0) == (m.labels == 1)).all() and set(m.labels) == {1, 3}
 
 
@@ -394,7 +368,7 @@ def test_sides_of_second_order_that_bend_too_far(tmp_path, dimension):
             gmsh.model.mesh.generate(dimension)
             gmsh.model.mesh.setOrder(order)
             gmsh.write(str(tmp_path / "m.msh"))
-        return load(tmp_path / "m.msh") if dimension == 2 else solid_file.read(tmp_path / "m.msh")
+        return gmsh_file.load(tmp_path / "m.msh") if dimension == 2 else solid_file.read(tmp_path / "m.msh")
     bent, fine = (8, 16) if dimension == 2 else (4, 24)
     with pytest.raises(BadInput, match=f"bends by {360 / bent:g} degrees, and only its ends are used .accepted: up to 30 degrees"):
         load_circle(bent)
@@ -422,7 +396,7 @@ def test_lines_in_two_groups(tmp_path, version, names):
         with pytest.raises(BadInput, match="both as contact and as symmetry .accepted: one of them"):
             gmsh_file.load(tmp_path / "m.msh")
     else:
-        assert set(load(tmp_path / "m.msh").labels) == {mesh.FREE}
+        assert set(gmsh_file.load(tmp_path / "m.msh").labels) == {mesh.FREE}
 
 
 HEAD = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"
@@ -443,21 +417,16 @@ def test_bad_gmsh_file_is_one_line(tmp_path, text, words):
     """A file that gmsh or we cannot use is bad input with the file and the reason."""
     (tmp_path / "m.msh").write_text(text)
     if words is None:  # the same file without error
-        assert outline_of(_converted(tmp_path))["circle_of"] == [-1] * 3
+        assert len(plane_file.load(tmp_path / "m.msh").edges) == 3
         return
     with pytest.raises(BadInput) as error:
         scene.read(falling(tmp_path / "m.msh", 0.0), tmp_path, "mesh")
     assert str(error.value).startswith("body.1.file: ") and words in str(error.value) and "\n" not in str(error.value)
 
 
-def _converted(folder: Path) -> Path:
-    (folder / "freefem.msh").write_bytes(gmsh_file.load(folder / "m.msh"))
-    return folder / "freefem.msh"
-
-
 def test_other_files_are_not_executed(tmp_path):
     """A script of gmsh (.geo) is not a mesh and is not passed to gmsh, which would run it."""
     (tmp_path / "m.geo").write_text(f'SystemCall "touch {tmp_path}/pwned";\n')
-    with pytest.raises(BadInput, match="m.geo is no mesh"):
+    with pytest.raises(BadInput, match="m.geo: is no mesh"):
         scene.read(falling(tmp_path / "m.geo", 0.0), tmp_path, "mesh")
     assert not (tmp_path / "pwned").exists()

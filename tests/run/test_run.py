@@ -19,7 +19,7 @@ def test_finished_run_is_complete(fake, tmp_path):
     """A finished run has the whole folder and a summary with provenance, and leaves no temporary
     folder."""
     result = go(tmp_path / "out", {"fields": 2})
-    assert {"scene.toml", "scene.dat", "history.csv", "summary.json", "log.txt", "mesh.msh", "fields.pvd", "fields"} == {
+    assert {"scene.toml", "scene.bin", "history.csv", "summary.json", "log.txt", "mesh.msh", "fields.pvd", "fields"} == {
         p.name for p in result.folder.iterdir()}
     assert set(result.summary["provenance"]) == {"script", "version", "asked", "git", "code", "freefem", "gmsh", "mesh", "estimate", "files", "summary"}
     assert result.summary["status"] == "ok" and not result.reused

@@ -12,7 +12,7 @@ import pytest
 from ffimpact import scene
 from ffimpact.__main__ import main
 from ffimpact.failure import BadInput, Failure
-from ffimpact.freefem import freefem
+from ffimpact.freefem import arrays, freefem
 from ffimpact.input import parameters
 from ffimpact.input.toml_text import to_toml
 from ffimpact.mesh import mesh
@@ -95,10 +95,10 @@ def test_the_folder_of_a_scene_of_ones_own(mine, tmp_path):
     s, h = result.summary, result.history
     assert (s["mass_1"], s["mass_2"]) == pytest.approx((1722 * math.pi * 0.05**2, 1722 * math.pi * 0.04**2), rel=1e-4)
     assert (h["x_1"][0], h["y_1"][0], h["x_2"][0], h["y_2"][0], h["vx_1"][0], h["vx_2"][0]) == pytest.approx((-0.052, 0, 0.04, 0, 4, 0), abs=1e-5)
-    assert {"mesh.msh", "scene.dat", "scene.toml", "history.csv", "summary.json", "fields.pvd"} <= {file.name for file in result.folder.iterdir()}
+    assert {"mesh.msh", "scene.bin", "scene.toml", "history.csv", "summary.json", "fields.pvd"} <= {file.name for file in result.folder.iterdir()}
     assert s["provenance"]["mesh"] == hashlib.sha256((result.folder / "mesh.msh").read_bytes()).hexdigest() and s["provenance"]["gmsh"]
     assembly.prepare(scene.load(str(result.folder / "scene.toml")), tmp_path)
-    assert (tmp_path / "scene.dat").read_text() == (result.folder / "scene.dat").read_text()
+    assert (tmp_path / "scene.bin").read_bytes() == (result.folder / "scene.bin").read_bytes()
     assert run.run(scene.load(str(path)), {}, result.folder).reused
     assert not run.reusable(scene.load(str(path)).override({"body.2.young": 5e6}), result.folder)
     assert s["rebound_vx_2"] != 0 and s["energy_drift"] < 1e-8 and s["estimated_error"] is not None
@@ -113,7 +113,7 @@ def test_entries_are_set_on_the_command_line(mine, capsys):
     assert main(["run", str(path), "--set", "body.2.young=8e6", "fields=0", "--out", str(out), "--quiet"]) == 0, capsys.readouterr().err
     other = json.loads((out / "summary.json").read_text())
     assert other["impulse"] > result.summary["impulse"] and run.read_scene(out)["body"][1]["young"] == 8e6
-    direct = freefem_run("-mesh", str(out / "mesh.msh"), "-bodies", str(out / "scene.dat"), *freefem.words_of(values(out)), "-out", str(path.parent / "direct"))
+    direct = freefem_run("-scene", str(out / "scene.bin"), "-out", str(path.parent / "direct"))
     assert direct.returncode == 0, direct.stderr
     assert json.loads((path.parent / "direct/record.json").read_text())["impulse"] == pytest.approx(other["impulse"], rel=1e-9)
 
@@ -211,12 +211,6 @@ def freefem_run(*flags: str, script: str = "bodies") -> subprocess.CompletedProc
     return freefem.find().call(f"edp/program/{script}.edp", *flags)
 
 
-def values(folder) -> dict:
-    """The parameters of a scene of bodies as flags."""
-    used = run.read_scene(folder)
-    return {name: value for name, value in (used | used["contact"]).items() if name in parameters.names("bodies")}
-
-
 @pytest.mark.parametrize("words, message", [
     (("disc-normal", "--set", "block_width=3"), "block_width: is no entry any more (accepted: body.2.width)"),
     (("disc-normal", "--set", "angle=60"), "angle: is no entry any more (accepted: body.1.direction, the angle from the x axis: -60 for an impact at 60 degrees)"),
@@ -264,7 +258,8 @@ def test_a_shaft_of_a_file_has_its_flats(tmp_path):
     assert result.summary["estimated_error_excludes"][-1] == "mesh" and any("those of the time step" in sentence or "not estimated" in sentence for sentence in result.summary["warnings"] + result.summary["notes"])
     area = radius**2 * (math.pi - 2 * flat + math.sin(2 * flat))
     assert result.summary["energy_initial"] == pytest.approx(area * 1722 * 2, rel=1e-4) and abs(result.summary["rebound_spin"]) > 50
-    assert "outline: shaft: 14 edges on circles, 2 straight edges; 16 may touch\n" in (result.folder / "log.txt").read_text()
+    made = arrays.unpacked((result.folder / "scene.bin").read_bytes())
+    assert np.bincount(made["mesh.arc_of"].ravel() + 1).tolist() == [2, 14] and (made["mesh.labels"] == 1).all()
     # 0.3 % more than the file.
     assert not any(warning.startswith("mass") for warning in result.summary["warnings"])
 
@@ -325,77 +320,62 @@ def test_bodies_that_never_meet(tmp_path, dimension, shape, zeros):
 
 @pytest.fixture(scope="module")
 def inputs(tmp_path_factory):
-    """mesh.msh and scene.dat of two discs in contact."""
-    folder = tmp_path_factory.mktemp("inputs")
-    assembly.assemble(scene.load("two-discs").override({"accuracy": 0.4})).write(folder)
-    return folder
+    """scene.bin of two discs in contact."""
+    folder = tmp_path_factory.mktemp("it's a tést")
+    assembly.assemble(scene.load("two-discs").override({"accuracy": 0.4, "end_time": 1e-5})).write(folder)
+    return folder / "scene.bin"
 
 
-@pytest.mark.few(10)
-@pytest.mark.parametrize("file, old, new, message", [
-    ("scene.dat", "ffimpact-bodies 1", "ffimpact-bodies 2", "does not begin with 'ffimpact-bodies 1'"),
-    ("scene.dat", "neohookean 7000000.0", "neohookean seven", "has a word where a number belongs"),
-    ("scene.dat", "pairs 0", "pairs 1", "ends too early"),
-    ("scene.dat", "left neohookean", "left rubber", "the law 'rubber' of left is not known"),
-    ("scene.dat", "neohookean 7000000.0", "neohookean -7000000.0", "left has young -7e+06"),
-    ("scene.dat", " -0.06 0.0 ", " 0.0 0.0 ", "overlap by 0.0"),
-    ("scene.dat", "circles 2\n0", "circles 2\n9", "circle 1 of body 9, of 0 to 1"),
-    ("scene.dat", "obstacles 0", "obstacles 1\nfloor plane 3 0 0 1 0 0", "obstacle 1, 'plane', is of 3 numbers (a plane has 4"),
-    *(("scene.dat", "obstacles 0", f"obstacles 1\nfloor implicit {program} 0 0", "obstacle 1, 'implicit', is not of a length above 0 and a program")
-      for program in ("1 1", "2 0 2", "2 1 17", "2 1 2.5", "2 1 3", "2 1 0", "3 1 2 1", "3 1 2 4")),
-    ("scene.dat", "obstacles 0", "obstacles 1\nfloor plane 4 0 0 0 0 0 0", "obstacle 1, 'plane', has a normal of 0"),
-    ("scene.dat", "obstacles 0", "obstacles 1\nwall polyline 6 0 0 1 1 1 1 0 0", "or two vertices at one place"),
-    ("scene.dat", "pairs 0", "pairs 1\n0 -2 1e9 0 0", "pair 1 is of 0 and -2, not of a body, 0 to 1"),
-    ("scene.dat", "pairs 0", "pairs 1\n0 1 -5 0 0", "pair 1 has penalty -5"),
-    ("scene.dat", "disc 0.05", "disc 0", "the disc has radius 0"),
-    ("mesh.msh", "region", lambda region, last: 7 if last else region, " is of region 7 (accepted: the bodies, 0 to 1)"),
-    ("mesh.msh", "region", lambda region, last: 1 - region, "mesh.msh: region 0, left, has its centre at x = "),
-    ("mesh.msh", "region", lambda region, last: 1, "mesh.msh: region 0, left, is in 0 pieces"),
-    ("mesh.msh", "region", lambda region, last: 0 if last else region, "has neighbours of another (accepted: a region a body)"),
-    ("mesh.msh", "corner", lambda corner, last: 99999 if last else corner, "names a vertex that is not there"),
-    ("mesh.msh", "cut", None, "mesh.msh: the file ends at triangle "),
-    ("scene.dat", None, None, "bodies: the file"),
-    ("mesh.msh", None, None, "mesh: the file"),
-])
-def test_what_a_direct_run_refuses(file, old, new, message, inputs, tmp_path):
-    """bodies.edp with a bad data file or mesh: exit code 10, one line, no files left."""
-    for name in ("scene.dat", "mesh.msh"):
-        text = (inputs / name).read_text()
-        if name == file == "scene.dat" and old:
-            assert old in text
-            text = text.replace(old, new, 1)
-        if name == file == "mesh.msh" and old:
-            text = _other_triangles(text, old, new)
-        if name != file or old:
-            (tmp_path / name).write_text(text)
-    done = freefem_run("-mesh", str(tmp_path / "mesh.msh"), "-bodies", str(tmp_path / "scene.dat"), "-accuracy", "0.4", "-out", str(tmp_path / "out"))
-    assert done.returncode == 10 and message in done.stderr and done.stderr.count("\n") == 1, done.stderr
+def other_byte(data: bytes, at: int) -> bytes:
+    return data[:at] + bytes([data[at] ^ 1]) + data[at + 1:]
+
+
+DAMAGED = "is damaged or of another version (accepted: the file that `python -m ffimpact run` prepares)"
+WRONG = {
+    "empty": (lambda data: b"", DAMAGED), "text": (lambda data: b"ffimpact-bodies 1\ncopies 1\n" * 9, DAMAGED),
+    "another version": (lambda data: b"ffinput2" + data[8:], DAMAGED), "cut": (lambda data: data[:-1], DAMAGED), "cut in its head": (lambda data: data[:20], DAMAGED),
+    "longer": (lambda data: data + b"\0", DAMAGED), "altered head": (lambda data: other_byte(data, 12), DAMAGED), "altered name": (lambda data: other_byte(data, 30), DAMAGED),
+    "altered number": (lambda data: other_byte(data, len(data) // 2), DAMAGED), "altered end": (lambda data: other_byte(data, len(data) - 1), DAMAGED),
+    "missing": (None, "' cannot be read (accepted: -scene FILE, which `python -m ffimpact run` prepares)"),
+    "of another script": (lambda data: changed_entries(data, script="bodies-3d"), "' is of the script bodies-3d (accepted: of bodies)"),
+    "without an entry": (lambda data: changed_entries(data, young=1.0, gravity=None), "its file has no real entry 'gravity' (accepted: the file that"),
+    "of another kind": (lambda data: changed_entries(data, gravity="none"), "its file has no real entry 'gravity' (accepted: the file that"),
+}
+
+
+def changed_entries(data: bytes, **changed) -> bytes:
+    return arrays.packed({name: value for name, value in (arrays.unpacked(data) | changed).items() if value is not None})
+
+
+@pytest.mark.few(5)
+@pytest.mark.parametrize("case", WRONG)
+def test_what_a_direct_run_refuses(case, inputs, tmp_path):
+    """bodies.edp with a damaged or foreign scene file: exit code 10, one line, no files left."""
+    change, message = WRONG[case]
+    if change:
+        (tmp_path / "scene.bin").write_bytes(change(inputs.read_bytes()))
+    done = freefem_run("-scene", str(tmp_path / "scene.bin"), "-out", str(tmp_path / "out"))
+    assert done.returncode == 10 and message in done.stderr and done.stderr.count("\n") == 1 and done.stderr.startswith("ffimpact: scene: "), done.stderr
     assert not (tmp_path / "out").exists()
 
 
-def _other_triangles(text: str, what: str, new) -> str:
-    """The mesh with the region, or the first corner, of its triangles changed by `new`, or
-    truncated within the triangles."""
-    lines = text.splitlines()
-    n, t, _ = map(int, lines[0].split())
-    if what == "cut":
-        return "\n".join(lines[:n + 2]) + "\n"
-    for k in range(n + 1, n + t + 1):
-        words = lines[k].split()
-        column = {"corner": 0, "region": 3}[what]
-        words[column] = str(new(int(words[column]), k == n + t))
-        lines[k] = " ".join(words)
-    return "\n".join(lines) + "\n"
+def test_the_scene_without_a_fault_runs(inputs, tmp_path):
+    """The file of the test above, written again from its entries, runs, in a folder with an odd name."""
+    copy = inputs.with_name("copy.bin")
+    copy.write_bytes(changed_entries(inputs.read_bytes()))
+    for path in (inputs, copy):
+        done = freefem_run("-scene", str(path), "-out", str(tmp_path / path.name))
+        assert done.returncode == 0, done.stdout + done.stderr
+    assert (tmp_path / "scene.bin/history.csv").read_bytes() == (tmp_path / "copy.bin/history.csv").read_bytes()
 
 
 @pytest.mark.few(2)
-@pytest.mark.parametrize("script, flags, message", [
-    ("bodies", ("-accuracy", "0.4"), "bodies: -bodies FILE is missing"),
-    ("bodies", ("-radius", "1"), "-radius: no such parameter (accepted: "),
-])
-def test_flags_of_another_script_are_refused(script, flags, message):
-    """A direct run refuses parameters that its script does not use, with exit code 10."""
-    done = freefem_run(*flags, script=script)
+@pytest.mark.parametrize("flags, message", [
+    (("-out", "out"), "scene: the file '' cannot be read (accepted: -scene FILE"), (("-radius", "1"), "'-radius': no flag, or without its value (accepted: -scene FILE, -out FOLDER, -restart FILE"),
+    (("-scene",), "'-scene': no flag, or without its value"), (("scene.bin",), "'scene.bin': no flag")])
+def test_other_flags_are_refused(flags, message):
+    """A direct run refuses words that are no flags of it, with exit code 10."""
+    done = freefem_run(*flags)
     assert done.returncode == 10 and message in done.stderr and done.stderr.count("\n") == 1
 
 

@@ -20,7 +20,7 @@ _FOLDERS: list[tempfile.TemporaryDirectory] = []
 
 @cache
 def _prepared(kind: str, entries: tuple) -> tuple[str, dict]:
-    """The script and the flags of an impact with these entries. Its mesh and scene.dat are in a folder of their own."""
+    """The script and the flags of an impact with these entries. Its mesh and scene.bin are in a folder of their own."""
     _FOLDERS.append(tempfile.TemporaryDirectory())
     folder = Path(_FOLDERS[-1].name)
     scene = read(impact(kind, **dict(entries)), folder, kind)
@@ -30,8 +30,8 @@ def _prepared(kind: str, entries: tuple) -> tuple[str, dict]:
 def case(values: dict, kind: str = "disc") -> tuple[str, ...]:
     """Script and flags of an impact with these entries (verification.measure.impact()) and flags of the run.
 
-    With `bodies`, a file, `values` are the flags of the script edp/program/<kind>.edp."""
-    if "bodies" in values:
+    With `scene`, a file, `values` are the flags of the script edp/program/<kind>.edp."""
+    if "scene" in values:
         return str(parameters.ROOT / f"edp/program/{kind}.edp"), *freefem.words_of(values)
     entries = tuple((name, toml_value(value)) for name, value in values.items() if name not in OF_THE_RUN)
     script, flags = _prepared(kind, entries)

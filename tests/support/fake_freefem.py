@@ -148,7 +148,7 @@ def summary(status: str = "ok", message: str = "") -> dict:
 
 def main(arguments: list[str]) -> int:
     mode = os.environ.get("FAKE", "ok")
-    if any("/describe" in word or "/outline" in word for word in arguments):
+    if any("/describe" in word for word in arguments):
         if mode == "noplugin":
             print("Load error: Element_QF")
             return 2
@@ -163,7 +163,7 @@ def main(arguments: list[str]) -> int:
     flags = [word for word in arguments[script + 1:] if not word.startswith("-D")]
     values = {name[1:]: text for name, text in zip(flags[::2], flags[1::2])}
     folder = Path(values.pop("out"))
-    Path(values.pop("mesh")).read_text()
+    Path(values.pop("scene")).read_bytes()
     write_scene(folder)
     for k in range(1, 4):
         print(f"progress {k / 4} t={k * 1e-3} steps={k * 50}", flush=True)

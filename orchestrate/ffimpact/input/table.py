@@ -1,8 +1,8 @@
 """The table of the parameters of a run: names, defaults, ranges, units and meanings.
 
-All other texts about parameters are generated from this table: flags.py writes the flags of the
-FreeFEM scripts (edp/program/input/parameters.idp), schema.py the JSON schema for editors, and
-docs/pages.py the table of docs/reference/parameters.md. Numbers are in SI units. The program
+Other texts about parameters are generated from this table: schema.py writes the JSON schema for
+editors, and docs/pages.py the table of docs/reference/parameters.md. The FreeFEM scripts take the
+parameters by these names (edp/program/input/parameters.idp). Numbers are in SI units. The program
 chooses a parameter with the value `auto`, or with 0 if the meaning of the parameter says so.
 """
 
@@ -13,7 +13,7 @@ from .parameter import Parameter, integer, numbers, real, word
 __all__ = ["LAWS", "PARAMETERS", "SCRIPTS"]
 
 SCRIPTS = ("bodies", "bodies-axisymmetric", "bodies-3d")
-OF_BODIES = ("",)  # of no script: entries of bodies, which scripts read from scene.dat
+OF_BODIES = ("",)  # of no script: entries of bodies
 LAWS = ("svk", "neohookean", "mooney-rivlin", "ogden", "incompressible")  # edp/program/law/laws.idp
 
 # A row without scripts behind the meaning is a parameter of all scripts.

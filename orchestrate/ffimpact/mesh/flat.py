@@ -4,15 +4,12 @@ Outlines and meshes are given about the centroids of the bodies.
 """
 
 import math
-import tempfile
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from ..failure import BadInput, brief
-from ..freefem.describe import outline_of
 from ..geometry.outlines import (
     Loop,
     Outline,
@@ -23,7 +20,7 @@ from ..geometry.outlines import (
 )
 from ..input.models import Body, Mesh, Polygon, Ring
 from ..input.parameters import Table
-from . import gmsh_file, mesh
+from . import mesh, plane_file
 
 __all__ = ["check_simple", "mesh_file", "mesh_outline", "motion", "shape", "velocity"]
 
@@ -154,33 +151,25 @@ def check_simple(path: str, corners: np.ndarray) -> None:
 def mesh_file(body: Mesh, folder: Path, of_revolution: bool = False) -> mesh.Mesh:
     """The mesh of a body's file in m, with the centres of the circles on which its edges lie.
 
-    FreeFEM checks the mesh and finds the circles. The mesh is a whole body in the plane, half a
-    meridian section with edges on the axis, or a section to the right of an axis that it does not
-    reach. Raises BadInput if the mesh is not accepted.
+    The mesh is a whole body in the plane, half a meridian section with edges on the axis, or a
+    section to the right of an axis that it does not reach. Raises BadInput if the mesh is not
+    accepted.
     """
-    name, file = body.file or "", None
+    name = body.file or ""
     if "\0" in name or not _may_be_read(folder / name):
         raise BadInput(
             f"{body.at('file')}: {brief(repr(name))} is no file (accepted: FreeFEM's or gmsh's .msh)"
         )
     try:
-        text = gmsh_file.load(folder / name)
-        with tempfile.NamedTemporaryFile(suffix=".msh") as file:
-            file.write(text)
-            file.flush()
-            body_mesh = mesh.read(Path(file.name))
-            if not of_revolution and (body_mesh.labels == mesh.AXIS).any():
-                raise BadInput(
-                    f"mesh: '{brief(name)}' has edges with the label {mesh.AXIS} of a symmetry axis (accepted: whole bodies, "
-                    f"labels {mesh.FREE}: contact boundary, 3 and more: free boundary without contact)"
-                )
-            outline = outline_of(Path(file.name))
+        body_mesh = plane_file.load(folder / name)
     except BadInput as error:
+        raise BadInput(f"{body.at('file')}: {brief(name)}: {error}") from None
+    if not of_revolution and (body_mesh.labels == mesh.AXIS).any():
         raise BadInput(
-            f"{body.at('file')}: {str(error).removeprefix('mesh: ').replace(file.name if file else name, name)}"
-        ) from None
-    arc_centres = np.array([*outline["circles"], [math.nan] * 3])[outline["circle_of"], :2]
-    return replace(body_mesh, arc_centres=arc_centres).scaled(body.scale or 1.0)
+            f"{body.at('file')}: '{brief(name)}' has edges with the label {mesh.AXIS} of a symmetry axis (accepted: whole bodies, "
+            f"labels {mesh.FREE}: contact boundary, 3 and more: free boundary without contact)"
+        )
+    return body_mesh.scaled(body.scale or 1.0)
 
 
 def _may_be_read(path: Path) -> bool:

@@ -3,6 +3,7 @@
 Without physical curves the whole boundary may come into contact, including the outlines of holes.
 """
 
+import shutil
 import tempfile
 from pathlib import Path
 
@@ -22,28 +23,16 @@ OTHER = mesh.Mesh.NEVER  # label of edges that are neither contact boundary nor 
 LABELS = {"contact": mesh.FREE, "symmetry": mesh.AXIS}
 
 
-def load(path: Path) -> bytes:
-    """Returns the mesh of a file as the bytes of a FreeFEM .msh file.
-
-    A gmsh file is converted. A FreeFEM file is returned unchanged; edp/program/input/mesh-file.idp
-    checks its content. Raises BadInput if the file cannot be read or a gmsh mesh is not accepted.
-    """
-    try:
-        text = path.read_bytes()
-    except OSError as error:
-        raise BadInput(f"mesh: {path} cannot be read: {error.strerror}") from None
-    if not text.startswith(b"$"):
-        return text
+def load(path: Path) -> mesh.Mesh:
+    """The mesh of a gmsh file of any name, lengths in m. Raises BadInput if it is not accepted."""
     with tempfile.TemporaryDirectory() as folder:
         # gmsh recognises the format by the ending of the name
-        copy, made = Path(folder) / "mesh.msh", Path(folder) / "freefem.msh"
-        copy.write_bytes(text)
+        copy = Path(folder) / "mesh.msh"
+        shutil.copyfile(path, copy)
         try:
-            converted = mesh.in_own_process(read, copy)
-            mesh.write(converted, made)
+            return mesh.in_own_process(read, copy)
         except BadInput as error:
-            raise BadInput(f"mesh: {path}: {str(error).replace(copy.name, path.name)}") from None
-        return made.read_bytes()
+            raise BadInput(str(error).replace(copy.name, path.name)) from None
 
 
 def read(path: Path) -> mesh.Mesh:

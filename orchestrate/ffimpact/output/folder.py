@@ -81,6 +81,8 @@ OWN = (
     "view.html",
     "mesh.msh",
     "mesh.mesh",
+    "scene.bin",
+    "scene.bin.unstressed",
     "scene.dat",
     "summary.json.part",
     "checkpoint",

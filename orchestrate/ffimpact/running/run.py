@@ -51,7 +51,7 @@ from ..scenes.mirror import symmetric_along
 from .forecast import cure, runs
 from .outcome import FAILURES
 from .plan import Plan, measure
-from .solver import USED, Solver, Watch
+from .solver import Solver, Watch
 
 __all__ = [
     "DECISIVE",
@@ -237,10 +237,9 @@ def _keep_failed(stage: Path, failure: Failure, scene: Scene, provenance: Table)
     """
     (stage / "summary.json").unlink(missing_ok=True)
     if not (stage / "scene.toml").exists():
-        (stage / USED).exists() or (stage / USED).write_text(
+        (stage / "scene.toml").write_text(
             to_toml(scene.with_files_in(stage, scene.content)), "utf-8"
         )
-        os.replace(stage / USED, stage / "scene.toml")
     record = {"status": FAILURES.get(failure.code, "crashed"), "message": str(failure)} | read_json(
         stage / "failure.json"
     )

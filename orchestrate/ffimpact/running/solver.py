@@ -1,6 +1,5 @@
 """The FreeFem++ runs of a scene: the main run and the runs that estimate its error."""
 
-import os
 import shutil
 import threading
 from collections.abc import Callable
@@ -21,11 +20,7 @@ from ..scenes.finer import scaled
 from .forecast import Display
 from .outcome import check
 
-__all__ = ["USED", "Solver", "Watch"]
-
-# Name of the scene.toml that Python writes before the run. When the run has finished, this file
-# replaces the scene.toml of the script.
-USED = "scene.used"
+__all__ = ["Solver", "Watch"]
 
 
 # A file in the folder of a run that ends it at its next report (edp/program/run/march.idp).
@@ -108,8 +103,6 @@ class Solver(AbstractContextManager["Solver", None]):
 
                 exit_code, message = process.end(show)
         (where / STOP).unlink(missing_ok=True)
-        if (where / USED).exists() and (where / "scene.toml").exists():
-            os.replace(where / USED, where / "scene.toml")
         evaluate(where)
         check(where, exit_code, message)
         display.at("ready", 1.0)
@@ -134,7 +127,7 @@ class Solver(AbstractContextManager["Solver", None]):
         if display:
             display.at("mesh")
         flags, used, scene_toml = prepare(scene, where)
-        (where / USED).write_text(scene_toml, "utf-8")
+        (where / "scene.toml").write_text(scene_toml, "utf-8")
         if display:
             display.at("set-up")
         flags = flags | {"out": where} | ({"restart": where / "checkpoint"} if goes_on else {})

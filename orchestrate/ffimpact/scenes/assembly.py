@@ -1,13 +1,14 @@
 """Prepares a scene of bodies for FreeFEM: one mesh of all bodies, apart from each other, and the
-data file scene.dat.
+file scene.bin of all that FreeFEM takes.
 
 Region k of the mesh is body k, from 0. Its edges have the label 1 where contact may occur, and
 another label where the mesh file excludes contact or nothing can reach them. The bodies stand side
-by side along x, not turned, each about its own centre of area; scene.dat holds their positions at
-the start. For bodies of revolution the mesh is the half x >= 0 of their sections, one above the
+by side along x, not turned, each about its own centre of area; scene.bin holds their displacements
+to the start. For bodies of revolution the mesh is the half x >= 0 of their sections, one above the
 other, with the label 2 on the axis. So it is for bodies in the plane that are reduced by symmetry.
 """
 
+import hashlib
 import math
 import tomllib
 from collections.abc import Sequence
@@ -20,20 +21,22 @@ import numpy as np
 
 from .. import progress
 from ..failure import BadInput
+from ..freefem.arrays import Entries, packed
 from ..geometry.outlines import Loop, TubeOutline, rotation
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID
 from ..input.models import MATERIAL, OWN
-from ..input.parameters import Table, Value
+from ..input.parameters import NOT_DECISIVE, Table, Value
 from ..input.toml_text import to_toml
 from ..mesh import mesh, revolution, solid_mesh, solids
 from ..mesh.mesh import AXIS, FREE, Curve, Sizes, mesh_body, nearest
 from ..mesh.solids import Solid
 from .approach import Onset, loaded_pull, onsets_of, refuse_nothing, refuse_sinking, turned
+from .arrays import Arc, mesh_arrays, padded, parameter_arrays, scene_arrays
 from .bodies import DAMPING, STIFF, Body
 from .front import Front, fronts, stretch_of
 from .mirror import COPIES, copies, mirror_axes
 from .needs import IMPLICIT, implicit_for
-from .parts import Lines, Row, sections
+from .parts import conditions
 from .scene import Pair, Scene
 from .sizes import Impact
 from .unstressed import find_unstressed
@@ -41,10 +44,10 @@ from .unstressed import find_unstressed
 __all__ = [
     "Asker",
     "Assembly",
+    "SCENE_FILE",
     "assemble",
     "boundary_curves",
     "contact_values",
-    "data_file",
     "element_sizes",
     "pair_values",
     "prepare",
@@ -54,6 +57,7 @@ __all__ = [
     "with_open_penalties",
 ]
 
+SCENE_FILE = "scene.bin"
 ROUND = 0.5  # largest element size on a circle or ellipse, over its smaller semi-axis
 # Width of an outline near contact, over that of a disc on a plane, below which elements are
 # smaller. Two equal discs have 0.71.
@@ -74,7 +78,7 @@ class Assembly:
 
     - `mesh`: of all bodies; `regions` (t,) are the numbers of the bodies in it.
     - `centres`: centres of area of the bodies in the mesh (bodies, axes) [m].
-    - `data`: the text of scene.dat.
+    - `arrays`: what FreeFEM takes, by name (arrays.py).
     - `values`: all parameters of run and contact, none of them automatic.
     - `used`: the tables of the scene with these values. Read again, they give the same assembly.
     """
@@ -82,22 +86,27 @@ class Assembly:
     mesh: mesh.Mesh | solid_mesh.SolidMesh
     regions: np.ndarray
     centres: np.ndarray
-    data: str
+    arrays: Entries
     values: dict[str, Value]
     used: Table
 
+    @property
+    def data(self) -> bytes:
+        """The bytes of scene.bin."""
+        return packed(self.arrays)
+
     def write(self, folder: Path) -> None:
-        """Writes mesh.msh (in three dimensions mesh.mesh) and scene.dat, which edp/program/bodies.edp
-        reads.
+        """Writes scene.bin, which FreeFEM takes, and for later use mesh.msh, in three dimensions
+        mesh.mesh.
         """
         if isinstance(self.mesh, solid_mesh.SolidMesh):
             solid_mesh.write(self.mesh, self.regions, folder / "mesh.mesh")
         else:
             mesh.write(self.mesh, folder / "mesh.msh", self.regions)
-        (folder / "scene.dat").write_text(self.data)
+        (folder / SCENE_FILE).write_bytes(self.data)
 
 
-def prepare(scene: Scene, where: Path) -> tuple[dict[str, Value | Path], Table, str]:
+def prepare(scene: Scene, where: Path) -> tuple[dict[str, Path], Table, str]:
     """Prepares a run in the folder `where`: writes the mesh and the data file of a scene. Returns the
     flags of the run, the scene as used, and the text of its scene.toml. Raises BadInput for a scene
     that cannot be run.
@@ -119,7 +128,7 @@ def prepare(scene: Scene, where: Path) -> tuple[dict[str, Value | Path], Table, 
     built = assemble(scene, onsets=onsets)
     built.write(where)
     text = to_toml(scene.with_files_in(where, built.used))
-    flags = built.values | {"mesh": where / scene.mesh_name, "bodies": where / "scene.dat"}
+    flags = {"scene": where / SCENE_FILE}
     if any(body.inflated for body in scene.bodies) and not (where / "checkpoint").exists():
         find_unstressed(scene, flags, where)
     return flags, tomllib.loads(text), text
@@ -145,9 +154,9 @@ def assemble(scene: Scene, onsets: list[Onset] | None = None) -> Assembly:
             None if body.mesh else element_sizes(k, ask) for k, body in enumerate(scene.bodies)
         ]
     with progress.work("meshing the bodies"):
-        meshes, centres, rounds = (_solids if scene.dimension is SOLID else _sections)(scene, sizes)
+        meshes, centres, arcs = (_solids if scene.dimension is SOLID else _sections)(scene, sizes)
     together, regions = stack(meshes, centres)
-    conditions = sections(scene.bodies, meshes, scene.obstacles, scene.dimension, copies(scene))
+    files = [k for k, table in enumerate(scene.content["body"]) if "file" in table]
     disc = ask.disc(
         scene.bodies, min(body.outline.half_thickness for body in scene.bodies), slides=True
     )
@@ -159,25 +168,31 @@ def assemble(scene: Scene, onsets: list[Onset] | None = None) -> Assembly:
         strike.rise_on(penalties.get(both, penalty), scene.bodies, exponent)
         for both, strike in ask.fronts.items()
     ]
-    # Why auto takes implicit steps; the transit [s] of the front of a flat strike through an element
-    # and its rise time [s].
-    notes: Lines = [("implicit", why)] if why else []
-    if rises:
-        notes += [("front", min(strike.tau for strike in ask.fronts.values()), max(rises))]
+    arrays: Entries = (
+        {
+            "contact_pressure": float(disc.pressure),
+            "implicit_why": why,
+            "front_transit": float(min((strike.tau for strike in ask.fronts.values()), default=0)),
+            "front_rise": float(max(rises, default=0)),
+        }
+        | parameter_arrays(values)
+        | scene_arrays(scene, centres, pairs)
+        | mesh_arrays(together, regions, arcs, files)
+        | conditions(scene.bodies, meshes, scene.obstacles, scene.dimension, copies(scene))
+    )
+    decisive = {name: value for name, value in arrays.items() if name not in NOT_DECISIVE}
+    arrays["identity"] = hashlib.sha256(packed(decisive)).hexdigest()
     return Assembly(
-        together,
-        regions,
-        centres,
-        data_file(scene, disc.pressure, centres, rounds, pairs, notes, conditions),
-        values,
-        used_tables(scene, sizes, values, pairs),
+        together, regions, centres, arrays, values, used_tables(scene, sizes, values, pairs)
     )
 
 
-def _sections(scene: Scene, sizes: list[Sizes | None]) -> tuple[list[mesh.Mesh], np.ndarray, Lines]:
+def _sections(
+    scene: Scene, sizes: list[Sizes | None]
+) -> tuple[list[mesh.Mesh], np.ndarray, list[Arc]]:
     """Returns the meshes of bodies in the plane, their centres in the common mesh (bodies, axes)
-    [m], and the lines of circles in scene.dat. For bodies of revolution circles that are the mirror
-    image of another one are left out.
+    [m], and the circles in it. For bodies of revolution circles that are the mirror image of
+    another one are left out.
     """
     meshes = []
     for k, (body, size) in enumerate(zip(scene.bodies, sizes)):
@@ -189,20 +204,20 @@ def _sections(scene: Scene, sizes: list[Sizes | None]) -> tuple[list[mesh.Mesh],
     halved = bool(mirror_axes(scene.dimension, copies(scene)))
     centres = side_by_side(meshes, 1 if halved else 0)
     circles = [
-        (k, *(centre + at), radius)
+        Arc(k, padded(centre + at), np.zeros(3), float(radius))
         for k, (body, centre) in enumerate(zip(scene.bodies, centres))
         for loop in body.section.loops
         for at, radius in loop.circles
         if not halved or at[0] >= 0
     ]
-    return meshes, centres, [("circles", len(circles)), *circles]
+    return meshes, centres, circles
 
 
 def _solids(
     scene: Scene, sizes: list[Sizes | None]
-) -> tuple[list[solid_mesh.SolidMesh], np.ndarray, Lines]:
+) -> tuple[list[solid_mesh.SolidMesh], np.ndarray, list[Arc]]:
     """Returns the same in three dimensions: bodies turned as at the start, one above the other,
-    reduced by symmetry; lines of spheres and cylinders.
+    reduced by symmetry; spheres, then cylinders.
     """
     normals = mirror_axes(SOLID, copies(scene))
     accuracy, degree = scene.number("accuracy"), int(scene.number("degree"))
@@ -227,16 +242,16 @@ def _solids(
         )
     centres = side_by_side(meshes, 1)
     surfaces = [
-        (k, *(centre + patch.centre), *patch.axis, patch.radius)
+        Arc(k, centre + patch.centre, _unit(patch.axis), float(patch.radius))
         for k, (made, centre) in enumerate(zip(meshes, centres))
         for patch in made.curved
     ]
-    spheres, cylinders = ([line for line in surfaces if len(line) == size] for size in (5, 8))
-    return (
-        meshes,
-        centres,
-        [("spheres", len(spheres)), *spheres, ("cylinders", len(cylinders)), *cylinders],
-    )
+    return meshes, centres, sorted(surfaces, key=lambda arc: arc.axis.any())
+
+
+def _unit(axis: np.ndarray) -> np.ndarray:
+    """The unit vector (3,) of an axis, 0 if there is none."""
+    return axis / np.linalg.norm(axis) if len(axis) else np.zeros(3)
 
 
 # ---- automatic values
@@ -689,85 +704,3 @@ def stack(
         np.concatenate([made.labels for made in meshes]),
     )
     return together, np.repeat(np.arange(len(meshes)), [len(made.elements) for made in meshes])
-
-
-# ---- scene.dat
-
-
-def data_file(
-    scene: Scene,
-    pressure: float,
-    centres: np.ndarray,
-    rounds: Lines,
-    pairs: list[dict[str, Value]],
-    notes: Sequence[Row] = (),
-    conditions: Sequence[Row] = (),
-) -> str:
-    """Returns the text of scene.dat, words and numbers (SI, radians), in the format of
-    edp/program/input/scene-file.idp.
-
-    `pressure` is the largest contact pressure [Pa] by the rules of sizes. `rounds` are the lines
-    of circles, or of spheres and cylinders, `conditions` those of supports and loads. `notes` are
-    the lines `implicit` and `front`.
-    """
-    if scene.dimension is SOLID:
-        head: Lines = [("ffimpact-bodies-3d", 1)]
-        starts = [
-            (*(body.position - centre), *body.velocity, *body.spin)
-            for body, centre in zip(scene.bodies, centres)
-        ]
-    else:
-        head = [("ffimpact-bodies", 1)]
-        starts = [(*body.position, body.angle, *body.velocity, body.spin) for body in scene.bodies]
-    head += [("copies", copies(scene))]
-    lines = [*head, ("pressure", pressure), ("bodies", len(scene.bodies))]
-    lines += [
-        (
-            body.name,
-            body.law + (f":{body.law_parameters}" if body.law_parameters != "none" else ""),
-            body.young,
-            body.nu,
-            body.density,
-            *centre,
-            *start,
-            2 * float(body.outline.half_thickness),
-        )
-        for body, centre, start in zip(scene.bodies, centres, starts)
-    ]
-    lines += rounds
-    files = [
-        (k, 1 if body.mesh else 2)
-        for k, (table, body) in enumerate(zip(scene.content["body"], scene.bodies))
-        if "file" in table
-    ]
-    lines += [("files", len(files)), *files]
-    lines += [("obstacles", len(scene.obstacles))]
-    lines += [
-        (
-            obstacle.name,
-            obstacle.kind,
-            len(obstacle.numbers),
-            *obstacle.numbers,
-            *obstacle.velocity,
-        )
-        for obstacle in scene.obstacles
-    ]
-    lines += [
-        ("pairs", len(pairs)),
-        *((pair.first, pair.second, *own.values()) for pair, own in zip(scene.pairs, pairs)),
-    ]
-    lines += notes
-    damped = [
-        (k, *(getattr(body, name) for name in DAMPING))
-        for k, body in enumerate(scene.bodies)
-        if body.damped
-    ]
-    lines += [("damping", len(damped)), *damped] if damped else []
-    stiff = [(k, body.mass, *body.moments) for k, body in enumerate(scene.bodies) if body.rigid]
-    lines += [("rigid", len(stiff)), *stiff] if stiff else []
-    lines += conditions
-    return "".join(
-        " ".join(repr(float(entry)) if isinstance(entry, float) else str(entry) for entry in line)
-        + "\n"
-        for line in lines
-    )

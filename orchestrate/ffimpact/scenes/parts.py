@@ -1,13 +1,15 @@
-"""Finds the boundary elements of supports and loads on the meshes of the bodies, and writes their
-sections of scene.dat (edp/program/input/scene-file.idp).
+"""Finds the boundary elements of supports and loads on the meshes of the bodies, and gives the
+prescribed conditions of a scene as arrays (edp/program/input/conditions.idp).
 """
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from ..failure import BadInput, brief
+from ..freefem.arrays import Entries, joined, table
 from ..geometry.outlines import rotation
 from ..geometry.time_functions import NOTHING, TimeFunction
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
@@ -16,97 +18,138 @@ from ..mesh.mesh import Mesh
 from ..mesh.solid_mesh import SolidMesh
 from ..mesh.solids import Solid
 from .bodies import Body
-from .conditions import KINDS, NEVER, ON_SIDE, SIDES, Part, Support
+from .conditions import KINDS, NEVER, ON_SIDE, SIDES, Load, Part, Support
 from .mirror import mirror_axes
 from .obstacles import Drive, Obstacle
 
-__all__ = ["Lines", "Row", "sections"]
+__all__ = ["conditions"]
 
 ALONG = 1e-6  # deviation of the components of a unit normal that counts as along an axis
-Row = tuple[Any, ...]
-Lines = list[Row]
 
 
-def sections(
+def conditions(
     bodies: Sequence[Body],
     meshes: Sequence[Mesh | SolidMesh],
     obstacles: Sequence[Obstacle],
     dimension: Dimension,
     copies: int,
-) -> Lines:
-    """Returns the lines of functions, driven obstacles, supports and loads; empty if the scene has
-    none.
+) -> Entries:
+    """Returns the arrays of functions of time, driven obstacles, supports and loads.
 
     Raises BadInput if a part of a boundary does not exist, is in contact at the start, or cannot
     have its support or load.
     """
     functions: list[TimeFunction] = []
-    supports: Lines = []
-    loads: Lines = []
+    supports: list[Entries] = []
+    loads: list[Entries] = []
+    elements: dict[str, list[np.ndarray]] = {"supports": [], "loads": []}
     first = 0
     for k, (body, made) in enumerate(zip(bodies, meshes)):
         surface = _Surface(body, made, dimension, copies)
         for support in body.supports:
-            elements = surface.elements(support.part)
-            _refuse_touching(support.part, surface.placed(elements), k, bodies, obstacles)
-            row = _support_row(support, surface, elements, functions)
-            supports.append((k, *row, len(elements), *(first + elements)))
+            part = surface.elements(support.part)
+            _refuse_touching(support.part, surface.placed(part), k, bodies, obstacles)
+            supports.append(
+                {"body": k} | _support_row(support, surface.fixed(support, part), functions)
+            )
+            elements["supports"].append(first + part)
         _refuse_all_held(body, surface)
         _refuse_opposite(body, surface)
         _refuse_without_effect(body, surface)
         _refuse_two_gases(body, surface)
         for load in body.loads:
-            elements = surface.elements(load.part)
-            numbers = _numbered(functions, list(load.functions))
-            row = (KINDS[load.kind], *numbers, *load.gas, int(body.inflated))
-            loads.append((k, *row, len(elements), *(first + elements)))
+            loads.append({"body": k} | _load_row(load, body.inflated, functions))
+            elements["loads"].append(first + surface.elements(load.part))
         first += len(made.sides)
     drives = [
-        (k, *_drive_row(obstacle.drive, dimension, functions))
+        {"obstacle": k} | _drive_row(obstacle.drive, functions)
         for k, obstacle in enumerate(obstacles)
         if obstacle.drive
+    ]
+    made_of_rows = table("supports", supports) | table("loads", loads) | table("drives", drives)
+    made_of_lists = [joined(f"{name}.elements", lists) for name, lists in elements.items()]
+    return made_of_rows | made_of_lists[0] | made_of_lists[1] | _functions(functions)
+
+
+def _support_row(
+    support: Support, fixed: tuple[bool, ...], functions: list[TimeFunction]
+) -> Entries:
+    """The row of a support: fixed components, release, functions."""
+    moved = [function if held else None for function, held in zip(support.motion, fixed)]
+    return {
+        "fixed": _padded(fixed),
+        "release": support.release,
+        "motion": _numbered(functions, moved),
+    }
+
+
+def _load_row(load: Load, inflated: bool, functions: list[TimeFunction]) -> Entries:
+    """The row of a load: kind, functions, and the numbers of a gas. FreeFEM sets its volume at the
+    start and the largest distance of the body from its centre.
+    """
+    return {
+        "kind": KINDS[load.kind],
+        "functions": _numbered(functions, list(load.functions)),
+        "gas": (*load.gas, 0.0, float(inflated), 0.0),
+    }
+
+
+def _drive_row(drive: Drive, functions: list[TimeFunction]) -> Entries:
+    """The row of a driven obstacle: functions of displacement and rotation, pivot, axis."""
+    numbers = _numbered(functions, list(drive.translation))
+    return {
+        "functions": numbers + _numbered(functions, [drive.turn])[:1],
+        "pivot": _padded(drive.pivot),
+        "axis": drive.axis,
+    }
+
+
+def _functions(functions: list[TimeFunction]) -> Entries:
+    """Returns the knots of all functions behind each other, with the integral and the largest
+    absolute value up to each knot; the largest absolute value and slope of each function; the kinks
+    of all in the order of time.
+    """
+    largest = [
+        {"largest": (function.largest_value, function.largest_slope)} for function in functions
+    ]
+    knots = [
+        dict(zip(("time", "value", "slope", "sum", "largest"), (*knot, integral, peak)))
+        for function in functions
+        for knot, integral, peak in zip(
+            function.knots.tolist(),
+            _integral(function.knots),
+            np.maximum.accumulate(abs(function.knots[:, 1])).tolist(),
+        )
     ]
     kinks = sorted(
         (time, change / max(function.largest_until(time), NOTHING))
         for function in functions
         for time, change in function.kinks.tolist()
     )
-    rows_of = {
-        "functions": [_line(function) for function in functions],
-        "kinks": kinks,
-        "drives": drives,
-        "supports": supports,
-        "loads": loads,
-    }
-    return [line for name, rows in rows_of.items() if rows for line in ((name, len(rows)), *rows)]
+    return (
+        table("functions", largest)
+        | {"functions.first": np.cumsum([0, *(len(function.knots) for function in functions)])}
+        | table("knots", knots)
+        | table("kinks", [{"time": time, "change": change} for time, change in kinks])
+    )
 
 
-def _support_row(
-    support: Support, surface: "_Surface", elements: np.ndarray, functions: list[TimeFunction]
-) -> Row:
-    """The row of a support between body and elements: fixed components, release, functions."""
-    fixed = surface.fixed(support, elements)
-    moved = [function if held else None for function, held in zip(support.motion, fixed)]
-    padding = [0] * (3 - surface.dimension.axes)
-    return *map(int, fixed), *padding, support.release, *_numbered(functions, moved)
+def _integral(knots: np.ndarray) -> list[float]:
+    """Integral of a cubic Hermite spline from its first knot (time, value, slope) to each."""
+    sums = [0.0]
+    for (t0, f0, s0), (t1, f1, s1) in pairwise(knots.tolist()):
+        h = t1 - t0
+        sums.append(sums[-1] + h * (f0 + f1) / 2 - h**2 * (s1 - s0) / 12)
+    return sums
 
 
-def _drive_row(drive: Drive, dimension: Dimension, functions: list[TimeFunction]) -> Row:
-    """The row of a driven obstacle after its number: functions, pivot, axis."""
-    numbers = _numbered(functions, list(drive.translation))[:3]
-    turn = _numbered(functions, [drive.turn])[0]
-    padding = [0.0] * (3 - dimension.axes)
-    return *numbers, turn, *drive.pivot, *padding, *drive.axis
-
-
-def _line(function: TimeFunction) -> Row:
-    """The line of a time function: number of knots, the largest value and slope, knots."""
-    largest = function.largest_value, function.largest_slope
-    return len(function.knots), *largest, *function.knots.ravel().tolist()
+def _padded(vector: Any) -> list[Any]:
+    """A vector with three components."""
+    return [*vector, 0, 0][:3]
 
 
 def _numbered(functions: list[TimeFunction], added: list[TimeFunction | None]) -> list[int]:
-    """Appends time functions to `functions`, which are those of scene.dat, and returns their
+    """Appends time functions to `functions`, which are those of the scene, and returns their
     numbers in it. The number -1 stands for 0 at all times.
     """
     numbers = []

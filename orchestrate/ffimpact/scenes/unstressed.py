@@ -9,6 +9,7 @@ import numpy as np
 
 from ..failure import BadInput, of_code
 from ..freefem import freefem
+from ..freefem.arrays import packed
 from .scene import Scene
 
 __all__ = ["find_unstressed"]
@@ -20,17 +21,18 @@ REMEMBERED = 5  # number of earlier iterates that the next one combines
 
 def find_unstressed(scene: Scene, flags: Mapping[str, object], where: Path) -> None:
     """Writes the displacement W from the given shape x to the unstressed one X = x + W to the file
-    MESH.unstressed beside the mesh, for the run with these flags in the folder `where`.
+    SCENE.unstressed beside the scene, for the run with these flags in the folder `where`.
 
     In an iteration, edp/program/run/unstressed.idp displaces X by u, into equilibrium with the gases.
     The fixed point W = -u is sought (Sellier, 2011), with Anderson's acceleration. Raises BadInput
     if it is not found.
     """
-    file, out = Path(f"{flags['mesh']}.unstressed"), where / "unstressed"
+    file, out = Path(f"{flags['scene']}.unstressed"), where / "unstressed"
+    answer = file.with_name(f"{file.name}.next")
     change, off = np.zeros(0), math.inf
     iterates: list[np.ndarray] = []
     residuals: list[np.ndarray] = []
-    file.write_text("search 0\n")
+    _write(file, "search", change)
     for _ in range(MOST):
         code, message = freefem.run(
             freefem.find(),
@@ -39,14 +41,13 @@ def find_unstressed(scene: Scene, flags: Mapping[str, object], where: Path) -> N
             where / "log.txt",
         )
         shutil.rmtree(out, ignore_errors=True)
-        head, *lines = file.read_text().splitlines()
-        word, *numbers = head.split()
-        if word != "next":
+        if not answer.exists():
             if not iterates:
                 raise of_code(code, message or f"FreeFem++ stopped with exit code {code}")
             break
-        share, extent = map(float, numbers[1:])
-        iterates.append(np.array(lines, float))
+        share, extent, *following = np.fromfile(answer, offset=8)  # behind their number
+        answer.unlink()
+        iterates.append(np.array(following))
         residuals.append(iterates[-1] - (change if change.size else 0.0))
         off = abs(residuals[-1]).max() / extent
         ends = share == 1 and off <= CLOSE
@@ -73,9 +74,8 @@ def _combined(iterates: list[np.ndarray], residuals: list[np.ndarray]) -> np.nda
     return improved
 
 
-def _write(file: Path, word: str, change: np.ndarray) -> None:
-    text = [f"{word} {len(change)}", *(f"{value:.17g}" for value in change)]
-    file.write_text("\n".join(text) + "\n")
+def _write(file: Path, state: str, change: np.ndarray) -> None:
+    file.write_bytes(packed({"unstressed.state": state, "unstressed": change}))
 
 
 def _entry(scene: Scene) -> str:

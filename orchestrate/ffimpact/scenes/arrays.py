@@ -1,0 +1,175 @@
+"""A scene as named arrays, which FreeFEM takes (edp/program/input/scene.idp). Numbers are in SI units
+and radians; vectors have three components.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..freefem.arrays import Entries, joined, table
+from ..input.dimension import AXISYMMETRIC, SOLID
+from ..input.parameters import PARAMETERS, Value
+from ..mesh.mesh import AXIS, WIDEST, Mesh
+from ..mesh.plane_file import on_circle
+from ..mesh.solid_mesh import DEPTH, SolidMesh
+from .bodies import DAMPING
+from .mirror import copies
+from .scene import Scene
+
+__all__ = [
+    "SHAPES",
+    "Arc",
+    "law_numbers",
+    "mesh_arrays",
+    "padded",
+    "parameter_arrays",
+    "scene_arrays",
+]
+
+# The kinds of obstacles, by their numbers in edp/program/contact/kinds.idp.
+SHAPES = ("plane", "circle", "bowl", "polyline", "implicit", "surface")
+STEEPEST = math.radians(30)  # largest angle between a face and the surface at its middle
+ON = 1e-9  # distance from a sphere or cylinder that counts as on it, over its radius
+
+
+@dataclass(frozen=True)
+class Arc:
+    """A circle or sphere (axis 0), or a cylinder, on which boundary elements of a body lie: centre
+    or point on the axis (3,) [m], unit vector of the axis (3,), radius [m].
+    """
+
+    body: int
+    centre: np.ndarray
+    axis: np.ndarray
+    radius: float
+
+    def has_faces(self, corners: np.ndarray) -> np.ndarray:
+        """Whether faces with these corners (n, 3, 3) lie on the sphere or cylinder: their corners
+        do, and their normals are within STEEPEST of that of the surface at their middles. A flat
+        that is cut into the surface has corners on its rim, too.
+        """
+        arms = corners - self.centre
+        arms = arms - (arms @ self.axis)[..., None] * self.axis
+        off = abs(np.linalg.norm(arms, axis=2) - self.radius).max(axis=1)
+        middle = arms.sum(axis=1)
+        normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        cosine = abs((normal * middle).sum(axis=1))
+        sizes = np.linalg.norm(normal, axis=1) * np.linalg.norm(middle, axis=1)
+        on: np.ndarray = (off <= ON * self.radius) & (cosine > math.cos(STEEPEST) * sizes)
+        return on
+
+
+def padded(vector: Sequence[float] | np.ndarray) -> np.ndarray:
+    """A vector in the plane or in space, with three components."""
+    return np.array([*vector, 0.0, 0.0][:3], dtype=float)
+
+
+def scene_arrays(scene: Scene, centres: np.ndarray, pairs: list[dict[str, Value]]) -> Entries:
+    """Returns bodies, obstacles, pairs and rigid bodies. `centres` (bodies, axes) [m] are those in
+    the mesh; `pairs` has the contact parameters of scene.pairs.
+    """
+    of_pairs = [
+        {"first": pair.first, "second": pair.second, "values": [float(x) for x in own.values()]}
+        for pair, own in zip(scene.pairs, pairs)
+    ]
+    rigid = [
+        {"body": k, "mass": float(body.mass), "moments": np.array(body.moments, dtype=float)}
+        for k, body in enumerate(scene.bodies)
+        if body.rigid
+    ]
+    return (
+        {"script": scene.script}
+        | {"symmetry_factor": 2 if scene.dimension is AXISYMMETRIC else copies(scene)}
+        | table("bodies", _bodies(scene, centres))
+        | joined("bodies.law_numbers", [law_numbers(body.law_parameters) for body in scene.bodies])
+        | _obstacles(scene)
+        | table("pairs", of_pairs)
+        | table("rigid", rigid)
+    )
+
+
+def law_numbers(text: str) -> np.ndarray:
+    """The numbers of a law, which are separated by commas, or none."""
+    return np.array([float(word) for word in text.split(",") if text != "none"], dtype=float)
+
+
+def parameter_arrays(values: Mapping[str, Value]) -> Entries:
+    """Returns the parameters of a run: `values`, and the defaults of those that its script has not."""
+    chosen = {
+        name: values.get(name, row.default) for name, row in PARAMETERS.items() if row.scripts
+    }
+    return {
+        name: float(value) if PARAMETERS[name].kind == "real" else value
+        for name, value in chosen.items()
+    }
+
+
+def _bodies(scene: Scene, centres: np.ndarray) -> list[Entries]:
+    solid = scene.dimension is SOLID
+    return [
+        {
+            "name": body.name,
+            "law": body.law,
+            "law_parameters": body.law_parameters,
+            "young": float(body.young),
+            "nu": float(body.nu),
+            "density": float(body.density),
+            "damping": [float(getattr(body, name)) for name in DAMPING],
+            "centre": padded(centre),
+            "shift": padded(body.position - centre),
+            "turn": 0.0 if solid else float(body.angle),
+            "velocity": padded(body.velocity),
+            "spin": padded(body.spin) if solid else np.array([0.0, 0.0, body.spin]),
+            "thickness": 2 * float(body.outline.half_thickness),
+            "of_file": (1 if body.mesh else 2) if "file" in content else 0,
+        }
+        for content, body, centre in zip(scene.content["body"], scene.bodies, centres)
+    ]
+
+
+def _obstacles(scene: Scene) -> Entries:
+    rows = [
+        {
+            "name": obstacle.name,
+            "kind": SHAPES.index(obstacle.kind),
+            "velocity": padded(obstacle.velocity),
+        }
+        for obstacle in scene.obstacles
+    ]
+    numbers = [np.array(obstacle.numbers, dtype=float) for obstacle in scene.obstacles]
+    return table("obstacles", rows) | joined("obstacles.numbers", numbers)
+
+
+def mesh_arrays(
+    together: Mesh | SolidMesh, regions: np.ndarray, arcs: Sequence[Arc], of_files: Sequence[int]
+) -> Entries:
+    """Returns the mesh of all bodies, the arcs, and the arc of each boundary element, -1 if it has
+    none. Region k is body k. `of_files` are the numbers of bodies whose mesh is from a file.
+    """
+    cells = together.cells if isinstance(together, SolidMesh) else together.triangles
+    of_point = np.zeros(len(together.points), dtype=int)
+    of_point[cells] = regions[:, None]
+    body_of = of_point[together.sides[:, 0]]
+    arc_of = np.full(len(together.sides), -1)
+    for k, arc in enumerate(arcs):
+        mine = np.flatnonzero(body_of == arc.body)
+        corners = together.points[together.sides[mine]]
+        if isinstance(together, SolidMesh):
+            on = arc.has_faces(corners) & ~np.isin(together.labels[mine], (AXIS, DEPTH))
+        else:
+            on = on_circle(
+                corners, arc.centre[:2], arc.radius, WIDEST if arc.body in of_files else math.pi
+            )
+        arc_of[mine[on]] = k
+    return {
+        "mesh.points": together.points,
+        "mesh.cells": cells,
+        "mesh.regions": regions,
+        "mesh.sides": together.sides,
+        "mesh.labels": together.labels,
+        "mesh.arc_of": arc_of,
+    } | table(
+        "arcs", [{"centre": arc.centre, "axis": arc.axis, "radius": arc.radius} for arc in arcs]
+    )
