@@ -1,6 +1,6 @@
 """Finds the faces of a mesh of tetrahedra that lie on spheres and cylinders, for meshes of files.
 
-The rule is that of outline.idp in the plane. Adjacent faces at an angle of 30 degrees or less form
+The rule is that of plane_file.py in the plane. Adjacent faces at an angle of 30 degrees or less form
 one surface. The surface is a sphere or cylinder if all its corners lie on it to 1e-9 of the radius,
 each edge spans at most 30 degrees, and each normal is within 30 degrees of the exact normal at the
 middle of the face. All other faces are flat, as are surfaces that bend by less than 30 degrees in

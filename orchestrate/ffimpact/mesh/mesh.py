@@ -81,9 +81,6 @@ GROWTH = 0.3  # increase of the element size per length of distance from the con
 # Decimals of the coordinates and sizes that gmsh gets, relative to the size of the body. Without
 # rounding, round-off would decide ties, and the mesh would depend on the unit of length.
 DIGITS = 10
-# Region number of the triangles of discs that this module meshes: edp/program/input/mesh-file.idp
-# treats their outline as a circle, however long its edges are.
-OWN = 360
 Curve = Callable[[np.ndarray], np.ndarray]  # points (n, 2) [m] at parameters (n,) in [0, 1]
 Gmsh = Any  # the module gmsh or a part of it, such as gmsh.model, which have no types
 T = TypeVar("T")
@@ -96,7 +93,7 @@ class Mesh:
 
     `points` (n, 2) are in m, `triangles` (t, 3) are counter-clockwise, `edges` (e, 2) of the
     boundary have the `labels` (e,). `arc_centres` (e, 2) [m], of meshes of files, are the centres of the
-    circles on which edges lie, nan for straight edges. `region` is the number of all triangles.
+    circles on which edges lie, nan for straight edges.
     """
 
     points: np.ndarray
@@ -104,7 +101,6 @@ class Mesh:
     edges: np.ndarray
     labels: np.ndarray
     arc_centres: np.ndarray | None = None
-    region: int = 0
     NEVER: ClassVar[int] = 3  # label of edges that never come into contact
 
     @property
@@ -228,7 +224,7 @@ def disc(
     points[circle] /= np.linalg.norm(points[circle], axis=1, keepdims=True)
     points[np.unique(edges[labels == AXIS]), 0] = 0.0
     points = radius * (points + (0.0, 1.0))
-    return Mesh(points, counter_clockwise(points, triangles), edges, labels, region=OWN)
+    return Mesh(points, counter_clockwise(points, triangles), edges, labels)
 
 
 def _outline(geo: Gmsh, half: bool, contact_arc: float) -> tuple[list[int], list[int]]:
@@ -612,13 +608,13 @@ def write(mesh: Mesh, path: Path, regions: np.ndarray | None = None) -> None:
     """Writes FreeFEM's 2D .msh format, with vertices counted from 1.
 
     The lines are: numbers of vertices, triangles and edges; x y label; v1 v2 v3 region; v1 v2
-    label. `regions` (t,) replaces the common region of all triangles.
+    label. `regions` (t,) are the numbers of the bodies, 0 by default.
     """
     point_labels = np.zeros(len(mesh.points), dtype=int)
     # A vertex of edges with different labels gets the smallest, which is that of the contact.
     for label in np.unique(mesh.labels)[::-1]:
         point_labels[mesh.edges[mesh.labels == label]] = label
-    regions = np.full(len(mesh.triangles), mesh.region) if regions is None else regions
+    regions = np.zeros(len(mesh.triangles), dtype=int) if regions is None else regions
     with open(path, "w") as file:
         file.write(f"{len(mesh.points)} {len(mesh.triangles)} {len(mesh.edges)}\n")
         file.writelines(
@@ -649,11 +645,9 @@ def read(path: Path) -> Mesh:
         raise BadInput(
             f"mesh: {path} is no mesh (accepted: a 2D mesh as FreeFEM's savemesh or gmsh writes it, .msh)"
         ) from None
-    regions = np.unique(triangles[:, 3]).astype(int)
     return Mesh(
         points[:, :2],
         triangles[:, :3].astype(int) - 1,
         edges[:, :2].astype(int) - 1,
         edges[:, 2].astype(int),
-        region=int(regions[0]) if len(regions) == 1 else 0,
     )

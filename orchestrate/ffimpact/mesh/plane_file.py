@@ -148,9 +148,9 @@ def _check_numbers(made: Mesh) -> None:
         made.labels < 0,
         lambda k: f"boundary edge {k + 1} has the label {made.labels[k]} (accepted: from 0)",
     )
-    for corners, text in ((made.triangles, _triangle), (made.edges, _edge)):
-        outside = ((corners < 0) | (corners >= n)).any(axis=1)
-        _refuse(outside, lambda k, text=text: text(made, k) + there)
+    outside = [((part < 0) | (part >= n)).any(axis=1) for part in (made.triangles, made.edges)]
+    _refuse(outside[0], lambda k: _triangle(made, k) + there)
+    _refuse(outside[1], lambda k: _edge(made, k) + there)
     _refuse(
         (abs(made.points) > FARTHEST).any(axis=1),
         lambda k: f"{_vertex(made, k)} (accepted: coordinates of at most {FARTHEST:g} m)",
