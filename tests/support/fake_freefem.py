@@ -13,6 +13,8 @@ import sys
 import time
 from pathlib import Path
 
+from ffimpact.freefem.arrays import unpacked
+
 COLUMNS = ("t dt normal_force friction_force kinetic elastic contact friction_work external_work balance momentum_x momentum_y "
            "angular_momentum vx vy spin max_penetration contact_size sliding_fraction min_jacobian min_stretch newton_iterations min_ellipticity")
 # The real FreeFem++ describes scenes, which needs no physics.
@@ -137,7 +139,7 @@ def write_scene(folder: Path) -> None:
 
 def summary(status: str = "ok", message: str = "") -> dict:
     """The content of summary.json without provenance."""
-    return dict(status=status, message=message, warnings=[], contact_time=CONTACT, contact_intervals=1, peak_force=70e3, impulse=208.2,
+    return dict(status=status, message=message, ended="impact", warnings=[], contact_time=CONTACT, contact_intervals=1, peak_force=70e3, impulse=208.2,
                 rebound_vx=0.0, rebound_vy=7.394, rebound_spin=0.0, energy_initial=ENERGY, energy_final=ENERGY, vibration_energy=60.0,
                 friction_work=0.0, energy_drift=1e-11, momentum_drift=1e-12, min_jacobian=0.8, min_stretch=0.7,
                 breakdown_time=None, max_penetration=6e-6, sliding_time=0.0, sticking_time=0.0, steps=199, rejected_steps=3,
@@ -163,8 +165,7 @@ def main(arguments: list[str]) -> int:
     flags = [word for word in arguments[script + 1:] if not word.startswith("-D")]
     values = {name[1:]: text for name, text in zip(flags[::2], flags[1::2])}
     folder = Path(values.pop("out"))
-    Path(values.pop("scene")).read_bytes()
-    write_scene(folder)
+    fields = int(unpacked(Path(values.pop("scene")).read_bytes())["fields"][0, 0])
     for k in range(1, 4):
         print(f"progress {k / 4} t={k * 1e-3} steps={k * 50}", flush=True)
     if mode in ("slow", "brief"):
@@ -188,8 +189,8 @@ def main(arguments: list[str]) -> int:
         print("Load error: Element_QF")
         return 2
     write_history(folder, bad=mode == "nan")
-    if int(values["fields"]):
-        write_fields(folder, int(values["fields"]))
+    if fields:
+        write_fields(folder, fields)
     if mode != "silent":
         (folder / "summary.json").write_text(json.dumps(summary()))
     return 0
