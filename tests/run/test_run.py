@@ -9,6 +9,7 @@ import pytest
 from ffimpact import scene
 from ffimpact.failure import Failure, Unreadable
 from ffimpact.freefem import freefem
+from ffimpact.freefem.arrays import packed
 from ffimpact.mesh import mesh
 from ffimpact.output import results
 from ffimpact.running import run
@@ -158,7 +159,8 @@ def test_progress_arrives(fake, tmp_path):
     """The progress lines of the script arrive with share, time and number of steps. The log keeps
     them, too."""
     seen = []
-    flags = {"fields": 0, "mesh": __file__, "out": tmp_path}
+    (tmp_path / "scene.bin").write_bytes(packed({"fields": 0}))
+    flags = {"scene": tmp_path / "scene.bin", "out": tmp_path}
     assert freefem.run(freefem.find(), "edp/program/bodies.edp", flags, tmp_path / "log.txt", seen.append) == (0, "")
     assert seen[0] == freefem.At(0.25, 0.001, 50) and len(seen) == 3
     assert "progress 0.25" in (tmp_path / "log.txt").read_text()
