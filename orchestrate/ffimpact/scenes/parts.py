@@ -3,7 +3,6 @@ prescribed conditions of a scene as arrays (edp/program/input/conditions.idp).
 """
 
 from collections.abc import Sequence
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -105,20 +104,18 @@ def _drive_row(drive: Drive, functions: list[TimeFunction]) -> Entries:
 
 
 def _functions(functions: list[TimeFunction]) -> Entries:
-    """Returns the knots of all functions behind each other, with the integral and the largest
-    absolute value up to each knot; the largest absolute value and slope of each function; the kinks
-    of all in the order of time.
+    """Returns the knots of all functions behind each other, with the largest absolute value up to
+    each; the largest absolute value and slope of each function; the kinks of all in the order of
+    time.
     """
     largest = [
         {"largest": (function.largest_value, function.largest_slope)} for function in functions
     ]
     knots = [
-        dict(zip(("time", "value", "slope", "sum", "largest"), (*knot, integral, peak)))
+        dict(zip(("time", "value", "slope", "largest"), (*knot, peak)))
         for function in functions
-        for knot, integral, peak in zip(
-            function.knots.tolist(),
-            _integral(function.knots),
-            np.maximum.accumulate(abs(function.knots[:, 1])).tolist(),
+        for knot, peak in zip(
+            function.knots.tolist(), np.maximum.accumulate(abs(function.knots[:, 1])).tolist()
         )
     ]
     kinks = sorted(
@@ -132,15 +129,6 @@ def _functions(functions: list[TimeFunction]) -> Entries:
         | table("knots", knots)
         | table("kinks", [{"time": time, "change": change} for time, change in kinks])
     )
-
-
-def _integral(knots: np.ndarray) -> list[float]:
-    """Integral of a cubic Hermite spline from its first knot (time, value, slope) to each."""
-    sums = [0.0]
-    for (t0, f0, s0), (t1, f1, s1) in pairwise(knots.tolist()):
-        h = t1 - t0
-        sums.append(sums[-1] + h * (f0 + f1) / 2 - h**2 * (s1 - s0) / 12)
-    return sums
 
 
 def _padded(vector: Any) -> list[Any]:
