@@ -124,7 +124,7 @@ def run(
         try:
             with Solver(program, scene, stage, lock, line, estimate, watch) as solve:
                 solve({}, stage)
-                estimate = estimate and read_summary(stage)["ended"] != STOPPED
+                estimate = estimate and read_summary(stage).get("ended") != STOPPED
                 estimated = (
                     estimates.settle(
                         stage,
@@ -262,7 +262,7 @@ def reusable(scene: Scene, folder: Path, estimate: bool = False) -> Record | Non
         and (folder / "history.csv").exists()
         and summary.get("provenance", {}).get("code") == code_hash()
         and (summary["provenance"].get("estimate") == _estimate_hash() or not estimate)
-        and summary["ended"] != STOPPED
+        and summary.get("ended") != STOPPED
         and read_scene(folder)
         and _same_scene(folder, scene)
     ):
