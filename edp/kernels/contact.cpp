@@ -3,6 +3,7 @@
 #include <cmath>
 #include "contact.hpp"
 #include "factor.hpp"
+#include "pairs.hpp"
 
 namespace contact {
 
@@ -21,7 +22,12 @@ void Contact::takeJacobian() {
     value[at] = script.value[e];
   }
   rowsChanged = true;
+  geometric = {};
   if (lastForces.size() != rows) lastForces = Vector::Zero(rows);
+}
+
+void Contact::findGeometricTerms() {
+  if (pairs) pairs->geometricTerms(script.candidateForces, free.data(), script.k, geometric);
 }
 
 Vector Contact::move(const Vector &increment) const {
@@ -202,8 +208,8 @@ void Contact::takeUnknowns() {
   };
   for (int s : candidates) for (long r = s; r < gapRows() * ns(); r += ns())
     for (int e = first[r]; e < first[r + 1]; e++) take(column[e], value[e]);
-  for (long e = 0; e < script.termUnknown.size(); e++)
-    take(int(script.termUnknown[e]), script.termValue[e]);
+  for (size_t e = 0; e < geometric.unknown.size(); e++)
+    take(geometric.unknown[e], geometric.value[e]);
 }
 
 void Contact::extendCompliance() {
@@ -231,13 +237,12 @@ void Contact::fillRows() {
         if (value[e] != 0) B.entry(index[column[e]], c, value[e]);
     B.endBlock();
   }
-  for (long t = 0; t < script.termStiffness.size(); t++) {
-    for (long e = 0; e < script.termOf.size(); e++)
-      if (script.termOf[e] == t && script.termValue[e] != 0)
-        B.entry(index[script.termUnknown[e]], 0, script.termValue[e]);
+  for (size_t t = 0, e = 0; t < geometric.stiffness.size(); t++) {
+    for (; e < geometric.term.size() && geometric.term[e] == int(t); e++)
+      if (geometric.value[e] != 0) B.entry(index[geometric.unknown[e]], 0, geometric.value[e]);
     B.endBlock();
   }
-  B.end(script.termStiffness.numbers());
+  B.end(Eigen::Map<const Vector>(geometric.stiffness.data(), geometric.stiffness.size()));
   rowsChanged = false;
 }
 

@@ -6,19 +6,19 @@
 #pragma once
 #include "arrays.hpp"
 #include "contact-solve.hpp"
+#include "geometric.hpp"
 
 class Factor;
+namespace pairs { struct AnyPairs; }
 
 namespace contact {
 
 // Arrays of the scripts. The scripts set the gap Jacobian B (triplets row, column, value), the
-// penetrations q0 at the start of the step, gapSlipOffset (gap and slip for d = 0) and the
-// geometric contact stiffness c T^T T: c = termStiffness, and the rows T as triplets termOf,
-// termUnknown, termValue.
+// penetrations q0 at the start of the step and gapSlipOffset (gap and slip for d = 0).
 struct Arrays {
   Kept<double> q0, q1, gapSlip, gapSlipOffset, candidateForces, force, k, muStatic, muDynamic;
-  Kept<long> sticks, statusChanges, row, column, termOf, termUnknown;
-  Kept<double> value, termValue, termStiffness;
+  Kept<long> sticks, statusChanges, row, column;
+  Kept<double> value;
 };
 
 class Contact {
@@ -34,13 +34,16 @@ class Contact {
   Vector lastForces;                             // candidateForces of the last solve
   long contactMatrices = 0, mostContactMatrices = 1000000000;
 
-  Contact(Factor &factorOfA, int &numberOfUnknowns) : factor(factorOfA), ndof(numberOfUnknowns) {}
+  pairs::AnyPairs *pairs = nullptr;              // of bodies, if there are any
+  Contact(Factor &factorOfA, int &numberOfUnknowns, const std::vector<double> &freeUnknowns)
+    : factor(factorOfA), ndof(numberOfUnknowns), free(freeUnknowns) {}
 
   long ns() const { return script.q0.size(); }
   int gapRows() const { return 1 + law.slips; }
 
   // Sorts the triplets of B by rows; row r has the entries first[r] to first[r + 1] - 1.
   void takeJacobian();
+  void findGeometricTerms();   // under the forces of evaluate()
 
   Vector move(const Vector &increment) const;   // B increment
   Vector gapSlip(const Vector &d) const { return move(d) + script.gapSlipOffset.numbers(); }
@@ -87,6 +90,8 @@ class Contact {
  private:
   Factor &factor;
   int &ndof;
+  const std::vector<double> &free;               // (ndof) 0 at held unknowns
+  Geometric geometric;
   Indices first{0}, column;                      // B by rows
   std::vector<double> value;
   bool rowsChanged = true;                       // since the active rows were filled

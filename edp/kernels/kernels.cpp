@@ -23,7 +23,7 @@ static const Terms terms = {&body, &inertia, &loads, &supports};
 static Step stepNow;                                 // set by kernelIntegrator
 static std::vector<const laws::Law *> law;           // by its number in lawOfPoint
 static Factor factor;
-static contact::Contact touching(factor, elements.ndof);
+static contact::Contact touching(factor, elements.ndof, elements.free);
 static ImplicitStep step(elements, body, terms, factor, touching);
 static ExplicitContact substep(touching);
 static std::unique_ptr<pairs::AnyPairs> pairsOfBodies;
@@ -213,13 +213,11 @@ static void addStep() {
   add("kernelContactArrays", +[](bool jacobianFixed, Reals q0, Reals q1, Reals gapSlip,
                                 Reals gapSlipOffset, Reals candidateForces, Reals force, Reals k,
                                 Reals muStatic, Reals muDynamic, Ints sticks, Ints statusChanges,
-                                Ints row, Ints column, Reals value, Ints termOf, Ints termUnknown,
-                                Reals termValue, Reals termStiffness) {
+                                Ints row, Ints column, Reals value) {
     touching.jacobianFixed = jacobianFixed;
     touching.script = {
       {&q0}, {&q1}, {&gapSlip}, {&gapSlipOffset}, {&candidateForces}, {&force}, {&k}, {&muStatic},
-      {&muDynamic}, {&sticks}, {&statusChanges}, {&row}, {&column}, {&termOf}, {&termUnknown},
-      {&value}, {&termValue}, {&termStiffness}};
+      {&muDynamic}, {&sticks}, {&statusChanges}, {&row}, {&column}, {&value}};
     touching.takeJacobian();
   });
   add("kernelStepArrays", +[](Reals d, Reals v, Reals frameMotion, Reals seconds, Ints counts,
@@ -237,10 +235,10 @@ static void addStep() {
   });
   add("kernelStep", +[](long lawInstant, double searchDistance, double energyScale,
                        double momentumScale, double roundOff, long mostContactMatrices,
-                       double &residualWorkRatio, Callback gaps, Callback terms, Callback search) {
+                       double &residualWorkRatio, Callback gaps, Callback search) {
     touching.mostContactMatrices = mostContactMatrices;
     const long ended = step.take({stepNow, lawInstant, searchDistance, energyScale, momentumScale,
-                                  roundOff}, {gaps, terms, search});
+                                  roundOff}, {gaps, search});
     residualWorkRatio = step.residualWorkRatio;
     return ended;
   });
@@ -318,14 +316,15 @@ static void addPairs() {
   // Kernels of pairs.hpp: gaps between bodies. kernelSurface is called once.
   add("kernelSurface", +[](Table shape, long points, long obstacles, long bodies, Ints unknown,
                           Ints body, Reals side, Reals pointShape, Ints selfContact,
-                          Reals reference) {
+                          Reals reference, Ints deformable) {
     const int facets = int(body.N()), nodes = int(shape.N());
     pairs::Surface s = {facets, nodes, int(points), facets * int(points), int(obstacles),
       int(bodies), copied<int>(unknown), copied<int>(body), copied<double>(side),
       copied<double>(pointShape), copied<int>(selfContact), copied<double>(reference),
-      pairs::ShapeCoefficients(nodes, shape.M())};
+      copied<int>(deformable), pairs::ShapeCoefficients(nodes, shape.M())};
     for (int a = 0; a < nodes; a++) for (int j = 0; j < shape.M(); j++) s.shape(a, j) = shape(a, j);
     pairsOfBodies = pairs::make(std::move(s));
+    touching.pairs = pairsOfBodies.get();
   });
   add("kernelSearchPairs", +[](Reals x, double searchDistance) {
     return pairsOfBodies->search(x, searchDistance);
@@ -334,10 +333,6 @@ static void addPairs() {
   add("kernelPairGaps", +[](Reals d, Reals q0, Reals q1, Ints row, Ints unknown, Reals normal,
                            Reals slip) {
     pairsOfBodies->gaps(d, q0, q1, {row, unknown, normal, slip});
-  });
-  add("kernelPairGeometricTerms", +[](Reals t, Reals free, Reals limit, Ints termOf, Ints unknown,
-                                     Reals value, Reals stiffness) {
-    return pairsOfBodies->geometricTerms(t, free, limit, termOf, unknown, value, stiffness);
   });
 }
 

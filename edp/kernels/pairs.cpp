@@ -256,38 +256,29 @@ public:
     }
   }
 
-  long geometricTerms(const double *t, const double *free, const double *limit, Ints termOf,
-                      Ints unknown, Reals value, Reals stiffness) {
-    // Geometric contact stiffness at vertices in the plane for the normal forces t of the
-    // candidates: stiffness c, at most `limit`, of each term and the triplets (termOf, unknown,
-    // value) of its row T, T delta = e.rho, e the tangent. Returns the number of terms.
+  void geometricTerms(const double *t, const double *free, const double *limit,
+                      Geometric &terms) {
+    // The row T of a term is T delta = e.rho, e the tangent.
     const Surface &s = surface;
-    const int n = int(candidate.size()), blocks = A * s.nodes;
-    if (A == 3) return 0;
-    std::vector<int> at;
-    std::vector<double> c;
+    const int n = int(candidate.size());
+    terms = {};
+    if (A == 3) return;
     for (int k = 0; k < n; k++) {
-      const double geometric = std::min(vertexStiffness(k, t[candidate[k]]), limit[candidate[k]]);
-      if (geometric > 0) { at.push_back(k);  c.push_back(geometric); }
+      const double c = std::min(vertexStiffness(k, t[candidate[k]]), limit[candidate[k]]);
       before[k] = {facet[now[k].pick], now[k].closestPoint.r[0],
                    now[k].closestPoint.tangents.col(0).norm(), now[k].n};
-    }
-    const int terms = int(at.size());
-    stiffness.resize(terms);  termOf.resize(2 * blocks * terms);
-    unknown.resize(2 * blocks * terms);  value.resize(2 * blocks * terms);
-    for (int i = 0; i < terms; i++) {
-      const Projection &place = now[at[i]];
-      const double slip[2] = {place.n[1], -place.n[0]};
-      stiffness[i] = c[i];
-      entriesOf(at[i], place,
-           [&](int block, int unknowns, int component, double N, const Vector<A - 1> &) {
-        const int at = 2 * blocks * i + block;
-        termOf[at] = i;
-        unknown[at] = unknowns;
-        value[at] = free[unknowns] * N * slip[component];
+      if (!(c > 0)) continue;
+      const double slip[2] = {now[k].n[1], -now[k].n[0]};
+      const int term = int(terms.stiffness.size());
+      terms.stiffness.push_back(c);
+      entriesOf(k, now[k],
+           [&](int, int nodal, int component, double N, const Vector<A - 1> &) {
+        const int j = s.deformable[nodal];
+        terms.term.push_back(term);
+        terms.unknown.push_back(std::max(0, j));
+        terms.value.push_back(j < 0 ? 0 : free[j] * N * slip[component]);
       });
     }
-    return terms;
   }
 
 private:

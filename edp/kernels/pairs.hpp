@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 #include "arrays.hpp"
+#include "geometric.hpp"
 
 namespace pairs {
 
@@ -22,6 +23,7 @@ struct Surface {
   std::vector<double> side, pointShape;    // sign of the normal; N_a at point p at a np + p
   std::vector<int> selfContact;            // (bodies) 1 if it may come into contact with itself
   std::vector<double> reference;           // nodal positions in the reference
+  std::vector<int> deformable;             // unknown of a nodal displacement; -1 in rigid bodies
   ShapeCoefficients shape;                             // N_a = shape(a, :) . monomials
 };
 
@@ -30,8 +32,10 @@ struct AnyPairs {
   virtual long search(const double *x, double searchDistance) = 0;
   virtual long start(const double *x, long unknowns) = 0;
   virtual void gaps(const double *d, double *q0, double *q1, const JacobianRows &rows) = 0;
-  virtual long geometricTerms(const double *t, const double *free, const double *limit,
-                              Ints termOf, Ints unknown, Reals value, Reals stiffness) = 0;
+  // Geometric contact stiffness at vertices in the plane for the normal forces t of the
+  // candidates, at most `limit`; free (unknowns): 0 if held.
+  virtual void geometricTerms(const double *t, const double *free, const double *limit,
+                              Geometric &terms) = 0;
 };
 
 // The pairs in the plane or in space.

@@ -126,7 +126,7 @@ void ImplicitStep::evaluateContact() {
   contact.evaluate(d);
   residual = bodyResidual;
   if (contact.touches()) {
-    if (!contact.jacobianFixed) scripts->terms();
+    if (!contact.jacobianFixed) contact.findGeometricTerms();
     residual += contact.script.force.numbers();
   }
   residualNow = residual.norm();

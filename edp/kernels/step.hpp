@@ -25,9 +25,9 @@ struct StepParameters : Step {
   long lawInstant = 0;
   double searchDistance = 0, energyScale = 1, momentumScale = 1, roundOff = 0;
 };
-// What scripts do in a step: gaps: B, q0 and gapSlipOffset at d; terms: geometric contact stiffness
-// under the forces; search: 1 if d moves beyond the last contact search, which is then made anew.
-struct Scripts { std::function<long()> gaps, terms, search; };
+// What scripts do in a step: gaps: B, q0 and gapSlipOffset at d; search: 1 if d moves beyond the
+// last contact search, which is then made anew.
+struct Scripts { std::function<long()> gaps, search; };
 
 // Arrays of the scripts (integrators.idp): v (ndof) and so on.
 struct StepArrays {
