@@ -251,7 +251,9 @@ def test_a_sweep_of_a_file_and_one_in_python_are_the_same_study(tmp_path):
     of the numbers are columns where they are estimated."""
     drop(accuracy=0.3).save(tmp_path / "drop.toml")
     file = tmp_path / "speeds.toml"
-    file.write_text('scene = "drop.toml"\nestimate = true\n[product]\nbody.1.velocity.2 = [-2, -4]\n')
+    file.write_text(
+        'scene = "drop.toml"\nestimate = true\n[product]\nbody.1.velocity.2 = [-2, -4]\n'
+    )
     assert main(["sweep", str(file), "--out", str(tmp_path / "study")]) == 0
     values = {"body.1.velocity.2": [-2, -4, -30]}
     study = ff.sweep(tmp_path / "drop.toml", values, fields=0, out=tmp_path / "study")
@@ -259,7 +261,13 @@ def test_a_sweep_of_a_file_and_one_in_python_are_the_same_study(tmp_path):
     rows = pd.read_csv(tmp_path / "study/sweep.csv")
     assert rows.impulse_error.to_numpy() == pytest.approx(study.table.impulse_error[:2].to_numpy())
     assert study.results[0].errors["impulse"] == pytest.approx(rows.impulse_error[0])
-    again = ff.sweep(tmp_path / "drop.toml", {"body.1.velocity.2": [-2]}, fields=0, force=True, out=tmp_path / "study")
+    again = ff.sweep(
+        tmp_path / "drop.toml",
+        {"body.1.velocity.2": [-2]},
+        fields=0,
+        force=True,
+        out=tmp_path / "study",
+    )
     assert not again.table.reused[0]
 
 
@@ -267,7 +275,11 @@ def test_a_value_that_is_refused_is_a_row(tmp_path):
     """Unless all are refused."""
     scene = drop(accuracy=0.3, fields=0)
     study = ff.sweep(scene, {"body.1.nu": [0.3, 0.7]}, estimate=False, out=tmp_path)
-    assert list(study.table.exit) == [0, 10] and "0.7" in study.table.message[1] and study.results[1] is None
+    assert (
+        list(study.table.exit) == [0, 10]
+        and "0.7" in study.table.message[1]
+        and study.results[1] is None
+    )
 
 
 def test_entries_of_a_sweep_hold_in_all_its_runs(tmp_path):
@@ -365,7 +377,11 @@ def test_a_run_is_watched_and_stopped(tmp_path):
     given = {"dt": 1e-6, "fields": 0, "end_time": 0.05}  # 50,000 steps
     result = ff.run(drop(**given), out=tmp_path / "run", watch=watch)
     assert result["ended"] == "stopped" and result["steps"] < 40_000 and not result.errors
-    assert len(seen) > 1 and seen[-1][0] > seen[0][0] and result.history.t.iloc[-1] >= 0.9999 * seen[-1][0]
+    assert (
+        len(seen) > 1
+        and seen[-1][0] > seen[0][0]
+        and result.history.t.iloc[-1] >= 0.9999 * seen[-1][0]
+    )
     assert not (result.folder / "stop").exists()
     again = ff.run(drop(**given), out=tmp_path / "run", watch=lambda progress: True)
     assert not again.reused and again["ended"] == "stopped"

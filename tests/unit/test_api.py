@@ -139,7 +139,9 @@ def test_what_no_table_follows_is_refused(motion, more, words):
 def test_a_scene_is_shown_as_a_table():
     lines = repr(drop(accuracy=0.02)).splitlines()
     assert [line.split()[0] for line in lines] == ["Scene", "body", "obstacle", "contact", "run"]
-    assert "shape = disc" in lines[1] and "velocity = [0.0, -8.0]" in lines[1] and "0.02" in lines[4]
+    assert (
+        "shape = disc" in lines[1] and "velocity = [0.0, -8.0]" in lines[1] and "0.02" in lines[4]
+    )
     assert drop()._repr_html_().count("<tr>") == 4
 
 
