@@ -87,9 +87,9 @@ class _Lines(logging.Handler):
 
 def _log_to_stderr() -> None:
     log = logging.getLogger("ffimpact")
+    log.setLevel(logging.INFO)
     if not log.handlers:
         log.addHandler(_Lines())
-        log.setLevel(logging.INFO)
 
 
 def execute(argv: list[str]) -> int | None:
@@ -231,6 +231,8 @@ def _run(options: argparse.Namespace) -> None:
     from .report import report
     from .running import run
 
+    if options.quiet:
+        logging.getLogger("ffimpact").setLevel(logging.WARNING)
     with (
         progress.muted(options.quiet),
         contextlib.redirect_stdout(None if options.quiet else sys.stdout),
