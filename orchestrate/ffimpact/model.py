@@ -124,7 +124,9 @@ class Scene(models.Top):
         """Returns the scene as the program reads it. Raises BadInput if the program does not accept
         it.
         """
-        return reading.read(self.table(), self.folder, name)
+        scene = reading.read(self.table(), self.folder, name)
+        reading.refuse_rest(scene)
+        return scene
 
     def save(self, path: str | Path) -> Path:
         """Writes the scene to a TOML file and returns its path. Its files stay where they are; the

@@ -245,7 +245,7 @@ def test_three_numbers_of_obstacles():
     """Planes, spheres and hollow spheres with points and vectors [x, y, z], as in scene.bin."""
     scene = read(BALL, obstacles=[FLOOR | {"normal": [0, 2, 0], "velocity": [0, 1, 0]}, {"kind": "sphere", "centre": [0, -1, 0], "radius": 0.5}])
     made = assembly.assemble(scene).arrays
-    assert made["obstacles.name"] == ["floor", "obstacle2"] and made["obstacles.kind"] == [0, 1] and made["obstacles.velocity"].tolist() == [[0, 1, 0], [0, 0, 0]]
+    assert list(made["obstacles.name"]) == ["floor", "obstacle2"] and made["obstacles.kind"].tolist() == [0, 1] and made["obstacles.velocity"].tolist() == [[0, 1, 0], [0, 0, 0]]
     assert made["obstacles.numbers"].tolist() == [0, -0.5, 0, 0, 1, 0, 0, -1, 0, 0.5] and made["obstacles.numbers.first"].tolist() == [0, 6, 10]
     with pytest.raises(BadInput, match=r"obstacle.1.kind: 'polyline' is not known.*accepted: plane.sphere.bowl"):
         read(BALL, obstacles=[{"kind": "polyline", "vertices": [[0, 0], [1, 1]]}])

@@ -25,7 +25,7 @@ def names(folder: Path) -> set[str]:
     return {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
 
 
-RESULTS = {"scene.toml", "history.csv", "contacts.csv", "summary.json"}
+RESULTS = {"history.csv", "contacts.csv", "summary.json"}
 
 
 @pytest.mark.few(2)
@@ -70,7 +70,7 @@ def test_a_finished_run_is_not_overwritten(tmp_path):
     (tmp_path / "out").mkdir()
     (tmp_path / "out/notes.txt").write_text("mine")
     assert call("-accuracy", "0.4", "-speed", "60", "-out", "out", cwd=tmp_path)[0] in (11, 12)
-    assert names(tmp_path / "out") == {"scene.toml", "history.csv", "contacts.csv", "failure.json", "notes.txt"}
+    assert names(tmp_path / "out") == {"history.csv", "contacts.csv", "failure.json", "notes.txt"}
     assert call(*COARSE, "-out", "out", cwd=tmp_path)[0] == 0
     before = {name: (tmp_path / "out" / name).read_bytes() for name in names(tmp_path / "out")}
     assert set(before) == RESULTS | {"notes.txt"}
@@ -119,7 +119,7 @@ def test_full_disk_of_its_own(tmp_path, files):
     error = (tmp_path / "error").read_text()
     assert (tmp_path / "code").read_text() == "14\n" and error.startswith("ffimpact: ") and error.count("\n") == 1, error
     assert "summary.json" not in (tmp_path / "left").read_text()
-    assert set((tmp_path / "finished").read_text().split()) == {"scene.toml", "history.csv", "contacts.bin", "states.bin", "record.json"}
+    assert set((tmp_path / "finished").read_text().split()) == {"history.csv", "contacts.bin", "states.bin", "record.json"}
 
 
 @pytest.mark.parametrize("kind, accuracy", [("disc", "0.01"), ("disc-block", "0.03")])

@@ -37,7 +37,7 @@ from .front import Front, fronts, stretch_of
 from .mirror import COPIES, copies, mirror_axes
 from .needs import IMPLICIT, implicit_for
 from .parts import conditions
-from .scene import Pair, Scene
+from .scene import Pair, Scene, refuse_rest
 from .sizes import Impact
 from .unstressed import find_unstressed
 
@@ -123,6 +123,7 @@ def prepare(scene: Scene, where: Path) -> tuple[dict[str, Path], Table, str]:
         )
     scene = turned(scene)
     onsets = onsets_of(scene)
+    refuse_rest(scene)
     refuse_nothing(scene, onsets)
     refuse_sinking(scene, onsets)
     built = assemble(scene, onsets=onsets)

@@ -31,7 +31,7 @@ from .bodies import SIZES, STIFFEST, Body
 from .entries import release, set_entry, toml_value
 from .obstacles import Obstacle
 
-__all__ = ["Pair", "RUN", "Scene", "gap_between", "gap_to_obstacle", "read"]
+__all__ = ["Pair", "RUN", "Scene", "gap_between", "gap_to_obstacle", "read", "refuse_rest"]
 
 RUN = (
     "gravity",
@@ -328,7 +328,6 @@ def read(content: Table, folder: Path, name: str) -> Scene:
     needs.refuse(scene)
     _refuse_friction(scene)
     _refuse_start(scene)
-    _refuse_rest(scene)
     for k, body in enumerate(all_bodies, 1):
         _refuse_nu(f"body.{k}.nu" if len(all_bodies) > 1 else "nu", body.nu, body.law)
     mirror.copies(scene)
@@ -361,7 +360,7 @@ def _refuse_friction(scene: Scene) -> None:
             )
 
 
-def _refuse_rest(scene: Scene) -> None:
+def refuse_rest(scene: Scene) -> None:
     """Raises BadInput if nothing ever moves."""
     surfaces: list[Body | Obstacle] = [*scene.bodies, *scene.obstacles]
     moving = [
