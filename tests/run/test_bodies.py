@@ -10,7 +10,7 @@ from ffimpact.failure import BadInput
 from ffimpact.input.toml_text import to_toml
 from ffimpact.mesh import mesh
 from ffimpact.scene import built_in, load
-from ffimpact.scenes import approach, assembly
+from ffimpact.scenes import approach, arrays, assembly
 from tests.support.bodies import BLOCK, DISC, FLOOR, SCENE, SQUARE, changed, read, with_body
 from tests.support.triangles import areas, smallest_angle
 
@@ -372,6 +372,6 @@ def test_obstacles_are_their_numbers_and_gaps(entries, words, points, gaps):
     far = with_body(shape="disc", radius=0.01, position=[0.5, 5] if entries["kind"] != "bowl" else [1, 0]) | {"obstacle": [entries | {"velocity": [0.5, -0.25]}]}
     scene = read(far)
     made, (kind, _, *numbers) = assembly.assemble(scene).arrays, words.split()
-    assert made["obstacles.name"] == ["obstacle1"] and made["obstacles.kind"] == [SHAPES.index(kind)]
+    assert list(made["obstacles.name"]) == ["obstacle1"] and made["obstacles.kind"].tolist() == [arrays.SHAPES.index(kind)]
     assert made["obstacles.numbers"].tolist() == list(map(float, numbers)) and made["obstacles.velocity"].tolist() == [[0.5, -0.25, 0.0]]
     assert scene.obstacles[0].gap(np.array(points, dtype=float)) == pytest.approx(gaps)

@@ -17,8 +17,8 @@ def read(tables: dict, folder=SCENES) -> Scene:
 
 
 def with_body(**entries) -> dict:
-    """A scene of one body with these entries, under its weight."""
-    return SCENE | {"gravity": 9.81, "body": [{"position": [0, 0]} | entries]}
+    """A scene of one body with these entries."""
+    return SCENE | {"body": [{"position": [0, 0]} | entries]}
 
 
 def changed(*entries: tuple) -> dict:

@@ -6,7 +6,7 @@ from ffimpact.scene import SCENES, Scene, read as read_scene
 
 BALL = {"name": "ball", "shape": "ball", "radius": 0.5, "position": [0, 1.5], "velocity": -10}
 FLOOR = {"name": "floor", "kind": "plane", "point": [0, -1], "normal": [0, 1]}
-SCENE = {"dimension": "axisymmetric", "young": 7e6, "nu": 0.45, "density": 1722, "law": "svk", "gravity": 9.81}
+SCENE = {"dimension": "axisymmetric", "young": 7e6, "nu": 0.45, "density": 1722, "law": "svk"}
 
 
 def read(*tables: dict, obstacles=(FLOOR,), folder=SCENES, **top) -> Scene:

@@ -33,9 +33,9 @@ def test_a_drawn_body_keeps_its_coordinates(position, low):
     placement the position of the centre is required."""
     entries = {"shape": "polygon", "vertices": [[2, 1], [5, 1], [2, 4]], "placement": "as-drawn"}
     entries |= {"position": position} if position else {}
-    body, = read(SCENE | {"gravity": 9.81, "body": [entries]}).bodies
+    body, = read(SCENE | {"body": [entries]}).bodies
     assert body.placed.points.min(axis=0) == pytest.approx(low)
-    turned, = read(SCENE | {"gravity": 9.81, "body": [entries | {"angle": 90}]}).bodies
+    turned, = read(SCENE | {"body": [entries | {"angle": 90}]}).bodies
     for made in (body, turned):
         assert made.position == pytest.approx(np.add(low, [1, 1]))
     missing = {name: value for name, value in entries.items() if name not in ("placement", "position")}
@@ -46,7 +46,7 @@ def test_a_drawn_body_keeps_its_coordinates(position, low):
 def test_a_drawn_section_keeps_its_coordinates():
     """A cone of revolution with its base at y = 2 and its tip at y = 6: centre a quarter up."""
     cone = {"shape": "polygon", "vertices": [[0, 2], [1, 2], [0, 6]], "placement": "as-drawn"}
-    body, = read(SCENE | {"gravity": 9.81, "dimension": "axisymmetric", "body": [cone]}).bodies
+    body, = read(SCENE | {"dimension": "axisymmetric", "body": [cone]}).bodies
     assert body.position == pytest.approx([0, 3])
 
 
@@ -243,6 +243,6 @@ def test_a_plane_is_the_floor_by_default(kind, axes):
     """A [[obstacle]] of kind plane without point and normal is y < 0, as ff.Plane() is; one of both
     entries may be set."""
     ball = {"name": "ball", "shape": "disc" if axes == 2 and kind == "plane-strain" else "ball", "radius": 0.5, "position": [0, 1.5, 0][:axes]}
-    tables = {key: value for key, value in SCENE.items() if key != "body"} | {"gravity": 9.81, "dimension": kind, "body": [ball]}
+    tables = {key: value for key, value in SCENE.items() if key != "body"} | {"dimension": kind, "body": [ball]}
     floor, higher = (read(tables | {"obstacle": [{"kind": "plane"} | entries]}).obstacles[0] for entries in ({}, {"point": [0, 0.25, 0][:axes]}))
     assert floor.numbers == (*[0.0] * axes, *[0.0, 1.0, 0.0][:axes]) and higher.numbers[1] == 0.25 and higher.numbers[axes + 1] == 1
