@@ -122,7 +122,7 @@ def test_angles_of_a_body_that_comes_along_the_normal(tmp_path, spin):
     """The tangential velocity of its centre before the impact is round-off of either sign. The
     angle afterwards is on the side to which it leaves."""
     values = dict(law="neohookean", speed=4, spin=spin, friction_static=0.3, accuracy=0.1, fields=0, out=tmp_path / "out")
-    freefem.find().call(*case(values), cwd=tmp_path, check=True)
+    freefem.find().call(*case(values), check=True)
     evaluate(tmp_path / "out")
     row, s = pd.read_csv(tmp_path / "out/contacts.csv").iloc[0], json.loads((tmp_path / "out/summary.json").read_text())
     assert abs(s["rebound_vx"]) > 1
