@@ -6,7 +6,7 @@ import pytest
 from ffimpact import scene
 from ffimpact.output import results
 from ffimpact.running import run
-from verification.measure import disc
+from verification.measure import disc, impact
 
 BALL = {"law": "neohookean", "nu": 0.4, "accuracy": 0.1, "integrator": "auto"}
 # Small elements near contact: many substeps.
@@ -23,12 +23,14 @@ def test_the_cheaper_one_is_taken_and_said(tmp_path, script, flags, chosen, why)
     The summary and the scene as used have the integrator, `skipped` has the reason, and the run
     equals that of this integrator to round-off.
     """
-    result = disc(tmp_path / "auto", script, **flags)
-    assert result.summary["integrator"] == chosen == results.read_scene(tmp_path / "auto/run")["integrator"]
-    assert any(words.startswith(why) for words in result.summary["skipped"])
-    named = disc(tmp_path / "named", script, **flags | {"integrator": chosen})
-    for name, column in named.history.items():
-        assert result.history[name] == pytest.approx(column, rel=0, abs=1e-10 * max(abs(column))), name
+    tables = impact(script, **flags)
+    taken, named = (run.run(scene.read(tables | {"integrator": word}, tmp_path, word), {}, tmp_path / word, estimate=False)
+                    for word in ("auto", chosen))
+    assert taken.summary["integrator"] == chosen == results.read_scene(taken.folder)["integrator"]
+    assert any(words.startswith(why) for words in taken.summary["skipped"])
+    history = results.read_history(taken.folder)
+    for name, column in results.read_history(named.folder).items():
+        assert history[name] == pytest.approx(column, rel=0, abs=1e-10 * max(abs(column))), name
 
 
 def test_parts_are_dearer_between_bodies(tmp_path):

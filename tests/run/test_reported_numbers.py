@@ -40,7 +40,7 @@ def test_without_energy_at_the_start_the_balance_is_relative_to_that_supplied(tm
     """A block at rest is pressed by a support: largest sum of energies, which round-off leaves."""
     block = {"shape": "rectangle", "width": 0.04, "height": 0.02, "position": [0, 0.0101],
              "support": [{"where": "top", "motion": [0, "-5e-4*(1-cos(2000*t))"]}]}
-    run = bodies(tmp_path, SOFT | {"end_time": 2e-3, "integrator": "midpoint", "dt": 2e-5, "obstacle": [FLOOR], "body": [block]})
+    run = bodies(tmp_path, SOFT | {"end_time": 2e-3, "integrator": "midpoint", "dt": 1e-5, "obstacle": [FLOOR], "body": [block]})
     energies = run.history["kinetic"] + run.history["elastic"] + run.history["contact"] - run.history["balance"]
     assert run.summary["energy_drift"] == pytest.approx(abs(run.history["balance"]).max() / energies.max(), rel=1e-6)
     assert run.summary["energy_drift"] > 1e-9

@@ -151,7 +151,7 @@ def run(
             "git": commit(),
             "mesh": _sha256(stage / scene.mesh_name),
         }
-        _tell_accuracy(stage / "scene.toml", scene.number("accuracy"))
+        _tell_used(stage / "scene.toml", scene)
         _finish(stage, scene, estimated | {"total_seconds": time.monotonic() - started}, provenance)
         _put(stage, folder, scene)
     return Record(folder, read_summary(folder), reused=False)
@@ -190,17 +190,20 @@ def _put(stage: Path, folder: Path, scene: Scene) -> None:
     replace(stage, folder, _same_scene(folder, scene))
 
 
-def _tell_accuracy(path: Path, accuracy: float) -> None:
-    """Adds the requested `accuracy` as a comment to scene.toml, if finer runs used another
-    accuracy.
+def _tell_used(path: Path, scene: Scene) -> None:
+    """Puts the integrator that `auto` took into scene.toml, and tells in comments what was
+    requested where other values were used: the integrator, and the accuracy if finer runs made the
+    answer.
     """
-    used = read_scene(path.parent)["accuracy"]
-    if not math.isclose(used, accuracy):
-        why = f"   # requested: {accuracy:g}; mesh and steps are those of this value, for the estimated error\n"
-        path.write_text(
-            re.sub(r"(?m)^(accuracy = \S+)\n", rf"\1{why}", path.read_text("utf-8"), count=1),
-            "utf-8",
-        )
+    used, taken = read_scene(path.parent), read_summary(path.parent)["integrator"]
+    text = path.read_text("utf-8")
+    if not math.isclose(used["accuracy"], accuracy := scene.number("accuracy")):
+        why = f"requested: {accuracy:g}; mesh and steps are those of this value, for the estimated error"
+        text = re.sub(r"(?m)^(accuracy = \S+)\n", rf"\1   # {why}\n", text, count=1)
+    if used["integrator"] != taken:
+        line = f'integrator = "{taken}"   # requested: {used["integrator"]}\n'
+        text = re.sub(r"(?m)^integrator = \S+\n", line, text, count=1)
+    path.write_text(text, "utf-8")
 
 
 def _finish(stage: Path, scene: Scene, estimated: Table, provenance: Table) -> None:
