@@ -6,12 +6,14 @@ meshes, by closest points (9) and by pairs of points (14), (15).
 """
 
 import argparse
+import math
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
 import matplotlib.pyplot as plt
+import numpy as np
 
 from ffimpact.failure import BadInput, Failure
 from ffimpact.freefem import freefem
@@ -64,6 +66,23 @@ def on_the_plane(path: Path) -> Path:
     about = mesh.read(path)
     moved = path.with_name("moved.msh")
     mesh.write(replace(about, points=about.points - [0, about.points[:, 1].min()]), moved)
+    return moved
+
+
+def on_the_block(path: Path) -> Path:
+    """A copy of the mesh of half a disc above half a block for disc-block.edp: the block's top is y = 0,
+    the disc is a quarter radius above it, and the labels are the script's."""
+    both = mesh.read(path)
+    piece = mesh.pieces(len(both.points), both.triangles)
+    disc = piece != piece[both.points[:, 0].argmax()]
+    radius, top = np.ptp(both.points[disc, 1]) / 2, both.points[~disc, 1].max()
+    points = both.points - [0, top]
+    points[disc, 1] += radius / 4 - points[disc, 1].min()
+    middle, of_disc = points[both.edges].mean(axis=1), disc[both.edges[:, 0]]
+    meets = np.where(of_disc, middle[:, 1] < radius * (1.25 - math.cos(1)), (abs(middle[:, 1]) < 1e-9 * radius) & (middle[:, 0] < radius))
+    labels = np.where(both.labels == mesh.AXIS, 2, np.where(meets, np.where(of_disc, 1, 3), np.where(of_disc, 4, 9)))
+    moved = path.with_name("moved.msh")
+    mesh.write(replace(both, points=points, labels=labels), moved)
     return moved
 
 
