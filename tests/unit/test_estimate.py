@@ -107,6 +107,13 @@ def test_a_later_end_is_a_difference_of_times():
     assert apart["thresholded_contact_time"] == pytest.approx(math.sqrt(np.mean(later**2)), rel=1e-2)
 
 
+def test_the_gain_of_a_level_is_the_ratio_of_the_differences_around_it():
+    """Times that fall off by 3 and 4 %, of a force with the same history, have the gain 0.75; two
+    runs have none."""
+    runs = [run(ANSWERS | {"thresholded_contact_time": time}) for time in (1.0, 1.03, 1.0712)]
+    assert estimate.gain(runs) == pytest.approx(0.75, rel=1e-3) and estimate.gain(runs[:2]) == 0
+
+
 # ---- estimates
 
 @pytest.mark.parametrize("rise, order", [(None, 2), (1e-5, 1)])
@@ -234,15 +241,18 @@ def test_what_asks_for_output_is_off_by_default():
     assert {name: parameters.PARAMETERS[name].default for name in parameters.OUTPUT} == parameters.OUTPUT
 
 
-@pytest.mark.parametrize("offs, runs", [((0.009,), 3), ((0.0199,), 3), ((0.0201, 0.0201), 4), ((0.035, 0.021, 0.0126), 5), ((0.03, 0.025, 0.02), 4),
-                                        ((0.029, 0.0240, 0.014), 5), ((0.029, 0.0242, 0.014), 4)])
-def test_scatter_is_a_reason_for_a_second_finer_run_only_where_it_brings_the_contact_time_there(tmp_path, monkeypatch, offs, runs):
+@pytest.mark.parametrize("offs, falls, runs", [
+    ((0.009,), (2,), 3), ((0.0199,), (2,), 3), ((0.0201, 0.0201), (0.99, 1), 4), ((0.035, 0.021, 0.0126), (0.57, 0.95, 1), 5),
+    ((0.035,), (0.58,), 3), ((0.035, 0.034), (0.57, 0.6), 4)])
+def test_scatter_is_a_reason_for_a_finer_run_only_where_it_brings_the_contact_time_there(tmp_path, monkeypatch, offs, falls, runs):
     """The estimate of the contact time above 1 % of the peak is offs[k] after k finer runs, for an
-    accuracy of 1 %. Up to WORTH times the accuracy no finer run follows. A second one follows if
-    offs[1]^2/offs[0] is at most WORTH times 1 %. What stays above is a note."""
+    accuracy of 1 %. Up to WORTH times the accuracy no finer run follows. Above, one follows if the
+    estimate times falls[k], the gain of the last level, is at most WORTH times 1 %. What stays above
+    is a note."""
     disc = Disc(tmp_path, 1e-9)
     monkeypatch.setattr(estimate, "error_estimates", lambda _: dict.fromkeys([*estimate.RESULTS, estimate.OF_ITSELF], 0.0) | {
         "thresholded_contact_time": offs[len(disc.asked) - 3]})
+    monkeypatch.setattr(estimate, "gain", lambda _: falls[len(disc.asked) - 3])
     summary = disc.settle()
     last = summary["estimated_error"]["thresholded_contact_time"]
     assert last == offs[runs - 3] and len(disc.asked) == runs

@@ -6,9 +6,12 @@ rotation matrix, J the matrix of inertia in the body's axes and w the angular ve
 
 import math
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.integrate import OdeSolution, solve_ivp
+
+if TYPE_CHECKING:
+    from scipy.integrate import OdeSolution
 
 __all__ = ["fastest", "rotation", "turned"]
 
@@ -72,9 +75,11 @@ def _principal(moments: np.ndarray, start: np.ndarray, spin: np.ndarray) -> bool
 
 
 @lru_cache(maxsize=64)
-def _solution(moments: bytes, start: bytes, spin: bytes, horizon: float) -> OdeSolution:
+def _solution(moments: bytes, start: bytes, spin: bytes, horizon: float) -> "OdeSolution":
     """The rotation matrix as a function of time from 0 to `horizon` [s], with an error of about
     1e-9 a radian."""
+    from scipy.integrate import solve_ivp  # imported here: most scenes need none
+
     J, R, w = (np.frombuffer(buffer) for buffer in (moments, start, spin))
     inverse = np.linalg.inv(J.reshape(3, 3))
     momentum = R.reshape(3, 3) @ J.reshape(3, 3) @ R.reshape(3, 3).T @ w

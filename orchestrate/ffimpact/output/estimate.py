@@ -23,8 +23,8 @@ runs, except the penalty of a flat strike.
 Finer runs follow if the estimate of a promised result is above WORTH times the request. The former
 runs are then the levels of the new one. The contact time scatters with the vibration at the end of
 contact (by 0.8 % rms in hard impacts, on any mesh and with any step that was tried). If it alone is
-above, a second finer run follows only if the gain of the first one, gained again, brings its
-estimate there. An estimate that is still above WORTH times the request is a warning. One that is
+above, a finer run follows only if the gain of the last level, gained again, brings its estimate
+there. An estimate that is still above WORTH times the request is a warning. One that is
 above the request by less, that scatters, or of a result that is not promised, is a note
 (notes.py). Runs with different numbers of contact intervals are a warning (touches()).
 """
@@ -58,6 +58,7 @@ __all__ = [
     "differences",
     "error_estimates",
     "excess",
+    "gain",
     "history_differences",
     "largest",
     "loosened",
@@ -152,7 +153,7 @@ def settle(
 
     sentences = _add_levels(runs, stage, failed, read)
     notes: list[str] = []
-    estimated, refinements, before = None, 0, math.inf
+    estimated, refinements = None, 0
     seconds = sum(run.summary["cpu_seconds"] for run in runs[1:])
     while len(runs) > 1:
         estimated = error_estimates(runs)
@@ -160,8 +161,7 @@ def settle(
             name for name in wanted(values["accuracy_of"]) if estimated[name] > WORTH * accuracy
         ]
         # Whether only scatter is left, which finer runs reduce too little.
-        scatter = above == [SCATTERS] and estimated[SCATTERS] ** 2 / before > WORTH * accuracy
-        before = estimated[SCATTERS]
+        scatter = above == [SCATTERS] and estimated[SCATTERS] * gain(runs) > WORTH * accuracy
         made = 0.0 if fixed else accuracy / 2**refinements
         exceeding = excess(estimated, accuracy, values["accuracy_of"], made)
         sentences, notes = ([], exceeding) if scatter or not above else (exceeding, [])
@@ -252,6 +252,17 @@ def error_estimates(runs: Sequence[Answers]) -> dict[str, float]:
     # All levels may have the same drift, so their differences do not show it.
     estimates["energy"] = max(estimates["energy"], runs[0].summary.get("energy_drift") or 0.0)
     return estimates | rest_errors(*runs[:2])
+
+
+def gain(runs: Sequence[Answers]) -> float:
+    """Returns the difference of the result that scatters between the first two levels, over that
+    between the next two; 0 if there is one pair.
+    """
+    apart = [
+        math.hypot(differences(*pair)[SCATTERS], history_differences(*pair)[SCATTERS])
+        for pair in pairwise(runs)
+    ]
+    return apart[0] / apart[1] if len(apart) > 1 and apart[1] else 0.0
 
 
 def _ended(solve: Solve, values: Table, where: Path) -> Failure | None:
