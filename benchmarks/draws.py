@@ -187,7 +187,7 @@ def _harder(chance: random.Random, point: Point, c: float) -> Point:
     share of the scenes."""
     more: Point = {"accuracy": chance.choice([0.002, 0.005, 0.01, 0.03])}
     if chance.random() < 0.15:
-        more["integrator"] = chance.choice(["midpoint", "newmark", "bdf2", "backward-euler"])
+        more["integrator"] = chance.choice(["midpoint", "bdf2", "backward-euler"])
     if chance.random() < 0.1:
         more["degree"] = 1
     if chance.random() < 0.15:

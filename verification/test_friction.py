@@ -165,7 +165,7 @@ def test_two_ways_are_mirror_images(disc):
 # Tolerances of rebound (both components and spin), friction work and energy balance. Backward Euler
 # loses 7 % of the energy at this step, and 9 % of the friction work.
 @pytest.mark.parametrize("integrator, rebound, work, balance", [
-    ("midpoint", 1e-3, 5e-3, 1e-4), ("newmark", 1e-3, 5e-3, 2e-4), ("bdf2", 3e-3, 1e-2, 3e-3), ("backward-euler", 3e-2, 0.15, 0.15)])
+    ("midpoint", 1e-3, 5e-3, 1e-4), ("bdf2", 3e-3, 1e-2, 3e-3), ("backward-euler", 3e-2, 0.15, 0.15)])
 def test_integrators_agree_at_small_steps(disc, integrator, rebound, work, balance):
     """With friction, too, every implicit integrator converges to the results of the energy-momentum
     integrator."""

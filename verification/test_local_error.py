@@ -5,7 +5,7 @@ import math
 
 import pytest
 
-RULES = ("energy-momentum", "midpoint", "newmark")
+RULES = ("energy-momentum", "midpoint")
 STEPS = (2.5e-6, 1.25e-6)
 
 

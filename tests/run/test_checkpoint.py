@@ -28,7 +28,6 @@ SCENES = {
     "svk": (dict(accuracy=0.1, exponent=1.5, penalty=1e11, height=1e-3, gravity=9.81), 7, 20),
     "midpoint": (COARSE | dict(accuracy=0.1, spin=50, friction_static=0.5, friction_dynamic=0.5, degree=1, integrator="midpoint"),
                  7, 20),
-    "newmark": (COARSE | dict(accuracy=0.1, dt=2e-5, integrator="newmark"), 10, 100),
     "backward-euler": (COARSE | dict(accuracy=0.1, dt=2e-5, integrator="backward-euler"), 10, 100),
     "bdf2": (COARSE | dict(accuracy=0.1, dt=2e-5, integrator="bdf2"), 10, 100),
     "central-difference": (COARSE | dict(accuracy=0.2, angle=60, friction_static=0.5, friction_dynamic=0.4, slip_velocity=0.1,

@@ -39,7 +39,7 @@ def summed(result: Record) -> tuple[pd.DataFrame, pd.DataFrame]:
     return forces, history.iloc[[(history.t - t).abs().argmin() for t in forces.index]]
 
 
-@pytest.mark.parametrize("name, values", [("disc-normal", {}), ("disc-normal", {"accuracy": 0.03, "symmetry": "full", "integrator": "newmark"}), ("disc-oblique", {}),
+@pytest.mark.parametrize("name, values", [("disc-normal", {}), ("disc-normal", {"accuracy": 0.03, "symmetry": "full", "integrator": "bdf2"}), ("disc-oblique", {}),
                                           ("disc-oblique", {"degree": 1, "regularization": "tanh"})])
 def test_forces_on_a_plane(ran, name, values):
     """Pressure and shear times weight add up to normal and friction force of the history at every

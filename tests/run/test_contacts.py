@@ -20,7 +20,7 @@ def go(tmp_path, name: str, values: dict) -> tuple[pd.DataFrame, run.Record]:
     return pd.read_csv(result.folder / "contacts.csv"), result
 
 
-@pytest.mark.parametrize("values", [{}, {"integrator": "newmark"}, {"integrator": "bdf2"}], ids=str)
+@pytest.mark.parametrize("values", [{}, {"integrator": "bdf2"}], ids=str)
 def test_an_interval_adds_up_to_the_history(tmp_path, values):
     """A single impact is one row with the times, impulses, work and energies of summary and
     history."""

@@ -35,7 +35,7 @@ def test_a_small_overlap_is_left_to_the_solver_where_something_presses():
 
 @pytest.mark.parametrize("tables, words", [
     (slope(contact={"penalty_damping": -1}), r"contact\.penalty_damping: -1 is out of range \(accepted: 0 to "),
-    (slope(contact={"penalty_damping": 1e-3}, integrator="newmark"), r"integrator: 'newmark', but penalty_damping needs another value \(accepted: auto\|")])
+    (slope(contact={"penalty_damping": 1e-3}, integrator="bdf2"), r"integrator: 'bdf2', but penalty_damping needs another value \(accepted: auto\|")])
 def test_damping_of_the_penalty(tables, words):
     with pytest.raises(BadInput, match=words):
         of(tables)

@@ -206,7 +206,6 @@ ROWS = (
         (
             "energy-momentum",
             "midpoint",
-            "newmark",
             "backward-euler",
             "bdf2",
             "central-difference",

@@ -874,14 +874,6 @@ def _friction(e: Evidence) -> Iterator[Sentence]:
             f"the points and steps in contact: {unsolved} of them lie in "
             f"the jump from the static to the dynamic coefficient: take {instead}"
         )
-    if facts["integrator"] == "newmark":
-        yield warn(
-            "newmark: sticking contact points reverse their velocity in every step: this happens "
-            "with any dt. "
-            f"{percent(e.record['friction_work'] / facts['supplied_energy'])} of the energy "
-            f"supplied went into friction. Rebound along {e.counter_body}, spin "
-            "and friction work do not converge: take integrator=energy-momentum"
-        )
 
 
 def _bounces(e: Evidence) -> Iterator[Sentence]:

@@ -99,7 +99,7 @@ BLUE, ORANGE, GREEN, PURPLE, BLACK, GREY = (
 )
 STICKS = "#bbbbbb"  # colour of stick; slip is orange, backward slip blue
 # Integrators whose forces are those at the end of a step.
-END_FORCES = ("newmark", "bdf2", "backward-euler")
+END_FORCES = ("bdf2", "backward-euler")
 # Font size of legends, of numbers in cells and of text below figures. STYLE has the size of other
 # text.
 SMALL = 7.5
@@ -168,7 +168,7 @@ def save(figure: Figure, path: Path) -> None:
     with catch_warnings():
         # A letter that the font lacks is drawn as an empty box, without a warning.
         filterwarnings("ignore", "Glyph .* missing from", UserWarning)
-        figure.savefig(path, pil_kwargs={"compress_level": 1})  # half the time of level 6
+        figure.savefig(path)
     plt.close(figure)
 
 
