@@ -100,7 +100,7 @@ bool Bodies::isValid() const {
   return true;
 }
 
-void Bodies::accept(const Step &step) {
+void Bodies::accept(const Step &step, const Vector &) {
   const std::vector<double> C1 = endC();
   overElements(C0.data(), C1.data(), [&](const Deformed &e) {
     for (auto &term : terms) term->advance(step, e);

@@ -31,7 +31,7 @@ class Bodies : public Term {
   void lineariseAtRest();
   void addTangent(const Step &step) override;
   bool isValid() const override;           // no point loses most of its volume in the step
-  void accept(const Step &step) override;
+  void accept(const Step &step, const Vector &) override;
   // The history becomes that after a long time at the start of the step.
   void relax();
   void archive(Archive &archive) override;

@@ -1,7 +1,7 @@
 // call.hpp: add(name, f) makes the C++ function f callable from FreeFEM scripts under `name`.
 // f takes any number of arguments (long, double, bool, double &, std::string &, Reals, Ints,
-// Table, Sparse, Callback) and returns a number, a text, a mesh, or nothing; FreeFEM then gets 0.
-// Exports add() and the argument types Sparse and Callback.
+// Table, Sparse) and returns a number, a text, a mesh, or nothing; FreeFEM then gets 0.
+// Exports add() and the argument type Sparse.
 #pragma once
 #include <new>
 #include <string>
@@ -11,17 +11,6 @@
 #include "failure.hpp"
 
 typedef Matrice_Creuse<double> &Sparse;    // matrix
-
-// An argument that is an expression of the script, evaluated when the kernel calls it.
-struct Callback {
-  Expression expression;
-  Stack stack;
-  long operator()() const {
-    const long result = GetAny<long>((*expression)(stack));
-    WhereStackOfPtr2Free(stack)->clean();
-    return result;
-  }
-};
 
 // Converts a FreeFEM argument to a parameter of type P. FreeFEM passes a value as itself and a
 // reference as a pointer.
@@ -33,11 +22,6 @@ template <class P> struct Argument<P &> {
   typedef P *Type;
   static P &value(Expression e, Stack s) { return *GetAny<Type>((*e)(s)); }
 };
-template <> struct Argument<Callback> {
-  typedef long Type;
-  static Callback value(Expression e, Stack s) { return {e, s}; }
-};
-
 // Converts the result of a C++ function to that of a FreeFEM function. FreeFEM has texts and meshes
 // by pointers, which it deletes behind the statement.
 template <class R> struct Result {

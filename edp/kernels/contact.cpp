@@ -3,67 +3,61 @@
 #include <cmath>
 #include "contact.hpp"
 #include "factor.hpp"
-#include "pairs.hpp"
 
 namespace contact {
 
-void Contact::takeJacobian() {
-  const long rows = gapRows() * ns(), entries = script.row.size();
-  Indices next;
-  first.assign(rows + 1, 0);
-  column.resize(entries);
-  value.resize(entries);
-  for (long e = 0; e < entries; e++) first[script.row[e] + 1]++;
-  for (long r = 0; r < rows; r++) first[r + 1] += first[r];
-  next = first;
-  for (long e = 0; e < entries; e++) {
-    const int at = next[script.row[e]]++;
-    column[at] = int(script.column[e]);
-    value[at] = script.value[e];
-  }
-  rowsChanged = true;
-  geometric = {};
-  if (lastForces.size() != rows) lastForces = Vector::Zero(rows);
-}
-
-void Contact::findGeometricTerms() {
-  if (pairs) pairs->geometricTerms(script.candidateForces, free.data(), script.k, geometric);
-}
-
-Vector Contact::move(const Vector &increment) const {
-  Vector moved = Vector::Zero(gapRows() * ns());
-  for (long r = 0; r < moved.size(); r++)
-    for (int e = first[r]; e < first[r + 1]; e++) moved[r] += value[e] * increment[column[e]];
-  return moved;
-}
-
-void Contact::evaluate(const Vector &d) {
-  script.gapSlip.numbers() = gapSlip(d);
+Status Contact::addForces(const Step &step, const Vector &d, Vector &residual) {
+  law.dt = step.dt;
+  law.lawInstant = step.stressInstant;
+  follow(d, step.isStatic() ? 0 : step.dt);
+  script.gapSlip.numbers() = gaps.gapSlip(d);
   script.q1.numbers() = script.gapSlip.numbers().head(ns());
   script.candidateForces.numbers().setZero();
-  script.force.numbers().setZero();
-  for (long s = 0; s < ns(); s++) if (script.q0[s] > 0 || script.q1[s] > 0) {
+  for (long s = 0; s < ns(); s++) if (gaps.q0[s] > 0 || script.q1[s] > 0) {
     double x[3];
     Forces f;
     for (int c = 0; c < gapRows(); c++) x[c] = script.gapSlip[c * ns() + s];
     law.at(point(s), x, nullptr, f);
-    for (int c = 0; c < gapRows(); c++) {
-      const long r = c * ns() + s;
-      script.candidateForces[r] = f.t[c];
-      for (int e = first[r]; e < first[r + 1]; e++)
-        script.force[column[e]] += value[e] * f.t[c];   // (15): sum of dv_N/du t, t = -w a
-    }
+    for (int c = 0; c < gapRows(); c++) script.candidateForces[c * ns() + s] = f.t[c];
   }
+  script.force.numbers() = gaps.pull(script.candidateForces.numbers());
+  residual += script.force.numbers();
+  if (gaps.pairs && touches())
+    gaps.pairs->geometricTerms(script.candidateForces, free.data(), script.k, geometric);
+  return succeeded;
+}
+
+double Contact::work(const Step &, const Vector &) const {
+  Vector change = script.gapSlip.numbers();
+  change.head(ns()) -= gaps.q0.numbers();
+  return script.candidateForces.numbers().dot(change);
+}
+
+void Contact::accept(const Step &step, const Vector &d) { startFrom(step.rate() * d); }
+
+void Contact::follow(const Vector &d, double dt) {
+  if (gaps.fixed) return;
+  gaps.follow(d, dt);
+  rowsChanged = true;
+  geometric = {};
+}
+
+Vector Contact::freeForce() const {
+  return script.force.numbers().cwiseProduct(Eigen::Map<const Vector>(free.data(), ndof));
+}
+
+double Contact::obstacleWork() const {
+  return gaps.motion.head(gapRows() * ns()).dot(script.candidateForces.numbers());
 }
 
 bool Contact::touches() const {
-  return ns() > 0 && std::max(script.q0.numbers().maxCoeff(), script.q1.numbers().maxCoeff()) > 0;
+  return ns() > 0 && std::max(gaps.q0.numbers().maxCoeff(), script.q1.numbers().maxCoeff()) > 0;
 }
 
 double Contact::dampingWork() const {
   double work = 0, t, stiff;
   for (long s = 0; s < ns(); s++) {
-    const double q0 = script.q0[s], q1 = script.q1[s];
+    const double q0 = gaps.q0[s], q1 = script.q1[s];
     if (q0 > 0 || q1 > 0) work += law.normal(q0, q1, script.k[s], t, stiff) * (q1 - q0);
   }
   return work;
@@ -77,18 +71,21 @@ void Contact::clearActiveSet() {
 
 void Contact::reset() {
   computed = 0;
-  if (jacobianFixed || diagonal.size() > 0) {
+  if (gaps.fixed || diagonal.size() > 0) {
     index.assign(ndof, -1);
     unknowns.clear();
   }
   if (diagonal.size() == 0) {
-    if (jacobianFixed && !candidates.empty()) takeUnknowns();
+    if (gaps.fixed && !candidates.empty()) takeUnknowns();
     orderedLast = unknowns;
   }
   clearActiveSet();
 }
 
 void Contact::beginStep() {
+  if (lastForces.size() != gapRows() * ns()) lastForces = Vector::Zero(gapRows() * ns());
+  std::copy(sticksStart.begin(), sticksStart.end(), static_cast<long *>(script.sticks));
+  statusChanges.assign(ns(), 0);
   contactMatrices = 0;
   solvedSet = -1;
 }
@@ -147,7 +144,7 @@ Status Contact::solve(const Vector &freeGapSlip, const Vector &freeDisplacement,
   p.tau = Vector::Zero(p.start.size());
   for (int i = 0; i < n; i++) {
     p.point.push_back(point(candidates[i]));
-    p.statusChanges.push_back(int(script.statusChanges[candidates[i]]));
+    p.statusChanges.push_back(int(statusChanges[candidates[i]]));
     for (int c = 0; c < gapRows; c++) {
       p.start[gapRows * i + c] = freeGapSlip[c * ns() + candidates[i]];
       p.tau[gapRows * i + c] = tau[c * n + i];
@@ -158,20 +155,26 @@ Status Contact::solve(const Vector &freeGapSlip, const Vector &freeDisplacement,
     for (int c = 0; c < gapRows; c++) tau[c * n + i] = p.tau[gapRows * i + c];
     if (law.slips == 0) continue;
     script.sticks[candidates[i]] = p.point[i].sticks;
-    script.statusChanges[candidates[i]] = p.statusChanges[i];
+    statusChanges[candidates[i]] = p.statusChanges[i];
   }
   force = p.force;
   return succeeded;
 }
 
-void Contact::chooseStatus(const Vector &motion) {
-  const Vector moved = move(motion);
-  script.statusChanges.numbers().setZero();
-  for (long s = 0; s < ns(); s++) if (!(lastForces[s] > 0)) {
+void Contact::chooseStatus(const Vector &motion, const Vector &forces) {
+  const Vector moved = gaps.move(motion);
+  statusChanges.assign(ns(), 0);
+  for (long s = 0; s < ns(); s++) if (!(forces[s] > 0)) {
     const double speed = law.slips == 1 ? std::abs(moved[ns() + s])
       : std::hypot(moved[ns() + s], moved[2 * ns() + s]);
     script.sticks[s] = speed < law.slipVelocity;
   }
+}
+
+void Contact::startFrom(const Vector &motion) {
+  if (law.slips > 0) chooseStatus(motion, script.candidateForces.numbers());
+  const long *sticks = script.sticks;
+  sticksStart.assign(sticks, sticks + ns());
 }
 
 void Contact::remember(const Vector &tau) {
@@ -180,6 +183,8 @@ void Contact::remember(const Vector &tau) {
 }
 
 void Contact::archive(Archive &archive) {
+  gaps.obstacles.archive(archive);
+  archive(sticksStart);
   archive(candidates);  archive(unknowns);  archive(orderedLast);  archive(lastForces);
 }
 
@@ -190,11 +195,11 @@ void Contact::restore() {
   for (size_t j = 0; j < unknowns.size(); j++) index[unknowns[j]] = int(j);
   computed = 0;
   extendCompliance();
-  if (jacobianFixed && !candidates.empty()) fillRows();
+  if (gaps.fixed && !candidates.empty()) fillRows();
 }
 
 Candidate Contact::point(long s) const {
-  return {script.q0[s], script.k[s], script.muStatic[s], script.muDynamic[s],
+  return {gaps.q0[s], script.k[s], script.muStatic[s], script.muDynamic[s],
           script.sticks[s] == 1};
 }
 
@@ -207,7 +212,8 @@ void Contact::takeUnknowns() {
     unknowns.push_back(j);
   };
   for (int s : candidates) for (long r = s; r < gapRows() * ns(); r += ns())
-    for (int e = first[r]; e < first[r + 1]; e++) take(column[e], value[e]);
+    for (int e = gaps.first[r]; e < gaps.first[r + 1]; e++)
+      take(gaps.column[e], free[gaps.column[e]] * gaps.value[e]);
   for (size_t e = 0; e < geometric.unknown.size(); e++)
     take(geometric.unknown[e], geometric.value[e]);
 }
@@ -233,8 +239,9 @@ void Contact::fillRows() {
   B.begin(int(unknowns.size()), gapRows());
   for (int s : candidates) {
     for (int c = 0; c < gapRows(); c++)
-      for (int r = s + c * ns(), e = first[r]; e < first[r + 1]; e++)
-        if (value[e] != 0) B.entry(index[column[e]], c, value[e]);
+      for (int r = s + c * ns(), e = gaps.first[r]; e < gaps.first[r + 1]; e++)
+        if (free[gaps.column[e]] * gaps.value[e] != 0)
+          B.entry(index[gaps.column[e]], c, gaps.value[e]);
     B.endBlock();
   }
   for (size_t t = 0, e = 0; t < geometric.stiffness.size(); t++) {

@@ -1,61 +1,62 @@
-// contact.hpp: contact in a step: gaps and forces of all candidates, the active set (the
-// candidates near contact and the unknowns on which they act) with its compliance C = (A^-1)_uu,
-// and the contact problem on it (contact-solve.hpp). Arrays over ns candidates are stacked by
-// component, component c of candidate s at c ns + s; gapRows = 1 + slips: gap, tangential slip.
-// Exports Contact.
+// contact.hpp: the term of contact and friction: forces of all candidates at their gaps (gaps.hpp),
+// the active set (the candidates near contact and the unknowns on which they act) with its
+// compliance C = (A^-1)_uu, and the contact problem on it (contact-solve.hpp). The tangent has no
+// part of contact, which this problem solves. Exports Contact.
 #pragma once
 #include "arrays.hpp"
 #include "contact-solve.hpp"
-#include "geometric.hpp"
+#include "gaps.hpp"
 
 class Factor;
-namespace pairs { struct AnyPairs; }
 
 namespace contact {
 
-// Arrays of the scripts. The scripts set the gap Jacobian B (triplets row, column, value), the
-// penetrations q0 at the start of the step and gapSlipOffset (gap and slip for d = 0).
+// Arrays of the scripts, of the last evaluation: q at the end of the step, gap and slip, forces t
+// of the candidates and B^T t on all unknowns; k, coefficients of friction; status, 1: stick.
 struct Arrays {
-  Kept<double> q0, q1, gapSlip, gapSlipOffset, candidateForces, force, k, muStatic, muDynamic;
-  Kept<long> sticks, statusChanges, row, column;
-  Kept<double> value;
+  Kept<double> q1, gapSlip, candidateForces, force, k, muStatic, muDynamic;
+  Kept<long> sticks;
 };
 
-class Contact {
+class Contact : public Term {
  public:
+  using Vector = Eigen::VectorXd;
+  Gaps &gaps;
   Arrays script;
   Problem problem;
   Law &law = problem.law;
-  bool jacobianFixed = false;                    // B never changes
   Vector diagonal;                               // explicit steps: A^-1 is diagonal, else empty
   Indices candidates;                            // of the active set
   Indices unknowns;                              // of it or, if B changes, of all sets so far
   Indices orderedLast;                           // unknowns that A orders last
   Vector lastForces;                             // candidateForces of the last solve
+  std::vector<long> statusChanges;               // (ns) between stick and slip in the step
   long contactMatrices = 0, mostContactMatrices = 1000000000;
 
-  pairs::AnyPairs *pairs = nullptr;              // of bodies, if there are any
-  Contact(Factor &factorOfA, int &numberOfUnknowns, const std::vector<double> &freeUnknowns)
-    : factor(factorOfA), ndof(numberOfUnknowns), free(freeUnknowns) {}
+  Contact(Gaps &allGaps, Factor &factorOfA, int &numberOfUnknowns,
+          const std::vector<double> &freeUnknowns)
+    : gaps(allGaps), factor(factorOfA), ndof(numberOfUnknowns), free(freeUnknowns) {}
 
-  long ns() const { return script.q0.size(); }
-  int gapRows() const { return 1 + law.slips; }
+  // Forces (10)-(13), (15) at the gaps of d, and the geometric terms under these forces.
+  Status addForces(const Step &step, const Vector &d, Vector &residual) override;
+  // Change of the contact energy, with what friction and the damping of the penalty take. It is
+  // d times the forces, and the work of the moving obstacles.
+  double work(const Step &step, const Vector &d) const override;
+  void accept(const Step &step, const Vector &d) override;
+  void archive(Archive &archive) override;
 
-  // Sorts the triplets of B by rows; row r has the entries first[r] to first[r + 1] - 1.
-  void takeJacobian();
-  void findGeometricTerms();   // under the forces of evaluate()
+  long ns() const { return gaps.ns(); }
+  int gapRows() const { return gaps.gapRows; }
 
-  Vector move(const Vector &increment) const;   // B increment
-  Vector gapSlip(const Vector &d) const { return move(d) + script.gapSlipOffset.numbers(); }
-
-  // gapSlip, q1, candidateForces t (10)-(13) and force = B^T t (15) at the increment d.
-  void evaluate(const Vector &d);
+  void follow(const Vector &d, double dt);   // B and q0, if B changes
+  Vector freeForce() const;   // the last force on the unknowns that are not held
   // Whether a candidate penetrates at the start or at the end of the step.
   bool touches() const;
 
   // Energy [J/m; J] that the damping of the penalty takes in the step: sum of its force times the
   // increment of the penetration.
   double dampingWork() const;
+  double obstacleWork() const;   // of the moving obstacles on the bodies in the step [J/m; J]
 
   // Removes all candidates from the active set. C remains.
   void clearActiveSet();
@@ -78,12 +79,12 @@ class Contact {
   // force = B^T tau. forceTolerance [N]: of the forces. Returns succeeded or diverged.
   Status solve(const Vector &freeGapSlip, const Vector &freeDisplacement, double forceTolerance,
             Vector &tau, Vector &force);
-  // Status of candidates without load, from their tangential velocities under a motion [m/s], as
-  // chooseStatuses() of candidate-forces.idp; no status has changed yet.
-  void chooseStatus(const Vector &motion);
+  // Initial status of candidates without load, from their tangential velocities under a motion
+  // [m/s]: they stick below slip_velocity. Loaded ones keep theirs; no status has changed yet.
+  void chooseStatus(const Vector &motion, const Vector &forces);
+  void startFrom(const Vector &motion);   // statuses of the next step under this motion
   void remember(const Vector &tau);   // `lastForces` of the active rows
 
-  void archive(Archive &archive);
   // The active set from its candidates and unknowns.
   void restore();
 
@@ -92,8 +93,7 @@ class Contact {
   int &ndof;
   const std::vector<double> &free;               // (ndof) 0 at held unknowns
   Geometric geometric;
-  Indices first{0}, column;                      // B by rows
-  std::vector<double> value;
+  std::vector<long> sticksStart;                 // (ns) statuses at the start of the step
   bool rowsChanged = true;                       // since the active rows were filled
   std::vector<char> active;                      // (ns) 1: in the active set
   Indices index;                                 // (ndof) position in `unknowns`, or -1

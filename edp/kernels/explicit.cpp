@@ -4,30 +4,32 @@
 
 using Vector = Eigen::VectorXd;
 
-void ExplicitContact::begin(const Vector &compliance, double distance) {
+void ExplicitContact::begin(const Step &step, const Vector &d, const Vector &compliance,
+                            double distance) {
   contact.diagonal = compliance;
+  contact.gaps.search(step, d);
   contact.beginStep();
   contact.reset();
-  if (contact.jacobianFixed) contact.update(contact.script.q0.numbers(), distance);
+  if (contact.gaps.fixed) contact.update(contact.gaps.q0.numbers(), distance);
 }
 
 Status ExplicitContact::take(Eigen::Map<Vector> increment, const Vector &halfStepVelocity,
-                             double h, const std::function<long()> &gaps) {
+                             double h) {
   const Vector free = increment;
   const long ns = contact.ns();
   double change = 1;
   contact.law.dt = h;
   contact.law.lawInstant = contact::stepMean;
   Vector back = contact.diagonal.cwiseProduct(contact.script.force.numbers());
-  if (!contact.jacobianFixed) increment -= back;
+  if (!contact.gaps.fixed) increment -= back;
   contact.script.force.numbers().setZero();
   for (int pass = 0; pass < 10 && change > 1e-8 * increment.lpNorm<Eigen::Infinity>(); pass++) {
     const Vector before = increment;
-    if (!contact.jacobianFixed) { gaps();  contact.takeJacobian(); }
-    Vector start = contact.gapSlip(increment);
-    if (!contact.jacobianFixed) {
+    contact.follow(increment, h);
+    Vector start = contact.gaps.gapSlip(increment);
+    if (!contact.gaps.fixed) {
       back = free - increment;
-      start += contact.move(back);
+      start += contact.gaps.move(back);
       contact.clearActiveSet();
     }
     contact.script.q1.numbers() = start.head(ns);
@@ -35,9 +37,10 @@ Status ExplicitContact::take(Eigen::Map<Vector> increment, const Vector &halfSte
     if (!solve(start, halfStepVelocity, back)) return diverged;
     increment = free - back;
     contact.lastForces = contact.script.candidateForces.numbers();
-    change = contact.jacobianFixed ? 0 : (before - increment).lpNorm<Eigen::Infinity>();
+    change = contact.gaps.fixed ? 0 : (before - increment).lpNorm<Eigen::Infinity>();
   }
   contact.script.q1.numbers() = contact.script.gapSlip.numbers().head(ns);
+  contact.script.force.numbers() = contact.gaps.pull(contact.script.candidateForces.numbers());
   return succeeded;
 }
 
@@ -59,11 +62,11 @@ bool ExplicitContact::solve(const Vector &start, const Vector &halfStepVelocity,
   bool more = true;
   contact.script.candidateForces.numbers().setZero();
   contact.script.force.numbers().setZero();
-  contact.update(contact.script.q0.numbers(), 0);
+  contact.update(contact.gaps.q0.numbers(), 0);
   for (int pass = 0; pass < 20 && more; pass++) {
     Vector force;
     contact.update(q, 0);
-    if (contact.law.jumps) contact.chooseStatus(halfStepVelocity);
+    if (contact.law.jumps) contact.chooseStatus(halfStepVelocity, contact.lastForces);
     Vector tau = contact.ofActive(contact.lastForces),
       still = Vector::Zero(long(contact.unknowns.size()));
     contact.contactMatrices = 0;
@@ -73,7 +76,7 @@ bool ExplicitContact::solve(const Vector &start, const Vector &halfStepVelocity,
       contact.script.candidateForces[contact.candidates[i % n] + i / n * ns] = tau[i];
     contact.script.force.numbers() = contact.onUnknowns(force);
     back = contact.diagonal.cwiseProduct(contact.script.force.numbers());
-    const Vector end = start - contact.move(back);
+    const Vector end = start - contact.gaps.move(back);
     contact.script.gapSlip.numbers() = end;
     q = end.head(ns);
     more = contact.penetrates(q);

@@ -6,9 +6,7 @@
 // friction at the mean velocity S d/h. With (a) this is the problem of contact-solve.hpp with the
 // diagonal A = (2/h^2) M. Exports ExplicitContact.
 #pragma once
-#include <functional>
-#include "status.hpp"
-#include "tensors.hpp"
+#include "term.hpp"
 
 namespace contact { class Contact; }
 
@@ -22,16 +20,16 @@ class ExplicitContact {
   using Vector = Eigen::VectorXd;
   explicit ExplicitContact(contact::Contact &contactOfStep) : contact(contactOfStep) {}
 
-  // For the substeps of a step: A^-1, and, if B is fixed, the candidates within `distance` [m].
-  void begin(const Vector &compliance, double distance);
+  // For the substeps of a step by about d: the contact search, A^-1, and, if B is fixed, the
+  // candidates within `distance` [m].
+  void begin(const Step &step, const Vector &d, const Vector &compliance, double distance);
 
   // Replaces the increment h v- of a substep without contact forces by that with them; v- is
   // halfStepVelocity. Returns succeeded or diverged. A B that changes with
   // the increment is evaluated at the latest one, first with the forces of the last substep. Each
   // pass reduces the error a thousandfold; there are at most ten. The rest changes no momentum,
   // and the energy by a thousandth of Verlet's error.
-  Status take(Eigen::Map<Vector> increment, const Vector &halfStepVelocity, double h,
-              const std::function<long()> &gaps);
+  Status take(Eigen::Map<Vector> increment, const Vector &halfStepVelocity, double h);
 
  private:
   contact::Contact &contact;

@@ -9,8 +9,6 @@
 #include "factor.hpp"
 #include "input.hpp"
 #include "loads.hpp"
-#include "obstacles.hpp"
-#include "pairs.hpp"
 #include "step.hpp"
 
 static bodies::Elements elements;
@@ -18,16 +16,15 @@ static bodies::Bodies body(elements);
 static bodies::Inertia inertia(elements);
 static bodies::Loads loads;
 static bodies::Supports supports(elements, body);
-// of (2), beside contact
-static const Terms terms = {&body, &inertia, &loads, &supports};
 static Step stepNow;                                 // set by kernelIntegrator
 static std::vector<const laws::Law *> law;           // by its number in lawOfPoint
 static Factor factor;
-static contact::Contact touching(factor, elements.ndof, elements.free);
+static contact::Gaps gaps;
+static contact::Contact touching(gaps, factor, elements.ndof, elements.free);
+static const Terms terms = {&body, &inertia, &loads, &touching, &supports};   // of (2)
+static const Terms besideContact = {&body, &inertia, &loads, &supports};   // of explicit steps
 static ImplicitStep step(elements, body, terms, factor, touching);
 static ExplicitContact substep(touching);
-static std::unique_ptr<pairs::AnyPairs> pairsOfBodies;
-static obstacles::Obstacles sceneObstacles;                   // the obstacles
 
 static Triplets entries(Sparse A) {
   // The entries of a sparse matrix. The kernels take no half (symmetric) or 1-based storage.
@@ -76,21 +73,27 @@ static void addBodies() {
   add("kernelMass", +[](Sparse mass) { inertia.setMass(entries(mass)); });
   // after a change of the unknowns that supports hold
   add("kernelFree", +[](Reals free) { elements.free = copied<double>(free); });
-  add("kernelBegin", +[](Reals F) { body.start(F); });   // a step begins at the deformation F
+  add("kernelBegin", +[](Reals F, Reals v) {
+    // A step begins at the deformation F with the velocity v, and without contact forces.
+    body.start(F);
+    touching.startFrom(Kept<double>{&v}.numbers());
+  });
   add("kernelIntegrator", +[](double t, double dt, double massScale, double stiffnessScale,
                              long stressInstant, double staticShare, Reals inertiaKnown) {
     stepNow = {t, dt, massScale, stiffnessScale, int(stressInstant), staticShare, false};
     inertia.known = {&inertiaKnown};
   });
-  add("kernelForces", +[](Reals d, Reals residual) {
+  add("kernelForces", +[](Reals d, bool contact, Reals residual) {
     Eigen::VectorXd sum;
-    const long ended = sumForces(terms, stepNow, Kept<double>{&d}.numbers(), sum);
+    const long ended = sumForces(contact ? terms : besideContact, stepNow,
+                                 Kept<double>{&d}.numbers(), sum);
     Kept<double>{&residual}.numbers() = sum;
     return ended;
   });
   add("kernelTerm", +[](std::string &name, Reals d, Reals forces, double &work) {
     // Forces and work of one term at d (for verification).
-    Term *term = name == "inertia" ? (Term *)&inertia : name == "loads" ? (Term *)&loads : &body;
+    Term *term = name == "inertia" ? (Term *)&inertia : name == "loads" ? (Term *)&loads
+      : name == "contact" ? (Term *)&touching : &body;
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(d.N());
     const Eigen::VectorXd increment = Kept<double>{&d}.numbers();
     const long ended = term->addForces(stepNow, increment, sum);
@@ -98,7 +101,9 @@ static void addBodies() {
     work = term->work(stepNow, increment);
     return ended;
   });
-  add("kernelAccept", +[]() { for (Term *term : terms) term->accept(stepNow); });
+  add("kernelAccept", +[](Reals d) {
+    for (Term *term : terms) term->accept(stepNow, Kept<double>{&d}.numbers());
+  });
   add("kernelRelax", +[]() { body.relax(); });
   // F, C, det F at the start of a step; det F at its end; pressures of the elements; energy
   // dissipated so far (nq) [J/m3]
@@ -209,16 +214,11 @@ static void addFactor() {
 }
 
 static void addStep() {
-  // Kernels of contact.hpp, step.hpp and explicit.hpp. The first three are called once.
-  add("kernelContactArrays", +[](bool jacobianFixed, Reals q0, Reals q1, Reals gapSlip,
-                                Reals gapSlipOffset, Reals candidateForces, Reals force, Reals k,
-                                Reals muStatic, Reals muDynamic, Ints sticks, Ints statusChanges,
-                                Ints row, Ints column, Reals value) {
-    touching.jacobianFixed = jacobianFixed;
-    touching.script = {
-      {&q0}, {&q1}, {&gapSlip}, {&gapSlipOffset}, {&candidateForces}, {&force}, {&k}, {&muStatic},
-      {&muDynamic}, {&sticks}, {&statusChanges}, {&row}, {&column}, {&value}};
-    touching.takeJacobian();
+  // Kernels of contact.hpp, step.hpp and explicit.hpp. The first two are called once.
+  add("kernelContactArrays", +[](Reals q1, Reals gapSlip, Reals candidateForces, Reals force,
+                                Reals k, Reals muStatic, Reals muDynamic, Ints sticks) {
+    touching.script = {{&q1}, {&gapSlip}, {&candidateForces}, {&force}, {&k}, {&muStatic},
+                       {&muDynamic}, {&sticks}};
   });
   add("kernelStepArrays", +[](Reals d, Reals v, Reals frameMotion, Reals seconds, Ints counts,
                              Sparse translations) {
@@ -233,22 +233,12 @@ static void addStep() {
     body.breaks = breaks;
     body.leastVolumeRatio = leastVolumeRatio;
   });
-  add("kernelStep", +[](long lawInstant, double searchDistance, double energyScale,
-                       double momentumScale, double roundOff, long mostContactMatrices,
-                       double &residualWorkRatio, Callback gaps, Callback search) {
+  add("kernelStep", +[](double energyScale, double momentumScale, double roundOff,
+                       long mostContactMatrices, double &residualWorkRatio) {
     touching.mostContactMatrices = mostContactMatrices;
-    const long ended = step.take({stepNow, lawInstant, searchDistance, energyScale, momentumScale,
-                                  roundOff}, {gaps, search});
+    const long ended = step.take({stepNow, energyScale, momentumScale, roundOff});
     residualWorkRatio = step.residualWorkRatio;
     return ended;
-  });
-  add("kernelContactForces", +[](Reals d, double dt, long lawInstant) {
-    // Gap and slip, forces of candidates and contact force at d with the present rows (for
-    // verification).
-    touching.law.dt = dt;
-    touching.law.lawInstant = int(lawInstant);
-    touching.takeJacobian();
-    touching.evaluate(Kept<double>{&d}.numbers());
   });
   add("kernelTractions", +[](Reals vN0, Reals gapSlip, Reals k, Reals muStatic, Reals muDynamic,
                             Ints sticks, double dt, long lawInstant, Reals t, Reals slope) {
@@ -270,9 +260,8 @@ static void addStep() {
   });
   add("kernelForget", +[]() { step.forget(); });
   add("kernelState", +[](Reals state) {
-    // Stores in an array what step and obstacles remember from earlier steps.
+    // Stores in an array what the step remembers from earlier steps.
     Archive archive;
-    sceneObstacles.archive(archive);
     step.archive(archive);
     state.resize(long(archive.numbers.size()));
     std::copy(archive.numbers.begin(), archive.numbers.end(), (double *)state);
@@ -281,16 +270,18 @@ static void addStep() {
     Archive archive;
     archive.numbers = copied<double>(state);
     archive.reads = true;
-    sceneObstacles.archive(archive);
     step.archive(archive);
     if (step.isFactorised()) step.restore();
   });
-  add("kernelSubsteps", +[](Reals compliance, double distance) {
-    substep.begin(Kept<double>{&compliance}.numbers(), distance);
+  add("kernelSubsteps", +[](Reals d, Reals compliance, double distance) {
+    substep.begin(stepNow, Kept<double>{&d}.numbers(), Kept<double>{&compliance}.numbers(),
+                  distance);
   });
-  add("kernelSubstep", +[](Reals increment, Reals halfStepVelocity, double h, Callback gaps) {
+  add("kernelSubstep", +[](Reals x, double t, Reals increment, Reals halfStepVelocity, double h) {
+    // A substep of length h from the displacements x at the time t.
+    gaps.goOn(Kept<double>{&x}.numbers(), t, h);
     return long(substep.take(Kept<double>{&increment}.numbers(),
-                             Kept<double>{&halfStepVelocity}.numbers(), h, gaps));
+                             Kept<double>{&halfStepVelocity}.numbers(), h));
   });
   add("kernelDampingWork", +[](double &work) { work = touching.dampingWork(); });
   add("kernelLaw", +[](double exponent, double retardation, double slipVelocity, double bridge,
@@ -312,8 +303,19 @@ static void addStep() {
   });
 }
 
-static void addPairs() {
-  // Kernels of pairs.hpp: gaps between bodies. kernelSurface is called once.
+static void addGaps() {
+  // Kernels of gaps.hpp and pairs.hpp. The first three are called at the start.
+  add("kernelGaps", +[](bool fixed, long gapRows, double staticReach, Reals nodalPosition, Reals u,
+                       Reals q0, Reals frameMotion, Reals rest, Reals rates) {
+    gaps.fixed = fixed;
+    gaps.gapRows = int(gapRows);
+    gaps.staticReach = staticReach;
+    gaps.nodalPosition = Kept<double>{&nodalPosition}.numbers();
+    gaps.u = {&u};  gaps.q0 = {&q0};  gaps.frameMotion = {&frameMotion};
+    gaps.rest = {&rest};  gaps.rates = {&rates};
+    gaps.makeFixed();
+  });
+  add("kernelSpread", +[](Sparse spread) { gaps.spread = byRows(spread); });
   add("kernelSurface", +[](Table shape, long points, long obstacles, long bodies, Ints unknown,
                           Ints body, Reals side, Reals pointShape, Ints selfContact,
                           Reals reference, Ints deformable) {
@@ -323,16 +325,63 @@ static void addPairs() {
       copied<double>(pointShape), copied<int>(selfContact), copied<double>(reference),
       copied<int>(deformable), pairs::ShapeCoefficients(nodes, shape.M())};
     for (int a = 0; a < nodes; a++) for (int j = 0; j < shape.M(); j++) s.shape(a, j) = shape(a, j);
-    pairsOfBodies = pairs::make(std::move(s));
-    touching.pairs = pairsOfBodies.get();
+    gaps.pairs = pairs::make(std::move(s));
   });
+  add("kernelGapsNow", +[](Reals u, double t, double distance, Reals q) {
+    Kept<double>{&q}.numbers() = gaps.now(Kept<double>{&u}.numbers(), t, distance);
+  });
+  add("kernelGapMotion", +[](Reals w, double share, Reals moved) {
+    // B w, and a share of the motion of the obstacles in the step
+    Kept<double>{&moved}.numbers() = gaps.move(Kept<double>{&w}.numbers());
+    Kept<double>{&moved}.numbers() += share * gaps.motion.head(moved.N());
+  });
+  add("kernelGapIncrement", +[](Reals d, double dt, double &way) {
+    way = gaps.increment(Kept<double>{&d}.numbers(), dt);
+  });
+  add("kernelMovesTooFar", +[](Reals d) {
+    return long(gaps.movesTooFar(stepNow, Kept<double>{&d}.numbers()));
+  });
+  add("kernelObstacleWork", +[](double &work) { work = touching.obstacleWork(); });
+  add("kernelCrossed", +[](Ints crossed) {   // points that passed through each obstacle
+    gaps.obstacles.crossed.resize(crossed.N());
+    std::copy(gaps.obstacles.crossed.begin(), gaps.obstacles.crossed.end(), (long *)crossed);
+  });
+}
+
+static void fillRows(const JacobianRows &rows, Ints row, Ints unknown, Reals normal, Reals slip) {
+  const long n = long(rows.row.size());
+  row.resize(n);  unknown.resize(n);
+  for (long e = 0; e < n; e++) { row[e] = rows.row[e];  unknown[e] = rows.unknown[e]; }
+  fill(normal, rows.normal);
+  fill(slip, rows.slip);
+}
+
+static void addRows() {
+  // For verification: the search of a step, and the rows of pairs and obstacles as triplets.
   add("kernelSearchPairs", +[](Reals x, double searchDistance) {
-    return pairsOfBodies->search(x, searchDistance);
+    return gaps.pairs->search(x, searchDistance);
   });
-  add("kernelPairStart", +[](Reals x) { return pairsOfBodies->start(x, x.N()); });
+  add("kernelPairStart", +[](Reals x) { return gaps.pairs->start(x, x.N()); });
   add("kernelPairGaps", +[](Reals d, Reals q0, Reals q1, Ints row, Ints unknown, Reals normal,
                            Reals slip) {
-    pairsOfBodies->gaps(d, q0, q1, {row, unknown, normal, slip});
+    JacobianRows rows;
+    gaps.pairs->gaps(d, q0, q1, rows);
+    fillRows(rows, row, unknown, normal, slip);
+  });
+  add("kernelSearch", +[](Reals d) { gaps.search(stepNow, Kept<double>{&d}.numbers()); });
+  add("kernelObstacleStart", +[](Reals u0, double t, double searchDistance) {
+    return gaps.obstacles.start(u0, t, searchDistance);
+  });
+  add("kernelObstacleRows", +[](Reals d, double dt, Reals q0, Reals q1, Reals motion, Ints row,
+                               Ints unknown, Reals normal, Reals slip) {
+    JacobianRows rows;
+    Eigen::VectorXd start = Kept<double>{&q0}.numbers(), end = start,
+      moved = Kept<double>{&motion}.numbers();
+    gaps.obstacles.rows(d, dt, start, end, moved, rows);
+    Kept<double>{&q0}.numbers() = start;
+    Kept<double>{&q1}.numbers() = end;
+    Kept<double>{&motion}.numbers() = moved;
+    fillRows(rows, row, unknown, normal, slip);
   });
 }
 
@@ -345,45 +394,37 @@ static void addObstacles() {
   add("kernelObstacle", +[](std::string &kind, long axes, Reals numbers, Reals velocity) {
     // Appends an obstacle.
     obstacles::Obstacle added;
-    added.shape = shapes::make(long(sceneObstacles.obstacle.size()), kind, int(axes), numbers,
+    added.shape = shapes::make(long(gaps.obstacles.obstacle.size()), kind, int(axes), numbers,
                                numbers.N());
     added.velocity = spatial(velocity);
-    sceneObstacles.axes = int(axes);
-    sceneObstacles.obstacle.push_back(std::move(added));
+    gaps.obstacles.obstacle.push_back(std::move(added));
   });
   add("kernelDrive", +[](long k, Reals pivot, Reals axis) {
-    sceneObstacles.obstacle[k].driven = true;
-    sceneObstacles.obstacle[k].pivot = spatial(pivot);
-    sceneObstacles.obstacle[k].axis = spatial(axis);
+    gaps.obstacles.obstacle[k].driven = true;
+    gaps.obstacles.obstacle[k].pivot = spatial(pivot);
+    gaps.obstacles.obstacle[k].axis = spatial(axis);
   });
   add("kernelDriveFunction", +[](long k, long c, Reals time, Reals value, Reals slope) {
     // Function c of the driven obstacle k: components 0 to 2 of the displacement, 3 the angle.
-    obstacles::Obstacle &driven = sceneObstacles.obstacle[k];
+    obstacles::Obstacle &driven = gaps.obstacles.obstacle[k];
     (c < 3 ? driven.displacement[c] : driven.angle) =
       {copied<double>(time), copied<double>(value), copied<double>(slope)};
   });
-  add("kernelContactPoints", +[](Reals places, Sparse traces) {
-    sceneObstacles.setPoints(places, entries(traces));
-  });
-  add("kernelObstacleStart", +[](Reals u0, double t, double searchDistance) {
-    return sceneObstacles.start(u0, t, searchDistance);
-  });
-  add("kernelObstacleRows", +[](Reals d, double dt, Reals q0, Reals q1, Reals motion, Ints row,
-                               Ints unknown, Reals normal, Reals slip) {
-    sceneObstacles.rows(d, dt, q0, q1, motion, {row, unknown, normal, slip});
+  add("kernelContactPoints", +[](long axes, Reals places, Sparse traces) {
+    gaps.obstacles.axes = int(axes);
+    gaps.obstacles.setPoints(places, entries(traces));
   });
   add("kernelObstacleIncrement", +[](Reals d, double dt, double &farthest) {
-    farthest = sceneObstacles.largestIncrement(d, dt);
+    farthest = gaps.obstacles.largestIncrement(d, dt);
   });
-  add("kernelCountCrossings", +[](Ints crossed) { sceneObstacles.countCrossings(crossed); });
   add("kernelObstacleGaps", +[](long k, Reals x, double t, Reals gap, Reals normal) {
     // Gaps (m) [m] and normals (axes m) of obstacle k at time t, for m positions x (axes m).
-    const obstacles::Pose pose = sceneObstacles.obstacle[k].pose(t);
-    const long m = gap.N(), axes = sceneObstacles.axes;
+    const obstacles::Pose pose = gaps.obstacles.obstacle[k].pose(t);
+    const long m = gap.N(), axes = gaps.obstacles.axes;
     for (long i = 0; i < m; i++) {
       obstacles::Point place = obstacles::Point::Zero();
       for (long c = 0; c < axes; c++) place[c] = x[c * m + i];
-      const shapes::Nearest closest = sceneObstacles.obstacle[k].shape->nearest(pose.frame(place));
+      const shapes::Nearest closest = gaps.obstacles.obstacle[k].shape->nearest(pose.frame(place));
       const obstacles::Point n = pose.R * closest.normal;
       gap[i] = closest.gap;
       for (long c = 0; c < axes; c++) normal[c * m + i] = n[c];
@@ -391,12 +432,12 @@ static void addObstacles() {
   });
   add("kernelObstaclePoint", +[](long k, double t, Reals X, Reals x) {
     // Position x (3) in the scene at time t of the point X of the frame of obstacle k.
-    const obstacles::Point place = sceneObstacles.obstacle[k].pose(t).scene(spatial(X));
+    const obstacles::Point place = gaps.obstacles.obstacle[k].pose(t).scene(spatial(X));
     for (int c = 0; c < 3; c++) x[c] = place[c];
   });
   add("kernelObstacleVelocity", +[](long k, double t, Reals x, Reals v, Reals spin) {
     // Velocity v (3) of obstacle k at the position x in the scene, and its spin (3), at time t.
-    const obstacles::Obstacle &moving = sceneObstacles.obstacle[k];
+    const obstacles::Obstacle &moving = gaps.obstacles.obstacle[k];
     const obstacles::Point velocity = moving.velocityAt(t, spatial(x)), turning = moving.spin(t);
     for (int c = 0; c < 3; c++) { v[c] = velocity[c];  spin[c] = turning[c]; }
   });
@@ -429,7 +470,8 @@ static void addKernels() {
   addLoads();
   addFactor();
   addStep();
-  addPairs();
+  addGaps();
+  addRows();
   addObstacles();
 }
 

@@ -76,7 +76,8 @@ long Obstacles::start(const double *u0, double time, double searchDistance) {
   return long(near.size());
 }
 
-void Obstacles::countCrossings(long *crossed) {
+void Obstacles::countCrossings() {
+  crossed.resize(obstacle.size());
   const std::vector<int> candidateBefore = watched;
   const State before = watchedState;
   watched.clear();
@@ -95,9 +96,9 @@ void Obstacles::countCrossings(long *crossed) {
   }
 }
 
-void Obstacles::rows(const double *d, double dt, Reals q0, Reals q1, Reals motion,
-                     const JacobianRows &B) {
-  const long ns = motion.N() / axes;
+void Obstacles::rows(const double *d, double dt, Vector &q0, Vector &q1, Vector &motion,
+                     JacobianRows &B) {
+  const long ns = motion.size() / axes;
   for (long s = 0; s < candidates(); s++) q0[s] = q1[s] = -tensors::infinity;
   for (int c = 0; c < axes; c++) for (long s = 0; s < candidates(); s++) motion[c * ns + s] = 0;
   long entries = 0;
@@ -118,8 +119,8 @@ void Obstacles::rows(const double *d, double dt, Reals q0, Reals q1, Reals motio
     for (int c = 0; c < axes; c++) motion[c * ns + s] = work[c];
     for (int c = 0; c < axes; c++)
       for (Trace::InnerIterator it(trace, c * points() + now.point); it; ++it, e++) {
-        B.row[e] = s;
-        B.unknown[e] = it.col();
+        B.row[e] = int(s);
+        B.unknown[e] = int(it.col());
         B.normal[e] = direction[0][c] * it.value();
         for (int a = 1; a < axes; a++)
           B.slip[(a - 1) * entries + e] = direction[a][c] * it.value();
@@ -139,8 +140,16 @@ double Obstacles::largestIncrement(const double *d, double dt) const {
   return farthest;
 }
 
+double Obstacles::largestMotion(const Vector &w) const {
+  const Vector moved = trace * w;
+  double square = 0;
+  for (int c = 0; c < axes; c++)
+    square += std::pow(moved.segment(c * points(), points()).lpNorm<Eigen::Infinity>(), 2);
+  return std::sqrt(square);
+}
+
 void Obstacles::archive(Archive &archive) {
-  archive(t);  archive(bound);  archive(placeInFrame);  archive(watched);  archive(watchedState);
+  archive(crossed);  archive(t);  archive(bound);  archive(placeInFrame);  archive(watched);  archive(watchedState);
   for (Point &x : place) for (int c = 0; c < 3; c++) archive(x[c]);
 }
 

@@ -62,6 +62,7 @@ struct Near {
 
 class Obstacles {
  public:
+  using Vector = Eigen::VectorXd;
   std::vector<Obstacle> obstacle;
   int axes = 2;
 
@@ -80,15 +81,18 @@ class Obstacles {
   // At a contact search: adds to crossed[k] the number of points that passed through obstacle k
   // since the last one. A point deeper than half the thickness is pushed out on the far side: its
   // normal reverses, and it is behind the plane that it was in front of.
-  void countCrossings(long *crossed);
+  void countCrossings();
+  std::vector<long> crossed;
 
   // Rows, penetrations q0, q1 at both ends and motion (axes ns) of the step by d in dt from the
   // configuration of start(). Only of the candidates of obstacles; q = -infinity for those that
   // are not near.
-  void rows(const double *d, double dt, Reals q0, Reals q1, Reals motion, const JacobianRows &B);
+  void rows(const double *d, double dt, Vector &q0, Vector &q1, Vector &motion, JacobianRows &B);
 
   // Largest motion [m] of a point relative to any obstacle in the step by d.
   double largestIncrement(const double *d, double dt) const;
+  // Upper bound [m] of the displacement of a point by w: from its largest components.
+  double largestMotion(const Vector &w) const;
 
   void archive(Archive &archive);
 

@@ -236,7 +236,7 @@ public:
     return long(candidate.size());
   }
 
-  void gaps(const double *d, double *q0, double *q1, const JacobianRows &rows) {
+  void gaps(const double *d, double *q0, double *q1, JacobianRows &rows) {
     // For the increment d: penetrations q0, q1 [m] at the start and end of the step, and the rows
     // of B and S. Candidates that cannot come into contact keep q0, q1 and get zero rows.
     const long n = long(candidate.size()), entries = 2 * A * surface.nodes * n;
@@ -539,7 +539,7 @@ private:
     });
   }
 
-  void row(int k, long n, bool seen, double change, const JacobianRows &rows) const {
+  void row(int k, long n, bool seen, double change, JacobianRows &rows) const {
     // Row k of n of B and S in the middle configuration u0 + d/2, zero if not seen; for a variation
     // delta
     //   rho = delta x - N_a delta y_a,  G delta = n.rho,
@@ -573,7 +573,7 @@ private:
     }
     entriesOf(k, p, [&](int block, int unknown, int i, double N, const Vector<A - 1> &turn) {
       const long at = k * 2L * A * surface.nodes + block;
-      rows.row[at] = candidate[k];
+      rows.row[at] = int(candidate[k]);
       rows.unknown[at] = unknown;
       for (int j = 0; j < A; j++) {
         const double value = f[j][i] * N + c[j].row(i) * turn;

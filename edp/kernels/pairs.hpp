@@ -31,7 +31,7 @@ struct AnyPairs {
   virtual ~AnyPairs() {}
   virtual long search(const double *x, double searchDistance) = 0;
   virtual long start(const double *x, long unknowns) = 0;
-  virtual void gaps(const double *d, double *q0, double *q1, const JacobianRows &rows) = 0;
+  virtual void gaps(const double *d, double *q0, double *q1, JacobianRows &rows) = 0;
   // Geometric contact stiffness at vertices in the plane for the normal forces t of the
   // candidates, at most `limit`; free (unknowns): 0 if held.
   virtual void geometricTerms(const double *t, const double *free, const double *limit,

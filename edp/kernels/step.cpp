@@ -7,8 +7,8 @@
 
 using Vector = Eigen::VectorXd;
 
-Status ImplicitStep::take(const StepParameters &parameters, const Scripts &stepScripts) {
-  begin(parameters, stepScripts);
+Status ImplicitStep::take(const StepParameters &parameters) {
+  begin(parameters);
   evaluatePrediction();
   const Status failed = status != succeeded ? status : iterate();
   script.counts[iterationsMade] = iterations;
@@ -26,7 +26,6 @@ void ImplicitStep::archive(Archive &archive) {
   archive(fewestIterations);  archive(surplusIterations);
   for (Term *term : terms) term->archive(archive);
   history.archive(archive);
-  contact.archive(archive);
 }
 
 void ImplicitStep::restore() {
@@ -51,8 +50,9 @@ Status ImplicitStep::iterate() {
     testConvergence();
     if (convergence <= 1 && consecutive) {
       if (!isValid()) return inverted;
-      if (scripts->search() == 0) return accept();
-      if (!contact.jacobianFixed) contact.clearActiveSet();
+      if (!contact.gaps.movesTooFar(motion, d)) return accept();
+      search();
+      contact.clearActiveSet();
       evaluate();
       if (status != succeeded) return status;
       consecutive = false;
@@ -61,7 +61,7 @@ Status ImplicitStep::iterate() {
     contraction = iterations - renewedAt < 2
       ? 0.1 : std::sqrt(contraction * residualNow / residualBefore);
     if (!consecutive && isAtJump())
-      return scripts->search() == 0 && isValid() ? accept() : diverged;
+      return !contact.gaps.movesTooFar(motion, d) && isValid() ? accept() : diverged;
     if (wearsOut(contraction)) {
       const Status failed = renew();
       if (failed != succeeded) return failed;
@@ -70,23 +70,28 @@ Status ImplicitStep::iterate() {
   return diverged;
 }
 
-void ImplicitStep::begin(const StepParameters &parameters, const Scripts &stepScripts) {
+void ImplicitStep::begin(const StepParameters &parameters) {
   motion = parameters;
   motion.carries = projected();
-  scripts = &stepScripts;
-  contact.law.dt = motion.dt;
-  contact.law.lawInstant = int(motion.lawInstant);
   contact.beginStep();
-  if (!contact.jacobianFixed) contact.clearActiveSet();
+  if (!contact.gaps.fixed) contact.clearActiveSet();
   d = script.d.numbers();
+  script.seconds.numbers().setZero();
   script.counts.numbers().setZero();
+  search();
   iterations = renewed = renewedAt = 0;
   consecutive = false;
   if (!projected())
     pressureResidual = pressureResidualBefore = pressureDirection = pressureBack = Vector();
-  searchDistance = (contact.jacobianFixed
-    ? motion.dt * script.v.numbers().lpNorm<Eigen::Infinity>() : motion.searchDistance) / 5;
+  searchDistance = (contact.gaps.fixed
+    ? motion.dt * script.v.numbers().lpNorm<Eigen::Infinity>()
+    : contact.gaps.searchDistance) / 5;
   if (settings.allCandidates) searchDistance = tensors::infinity;
+}
+
+void ImplicitStep::search() {
+  const Timed timed(seconds(searches));
+  contact.gaps.search(motion, d);
 }
 
 void ImplicitStep::evaluatePrediction() {
@@ -110,25 +115,14 @@ void ImplicitStep::evaluateAt(const Vector &increment, const Vector &pressures) 
 }
 
 void ImplicitStep::evaluate() {
-  evaluateBodies();
-  if (status == succeeded) evaluateContact();
-}
-
-void ImplicitStep::evaluateBodies() {
-  const Timed timed(seconds(assembly));
   script.counts[evaluations]++;
-  status = sumForces(terms, motion, d, bodyResidual);
-}
-
-void ImplicitStep::evaluateContact() {
-  const Timed timed(seconds(contacts));
-  if (!contact.jacobianFixed) { scripts->gaps();  contact.takeJacobian(); }
-  contact.evaluate(d);
-  residual = bodyResidual;
-  if (contact.touches()) {
-    if (!contact.jacobianFixed) contact.findGeometricTerms();
-    residual += contact.script.force.numbers();
+  Vector sum = Vector::Zero(d.size());
+  for (Term *term : terms) {
+    const Timed timed(seconds(term == &contact ? contacts : assembly));
+    status = term->addForces(motion, d, sum);
+    if (status != succeeded) return;
   }
+  residual = sum;
   residualNow = residual.norm();
   if (residualNow != residualNow) status = notANumber;
 }
@@ -139,10 +133,10 @@ void ImplicitStep::computeCorrection() {
   correction = -solved(residual);
   if (!consecutive) {
     trial = d;                                 // w, with A^-1 B^T t if B is fixed
-    if (contact.jacobianFixed && contact.script.force.numbers().lpNorm<Eigen::Infinity>() > 0)
-      trial += solved(contact.script.force.numbers());
+    const Vector force = contact.freeForce();
+    if (contact.gaps.fixed && force.lpNorm<Eigen::Infinity>() > 0) trial += solved(force);
   }
-  else if (!contact.jacobianFixed) trial = d;
+  else if (!contact.gaps.fixed) trial = d;
   if (projected()) pressureResidual = mapped(body.volume->star) - mapped(body.volume->now);
   if (consecutive) history.learn(searchDirection, correction - correctionBefore,
                              pressureDirection + pressureResidual - pressureResidualBefore);
@@ -165,14 +159,14 @@ void ImplicitStep::lineSearch() {
   // accepted in any case. Sets d and consecutive.
   double scale = 1;
   const bool fresh = renewed > 0 && iterations == renewedAt;   // A was factorised at dBack
-  const Eigen::Matrix<long, Eigen::Dynamic, 1> sticks = contact.script.sticks.numbers(),
-    changes = contact.script.statusChanges.numbers();
+  const Eigen::Matrix<long, Eigen::Dynamic, 1> sticks = contact.script.sticks.numbers();
+  const std::vector<long> changes = contact.statusChanges;
   if (projected()) pressureBack = mapped(body.volume->now);
   consecutive = false;
   residualBefore = residualNow;
   for (int cut = 0; cut < 7; cut++) {
     // B and forces of the iterate, not of the try
-    if (cut > 0 && !contact.jacobianFixed) evaluateAt(dBack, pressureBack);
+    if (cut > 0 && !contact.gaps.fixed) evaluateAt(dBack, pressureBack);
     const Vector tried = trial + scale * searchDirection;
     if (projected()) {
       mapped(body.volume->carried) = pressureBack + scale * pressureDirection;
@@ -185,12 +179,12 @@ void ImplicitStep::lineSearch() {
       consecutive = status == succeeded && (falls || (iterations == 0 && cut == 0));
     }
     if (consecutive) {
-      if (contact.jacobianFixed) trial = tried;
+      if (contact.gaps.fixed) trial = tried;
       break;
     }
     scale /= 2;
     contact.script.sticks.numbers() = sticks;
-    contact.script.statusChanges.numbers() = changes;
+    contact.statusChanges = changes;
     // an old matrix that inverts elements is replaced, not followed in small steps
     if (status == inverted && cut > 0 && !fresh) break;
   }
@@ -205,8 +199,8 @@ void ImplicitStep::solveForContact(const Vector &w) {
   // geometric contact stiffness c with rows T has no force at the last d.
   const Timed timed(seconds(contacts));
   const long ns = contact.ns();
-  const Vector gapSlip = contact.gapSlip(w);
-  Vector highest = contact.script.q0.numbers().cwiseMax(contact.script.q1.numbers()),
+  const Vector gapSlip = contact.gaps.gapSlip(w);
+  Vector highest = contact.gaps.q0.numbers().cwiseMax(contact.script.q1.numbers()),
     contactDisplacement = Vector::Zero(w.size());
   if (highest.maxCoeff() <= 0) highest = gapSlip.head(ns);
   const bool mayEnd = work() < 1e3 * settings.tolerance * motion.energyScale;
@@ -217,7 +211,7 @@ void ImplicitStep::solveForContact(const Vector &w) {
     Vector force;
     if (!solveContact(w, gapSlip, mayEnd, force)) { status = diverged;  return; }
     factor.respond(contact.unknowns, force.data(), contactDisplacement.data());
-    highest = gapSlip.head(ns) - contact.move(contactDisplacement).head(ns);
+    highest = gapSlip.head(ns) - contact.gaps.move(contactDisplacement).head(ns);
     more = contact.penetrates(highest);
   }
   if (more) status = diverged;
@@ -231,21 +225,21 @@ bool ImplicitStep::solveContact(const Vector &w, const Vector &gapSlip, bool may
   const Vector acting = contact.script.force.numbers()(contact.unknowns);
   Vector tau = contact.ofActive(contact.script.candidateForces.numbers()), freeGapSlip = gapSlip,
     freeDisplacement = (w - d)(contact.unknowns);
-  if (!contact.jacobianFixed) {                // without contact forces: adds A^-1 B^T t
+  if (!contact.gaps.fixed) {                // without contact forces: adds A^-1 B^T t
     const Vector moved = contact.comply(acting);
     freeDisplacement += moved;
-    freeGapSlip += contact.move(contact.onUnknowns(moved));
+    freeGapSlip += contact.gaps.move(contact.onUnknowns(moved));
   }
   const bool exact = tau.size() <= std::min(200L, 2L * long(contact.unknowns.size()) + 1);
   // the prediction's forces are less accurate
-  if (contact.jacobianFixed && iterations == 0 && !exact)
+  if (contact.gaps.fixed && iterations == 0 && !exact)
     tau = contact.ofActive(contact.lastForces);
   // The error becomes part of the next residual: 1/500 of the last one is accurate enough. If the
   // step may end with this iteration: 1e-10 of the contact force, as momentum has to be exact.
   const double enough = exact ? 0
-    : mayEnd ? 1e-10 * contact.script.force.numbers().norm() : 2e-3 * residual.norm();
+    : mayEnd ? 1e-10 * contact.freeForce().norm() : 2e-3 * residual.norm();
   if (contact.solve(freeGapSlip, freeDisplacement, enough, tau, force) != succeeded) return false;
-  if (contact.jacobianFixed) contact.remember(tau); else force -= acting;
+  if (contact.gaps.fixed) contact.remember(tau); else force -= acting;
   return true;
 }
 

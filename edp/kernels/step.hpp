@@ -6,7 +6,6 @@
 // ImplicitStep.
 #pragma once
 #include <ctime>
-#include <functional>
 #include "anderson.hpp"
 #include "bodies.hpp"
 
@@ -20,14 +19,10 @@ struct Settings {
   long fallbackCost;                             // of a factorisation, in iterations
 };
 // A step, as setIntegrator() of integrators.idp sets it; scales of energy [J/m; J] and momentum;
-// search distance of contact [m]; residual force [N/m; N] that is round-off.
+// residual force [N/m; N] that is round-off.
 struct StepParameters : Step {
-  long lawInstant = 0;
-  double searchDistance = 0, energyScale = 1, momentumScale = 1, roundOff = 0;
+  double energyScale = 1, momentumScale = 1, roundOff = 0;
 };
-// What scripts do in a step: gaps: B, q0 and gapSlipOffset at d; search: 1 if d moves beyond the
-// last contact search, which is then made anew.
-struct Scripts { std::function<long()> gaps, search; };
 
 // Arrays of the scripts (integrators.idp): v (ndof) and so on.
 struct StepArrays {
@@ -49,7 +44,7 @@ class ImplicitStep {
       contact(contactOfStep) {}
 
   // Finds d from the prediction in d. Returns succeeded, or the reason of failure (status.hpp).
-  Status take(const StepParameters &parameters, const Scripts &stepScripts);
+  Status take(const StepParameters &parameters);
 
   void forget();   // for the next step, A is factorised anew
   bool isFactorised() const { return ofA.massScale >= 0; }
@@ -64,7 +59,6 @@ class ImplicitStep {
   Factor &factor;
   contact::Contact &contact;
   StepParameters motion = {};
-  const Scripts *scripts = nullptr;
   Anderson history;
   Status status = succeeded;
   Step ofA;                                      // the step of A; massScale -1: there is no A
@@ -77,8 +71,8 @@ class ImplicitStep {
   bool consecutive = false;
   double residualNow = 0, residualBefore = 0, residualFirst = 0, convergence = 0,
     searchDistance = 0;
-  // d; w; -A^-1 r, now and before; change of w; r of the bodies, with contact
-  Vector d, dBack, trial, correction, correctionBefore, searchDirection, bodyResidual, residual;
+  // d; w; -A^-1 r, now and before; change of w; r
+  Vector d, dBack, trial, correction, correctionBefore, searchDirection, residual;
   // p* - p of the elements, its change in w, p at the last iterate (volume.idp)
   Vector pressureResidual, pressureResidualBefore, pressureDirection, pressureBack;
 
@@ -88,7 +82,7 @@ class ImplicitStep {
     explicit Timed(double &total) : sum(total) {}
     ~Timed() { sum += double(std::clock() - start) / CLOCKS_PER_SEC; }
   };
-  enum { assembly, factorisation, solution, contacts };   // entries of `seconds`
+  enum { assembly, factorisation, solution, contacts, searches };   // entries of `seconds`
   enum { iterationsMade, evaluations, factorisations, contactMatrices };   // entries of `counts`
   double &seconds(int phase) { return script.seconds[phase]; }
   bool projected() const { return body.volume != nullptr; }
@@ -96,13 +90,11 @@ class ImplicitStep {
   void setD(const Vector &next) { script.d.numbers() = d = next; }
   Status iterate();
 
-  void begin(const StepParameters &parameters, const Scripts &stepScripts);
-
+  void begin(const StepParameters &parameters);
+  void search();
   void evaluatePrediction();
   void evaluateAt(const Vector &increment, const Vector &pressures);
   void evaluate();
-  void evaluateBodies();
-  void evaluateContact();
   void computeCorrection();
   Vector solved(const Vector &force);
   void lineSearch();

@@ -38,8 +38,8 @@ class Term {
   // Whether the last increment may end the step.
   virtual bool isValid() const { return true; }
 
-  // The last d ends the step, and is the start of the next one.
-  virtual void accept(const Step &) {}
+  // The step by d ends, and the next one starts there.
+  virtual void accept(const Step &, const Vector &) {}
 
   virtual void archive(Archive &) {}
 };

@@ -1,0 +1,70 @@
+// gaps.hpp: gaps of all contact candidates in a step from u to u + d, and the gap Jacobian B.
+// Penetrations are q = -gap [m], positive inside. Arrays over ns candidates are stacked by
+// component, component c of candidate s at c ns + s: the gap and, with friction, the slips along
+// the tangents. In the step
+//   gapSlip = B d + (q0, 0) + motion,
+// motion the part of the moving obstacles. The force on the bodies is -B^T t, also at held
+// unknowns. Exports Gaps.
+#pragma once
+#include "obstacles.hpp"
+#include "pairs.hpp"
+#include "term.hpp"
+
+namespace contact {
+
+class Gaps {
+ public:
+  using Vector = Eigen::VectorXd;
+  using Indices = std::vector<int>;
+  obstacles::Obstacles obstacles;
+  std::unique_ptr<pairs::AnyPairs> pairs;  // of bodies, if there are any
+  // Positions of the nodes; their displacements by those of the unknowns, empty if they are these.
+  Vector nodalPosition;
+  Eigen::SparseMatrix<double, Eigen::RowMajor> spread;
+  bool fixed = false;                      // the gaps are affine in u: B never changes
+  int gapRows = 1;                         // rows of B for a candidate
+  double staticReach = 0;                  // search distance of static steps at least [m]
+  // Script arrays: displacements and penetrations at the start of the step; velocity of the frame
+  // at the unknowns [m/s]; if fixed, q at u = 0 and time 0 [m], and motion in 1 s [m].
+  Kept<double> u, q0, frameMotion, rest, rates;
+  double searchDistance = 0;               // motion of points for which the search is valid [m]
+  Vector motion;                           // [m] (axes ns)
+  // B by rows: row r has the entries first[r] to first[r + 1] - 1.
+  Indices first{0}, column;
+  std::vector<double> value;
+
+  long ns() const { return q0.size(); }
+  void makeFixed();   // B, rest and rates, if fixed
+
+  // Penetrations at the displacements `at` and the time t. If B changes, it is that at `at`, and
+  // gaps are found up to `distance` [m], between bodies up to twice as much; others are infinite.
+  Vector now(const Vector &at, double t, double distance);
+
+  // Starts a step in which points move about as in d: searches for the candidates that may come
+  // into contact, also for points deep inside another body.
+  void search(const Step &step, const Vector &d);
+  // Starts a substep of length h at the displacements `at` and the time t; the search stays valid.
+  void goOn(const Vector &at, double t, double h);
+  // B and q0 of the step by d in dt; q0 is -infinity beyond the search distance.
+  void follow(const Vector &d, double dt);
+
+  // Upper bound [m] of the motion of a point by d in dt, relative to any obstacle and to the frame;
+  // 0 if B is fixed. Two bodies approach each other by at most twice as much.
+  double increment(const Vector &d, double dt) const;
+  // Whether a point moves farther in the step than the search allowed for.
+  bool movesTooFar(const Step &step, const Vector &d) const;
+
+  Vector move(const Vector &w) const;   // B w
+  Vector pull(const Vector &t) const;   // B^T t (15): sum of dv_N/du t
+  Vector gapSlip(const Vector &d) const { return move(d) + offset; }
+
+ private:
+  Vector offset;                           // gapSlip for d = 0
+  JacobianRows ofPairs, ofObstacles;
+  Vector nodal(const Vector &w) const { return spread.rows() > 0 ? Vector(spread * w) : w; }
+  Vector at(const Vector &d, double dt);
+  void takeRows();
+  void startFixed(double dt);
+};
+
+}
