@@ -34,8 +34,8 @@ struct Triplets {
   const double *value;
 };
 
-// Rows of gaps as triplets: B(row, unknown) = normal, and for each tangent S_a(row, unknown) = slip,
-// first all S_1.
+// Rows of gaps as triplets: B(row, unknown) = normal, and for each tangent S_a(row, unknown) =
+// slip, first all S_1.
 struct JacobianRows { std::vector<int> row, unknown;  std::vector<double> normal, slip; };
 
 // Writes values to `numbers`, or reads them from there in the same order.

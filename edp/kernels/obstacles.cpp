@@ -149,7 +149,8 @@ double Obstacles::largestMotion(const Vector &w) const {
 }
 
 void Obstacles::archive(Archive &archive) {
-  archive(crossed);  archive(t);  archive(bound);  archive(placeInFrame);  archive(watched);  archive(watchedState);
+  archive(crossed);  archive(t);  archive(bound);  archive(placeInFrame);
+  archive(watched);  archive(watchedState);
   for (Point &x : place) for (int c = 0; c < 3; c++) archive(x[c]);
 }
 
