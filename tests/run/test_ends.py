@@ -198,3 +198,34 @@ def test_a_return_by_gravity_within_the_impact_has_no_estimate(tmp_path):
         assert any(words.startswith("not over") for words in s["warnings"]) == within
         assert any(words.startswith("touches again") for words in s["notes"]) != within
         assert (s["estimated_error"] is None) == within == s["later_contact_possible"]
+
+
+# ---- steps after and before a strike
+
+
+def test_prestress_is_no_vibration(tmp_path):
+    """Supports pull a strip taut, a ball hits it and leaves at 11 m/s, faster than the strip vibrates
+    about its taut shape. The energy of the tension promises no further strike: the steps grow."""
+    pull = "0.006*(1-cos(pi*min(t,0.008)/0.008))/2"
+    ball = DISC | {"young": 1e6, "position": [0, 0.15], "velocity": [0, -12]}
+    strip = {
+        "shape": "rectangle", "width": 0.2, "height": 0.005, "position": [0, 0],
+        "young": 5e7, "density": 67,
+        "support": [
+            {"where": "left", "motion": [f"-{pull}", 0]},
+            {"where": "right", "motion": [pull, 0]},
+        ],
+    }
+    rows, result = go(tmp_path, read(ball, strip, **RUBBER, accuracy=0.1, end_time=0.024))
+    left = rows.start.iloc[-1] + rows.time.iloc[-1]
+    assert left < 0.0185 and (result.history["t"] > left).sum() < 50
+
+
+def test_contact_without_load_sets_no_steps(tmp_path):
+    """A weight takes 2 ms to a pad that touches a held plate without load: few steps until then."""
+    block = {"shape": "rectangle", "width": 0.05, "height": 0.01}
+    plate = block | {"position": [0, 0], "support": [{"where": "bottom"}]}
+    pad, weight = (block | {"position": [0, y]} for y in (0.01, 0.022))
+    bodies = (plate, pad, weight | {"velocity": [0, -1]})
+    rows, result = go(tmp_path, read(*bodies, **RUBBER, accuracy=0.1, end_time=2.2e-3))
+    assert (result.history["t"] < 0.0019).sum() < 60 and rows.peak_force.max() > 100
