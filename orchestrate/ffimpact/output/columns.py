@@ -354,7 +354,8 @@ ENTRIES = (
     _whole("released", "", "what a scene fixes for its own material and was left to the program, "
         "as that was changed"),
     _whole("estimated_error", "1", "by answer, relative as accuracy is, of max_pressure and "
-        "max_penetration over themselves; null where it was not estimated"),
+        "max_penetration over themselves; null where it was not estimated; without impulse, "
+        "velocities and times if a later contact is possible"),
     _whole("estimated_error_excludes", "", "what all these runs have alike, and the estimate says "
         "nothing of"),
     _whole("estimate_cpu_seconds", "s", "processor time of the runs beside it"),

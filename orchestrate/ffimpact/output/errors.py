@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..input.parameters import Table
+from .estimate import OF_IMPACT
 from .results import Answers, Record, held_bodies, numbers, read_answers, read_table
 
 __all__ = ["errors", "zero_by_symmetry"]
@@ -55,9 +56,9 @@ def errors(record: Record) -> dict[str, float]:
     """
     summary = record.summary
     names = numbers(summary)
-    share = summary.get("estimated_error") or {}
-    if not share:
+    if not summary.get("estimated_error"):
         return {}
+    share = dict.fromkeys(OF_IMPACT, math.nan) | summary["estimated_error"]
     answers = read_answers(record.folder)
     energy, reach = float(answers.summary["largest_energy"]), record.scene.get("radius")
     estimates: dict[str, float] = {
@@ -94,7 +95,11 @@ def errors(record: Record) -> dict[str, float]:
     if (least := summary.get("peak_uncertainty")) and "peak_force" in estimates:
         estimates["peak_force"] = max(estimates["peak_force"], least * abs(summary["peak_force"]))
     zeros = zero_by_symmetry(summary)
-    return {name: estimates[name] for name in names if name in estimates and name not in zeros}
+    return {
+        name: estimates[name]
+        for name in names
+        if not math.isnan(estimates.get(name, math.nan)) and name not in zeros
+    }
 
 
 def zero_by_symmetry(summary: Table) -> set[str]:

@@ -7,18 +7,22 @@ COARSER and r^2 times as large. If errors are of the order p in them, the error 
 But single differences mislead: errors of elements and steps have opposite signs, and at the end of
 an impact runs agree by chance. So the error estimate of a result is
 
-    SAFETY/(r^p - 1) sqrt(sum over k of (d_k^2 + h_k^2)/r^(2 p k)),   k = 0, 1: pairs of levels,
+    SAFETY/(r^q - 1) sqrt(sum over k of (d_k^2 + h_k^2)/r^(q k)),   k = 0, 1: pairs of levels,
 
     d_k: difference of the result between the two runs (differences());
     h_k: difference of its time history (history_differences());
-    p: 2, of a flat strike 1, as its penalty follows the elements (scenes/front.py).
+    q: the order of the errors, which is p = 2, or 1 in a flat strike, as its penalty follows the
+       elements (scenes/front.py), where the levels resolve the vibrations of the bodies. Else
+       errors fall more slowly: q is the median of the orders of all results, (d_k, h_k) of the
+       second pair over those of the first, between SLOWEST p and p. The order of a single result
+       scatters too much.
 
-All results of all scenes have the same factor SAFETY (benchmarks/promise.py lists the scenes of its
-calibration). The estimate contains the error in 95 of 100 runs and is about four times the usual
-error; of rigid weights that fall on blocks it contains six of seven. The order is not taken from
-the three levels: its scatter is larger than its difference from p. The estimate covers mesh and
-steps: penalty, slip velocity and the growth of elements away from the contact are the same in all
-runs, except the penalty of a flat strike.
+Errors of order q would give differences in the ratio r^q, errors that scatter equal ones. Most are
+in between, so the second difference counts by r^(q/2). All results of all scenes have the same
+factor SAFETY (benchmarks/promise.py lists the scenes of its calibration). The estimate contains
+the error in 95 of 100 runs and is about four times the usual error. It covers mesh and steps:
+penalty, slip velocity and the growth of elements away from the contact are the same in all runs,
+except the penalty of a flat strike.
 
 Finer runs follow if the estimate of a promised result is above WORTH times the request. The former
 runs are then the levels of the new one. The contact time scatters with the vibration at the end of
@@ -26,7 +30,8 @@ contact (by 0.8 % rms in hard impacts, on any mesh and with any step that was tr
 above, a finer run follows only if the gain of the last level, gained again, brings its estimate
 there. An estimate that is still above WORTH times the request is a warning. One that is
 above the request by less, that scatters, or of a result that is not promised, is a note
-(notes.py). Runs with different numbers of contact intervals are a warning (touches()).
+(notes.py). Runs with different numbers of contact intervals are a warning (touches()). An impact
+that is not over has no estimates of the results OF_IMPACT.
 """
 
 import math
@@ -35,6 +40,7 @@ import shutil
 from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
+from statistics import median
 
 import numpy as np
 
@@ -49,6 +55,7 @@ __all__ = [
     "LARGEST",
     "LEVELS",
     "MOST",
+    "OF_IMPACT",
     "OF_ITSELF",
     "PROMISED",
     "RESULTS",
@@ -80,7 +87,9 @@ REGULARISED = ("penalty", "slip_velocity")
 NO_ANSWER = (11, 12)  # exit codes of runs that the step or the material ended
 # Error estimate over that of the differences, by the number of their pairs. A single pair agrees by
 # chance more often.
-SAFETY = {1: 2.2, 2: 1.5}
+SAFETY = {1: 2.2, 2: 0.9}
+SLOWEST = 0.75  # smallest order of the errors over the order of the elements and steps
+TINY = 1e-5  # differences below it show no order, but round-off
 PROMISED = (
     "impulse",
     "rebound",
@@ -90,6 +99,8 @@ PROMISED = (
     "thresholded_contact_time",
 )
 RESULTS = (*PROMISED, "contact_time", "peak_force")
+# Results of the whole impact: a later contact changes them.
+OF_IMPACT = ("impulse", "rebound", "rebound_spin", "thresholded_contact_time", "contact_time")
 AT_END = ("rebound", "final")  # velocities at the end of contact and of the run
 # First words of the messages `skipped` about steps that integrator = auto has not chosen.
 STEPS = ("explicit steps (", "implicit steps (")
@@ -106,7 +117,7 @@ FILE_MESH = (
 OF_ITSELF = "friction_work of itself"
 HIGHEST = ("max_pressure", "max_penetration")  # largest values of columns of the history
 WORKS = ("support_work", "load_work")
-EARLY = 0.75  # share of a record, and of the impulse, from which on histories are compared
+EARLY = 0.75  # share of the contact, and of the impulse, from which on histories are compared
 HIGH = 0.75  # share of a largest value above which histories are compared
 # Shares of the impulse at which times are compared. They are dense at the end of contact.
 SHARES = 1 - np.geomspace(1 - EARLY, 1e-4, 16)
@@ -158,7 +169,9 @@ def settle(
     while len(runs) > 1:
         estimated = error_estimates(runs)
         above = [
-            name for name in wanted(values["accuracy_of"]) if estimated[name] > WORTH * accuracy
+            name
+            for name in wanted(values["accuracy_of"])
+            if estimated.get(name, 0.0) > WORTH * accuracy
         ]
         # Whether only scatter is left, which finer runs reduce too little.
         scatter = above == [SCATTERS] and estimated[SCATTERS] * gain(runs) > WORTH * accuracy
@@ -238,30 +251,48 @@ def _excludes(summary: Table, own_mesh: bool) -> list[str]:
 
 def error_estimates(runs: Sequence[Answers]) -> dict[str, float]:
     """Returns the error estimates of the results of the first run, the finest. Each further one has
-    COARSER times the elements and steps of the one before.
+    COARSER times the elements and steps of the one before. If a later contact may belong to the
+    impact, the results OF_IMPACT have no estimate.
     """
-    pairs = [(differences(*pair), history_differences(*pair)) for pair in pairwise(runs)]
-    ratio = COARSER if runs[0].summary.get("front_rise") else COARSER**2
-
-    def mean(name: str) -> float:
-        """The root of the sum of squares."""
-        return math.hypot(*(part[name] / ratio**k for k, pair in enumerate(pairs) for part in pair))
-
+    pairs = [_sizes(*pair) for pair in pairwise(runs)]
+    ratio = _ratio(pairs, 1 if runs[0].summary.get("front_rise") else 2)
     factor = SAFETY[len(pairs)] / (ratio - 1)
-    estimates = {name: factor * mean(name) for name in pairs[0][0]}
+    estimates = {
+        name: factor * math.sqrt(sum(pair[name] ** 2 / ratio**k for k, pair in enumerate(pairs)))
+        for name in pairs[0]
+    }
     # All levels may have the same drift, so their differences do not show it.
     estimates["energy"] = max(estimates["energy"], runs[0].summary.get("energy_drift") or 0.0)
-    return estimates | rest_errors(*runs[:2])
+    estimates |= rest_errors(*runs[:2])
+    missing = OF_IMPACT if runs[0].summary.get("later_contact_possible") else ()
+    return {name: error for name, error in estimates.items() if name not in missing}
+
+
+def _sizes(fine: Answers, coarse: Answers) -> dict[str, float]:
+    """Returns the differences of two runs by result, those of the histories included."""
+    over_time = history_differences(fine, coarse)
+    apart = differences(fine, coarse)
+    return {name: math.hypot(value, over_time[name]) for name, value in apart.items()}
+
+
+def _ratio(pairs: Sequence[Mapping[str, float]], order: int) -> float:
+    """Returns the ratio r^q of the errors of two successive levels. The order q is the one that the
+    differences of the results have in the median, at most `order` and at least SLOWEST times it.
+    """
+    highest = COARSER**order
+    first, last = pairs[0], pairs[-1]
+    shown = [name for name in first if min(first[name], last[name]) > TINY]
+    if len(pairs) == 1 or not shown:
+        return highest
+    seen = median(last[name] / first[name] for name in shown)
+    return min(highest, max(highest**SLOWEST, seen))
 
 
 def gain(runs: Sequence[Answers]) -> float:
     """Returns the difference of the result that scatters between the first two levels, over that
     between the next two; 0 if there is one pair.
     """
-    apart = [
-        math.hypot(differences(*pair)[SCATTERS], history_differences(*pair)[SCATTERS])
-        for pair in pairwise(runs)
-    ]
+    apart = [_sizes(*pair)[SCATTERS] for pair in pairwise(runs)]
     return apart[0] / apart[1] if len(apart) > 1 and apart[1] else 0.0
 
 
@@ -376,8 +407,9 @@ def history_differences(fine: Answers, coarse: Answers) -> dict[str, float]:
     of differences().
 
     Root mean squares:
-    - impulse, velocities, spin, energy (elastic, with that of the contact), works of supports and
-      loads: in the last quarter of the common record;
+    - impulse, velocities, spin, energy (elastic, with that of the contact): in the last quarter of
+      the contact, as nothing changes them afterwards;
+    - works of supports and loads: in the last quarter of the common record;
     - thresholded contact time: of the times at which the same share of the impulse is reached, in
       its last quarter;
     - largest values: while one of the runs is above the share HIGH of the value.
@@ -407,7 +439,9 @@ def history_differences(fine: Answers, coarse: Answers) -> dict[str, float]:
         OF_ITSELF: friction / abs(work) if work else 0.0,
     }
     over_time |= {name: shared.apart_while_high(name) for name in ("peak_force", *_highest(fine))}
-    over_time |= {name: apart(named(name), energy) for name in WORKS if name in fine.history}
+    over_time |= {
+        name: apart(named(name), energy, shared.late) for name in WORKS if name in fine.history
+    }
     reached = [_times_of_shares(run.history) for run in (fine, coarse)]
     delays = abs(reached[0] - reached[1]) / (lasts or math.inf)
     return over_time | {
@@ -417,16 +451,26 @@ def history_differences(fine: Answers, coarse: Answers) -> dict[str, float]:
 
 
 class _SharedRecord:
-    """The times [s] at which either of two runs has a step, up to the end of the shorter one."""
+    """The times [s] at which either of two runs has a step, up to the end of the shorter one, and
+    which of them are in the last quarter of the record (`late`) and of the contact (`leaving`).
+    """
 
     def __init__(self, fine: Answers, coarse: Answers):
         self.runs = fine, coarse
-        ends = [run.history["t"] for run in self.runs]
-        t = np.union1d(*ends)
-        self.t = t = t[t <= min(times[-1] for times in ends)]
+        steps = [run.history["t"] for run in self.runs]
+        t = np.union1d(*steps)
+        self.t = t = t[t <= min(times[-1] for times in steps)]
         # the time that each point stands for
         self.share = np.diff(np.concatenate([t[:1], (t[1:] + t[:-1]) / 2, t[-1:]]))
-        self.late = t >= t[0] + EARLY * (t[-1] - t[0])
+        self.late = self._last_quarter(t[0], t[-1])
+        loaded = [run.history["t"][run.history["normal_force"] > 0] for run in self.runs]
+        ends = np.minimum(np.concatenate(loaded), t[-1])
+        self.leaving = self._last_quarter(ends.min(), ends.max()) if len(ends) else self.late
+
+    def _last_quarter(self, start: float, end: float) -> np.ndarray:
+        """Which times are in the last quarter from `start` to `end` [s]."""
+        quarter: np.ndarray = (self.t >= start + EARLY * (end - start)) & (self.t <= end)
+        return quarter
 
     def squares(self, columns: Columns) -> np.ndarray:
         """The squared differences of a vector with these columns."""
@@ -444,9 +488,9 @@ class _SharedRecord:
         when: np.ndarray | None = None,
     ) -> float:
         """The root mean square difference of a vector with these columns, over `scale`, at the times
-        `when` (by default the last quarter).
+        `when` (by default the last quarter of the contact).
         """
-        when = self.late if when is None else when
+        when = self.leaving if when is None else when
         if not scale or not self.share[when].any():
             return 0.0
         squares = self.squares(columns)[when]
@@ -519,7 +563,7 @@ def wanted(also: str) -> list[str]:
 
 def largest(estimated: Mapping[str, float]) -> float:
     """Returns the largest error estimate of the results PROMISED."""
-    return max(estimated[name] for name in PROMISED)
+    return max(estimated.get(name, 0.0) for name in PROMISED)
 
 
 def touches(runs: Sequence[Answers]) -> list[str]:
@@ -550,7 +594,7 @@ def excess(estimated: Mapping[str, float], accuracy: float, also: str, made: flo
     above = {
         name: f"{name.replace('_', ' ')} {100 * estimated[name]:.2g} %"
         for name, limit in limits.items()
-        if estimated[name] > limit
+        if estimated.get(name, 0.0) > limit
     }
     if not above:
         return []

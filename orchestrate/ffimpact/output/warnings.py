@@ -754,19 +754,17 @@ def _next_contact(e: Evidence) -> Iterator[Sentence]:
     who = e.pair(facts["pairs"][facts["pair_ahead"]]) if facts["pair_ahead"] >= 0 else "bodies"
     within = again <= facts["impact_until"]
     cuts = {"end_time": "the end_time cuts the impact", "stopped": "the run was stopped"}
-    cut = e.record["ended"] in cuts
-    if cut:
+    if e.record["ended"] in cuts:
         why = cuts[e.record["ended"]]
     elif within:
         why = "gravity bends their flight, which ends the run"
     else:
         why = "they vibrate near each other"
-    without = "" if cut else " and have no error estimate"
     if e.later_contact_possible:
         yield warn(
             f"not over: {who} may strike again, at t = {again:g} s or later, as {why}: contacts "
             f"until t = {facts['impact_until']:g} s belong to the impact. Impulse, rebound and "
-            f"times do not include that contact{without}: take a larger end_time"
+            "times do not include that contact and have no error estimate: take a larger end_time"
         )
     else:
         yield note(
