@@ -285,7 +285,7 @@ def _ratio(pairs: Sequence[Mapping[str, float]], order: int) -> float:
     if len(pairs) == 1 or not shown:
         return highest
     seen = median(last[name] / first[name] for name in shown)
-    return min(highest, max(highest**SLOWEST, seen))
+    return min(highest, max(math.pow(highest, SLOWEST), seen))
 
 
 def gain(runs: Sequence[Answers]) -> float:
