@@ -139,7 +139,8 @@ def write_scene(folder: Path) -> None:
 
 def summary(status: str = "ok", message: str = "") -> dict:
     """The content of summary.json without provenance."""
-    return dict(status=status, message=message, ended="impact", integrator="energy-momentum", warnings=[], contact_time=CONTACT, contact_intervals=1, peak_force=70e3, impulse=208.2,
+    return dict(status=status, message=message, ended="impact", integrator="energy-momentum", warnings=[], contact_time=CONTACT, contact_intervals=1,
+                peak_force=70e3, impulse=208.2,
                 rebound_vx=0.0, rebound_vy=7.394, rebound_spin=0.0, energy_initial=ENERGY, energy_final=ENERGY, vibration_energy=60.0,
                 friction_work=0.0, energy_drift=1e-11, momentum_drift=1e-12, min_jacobian=0.8, min_stretch=0.7,
                 breakdown_time=None, max_penetration=6e-6, sliding_time=0.0, sticking_time=0.0, steps=199, rejected_steps=3,
