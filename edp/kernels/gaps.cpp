@@ -69,7 +69,8 @@ Vector Gaps::move(const Vector &w) const {
 Vector Gaps::pull(const Vector &t) const {
   Vector force = Vector::Zero(u.size());
   for (long s = 0; s < ns(); s++) if (t[s] > 0) for (long r = s; r < t.size(); r += ns())
-    for (int e = first[r]; e < first[r + 1]; e++) force[column[e]] += value[e] * t[r];
+    for (int e = first[r]; e < first[r + 1]; e++)
+      force[column[e]] += value[e] * t[r];   // (15): sum over all candidates of dv_N/du t
   return force;
 }
 

@@ -55,7 +55,7 @@ class Gaps {
   bool movesTooFar(const Step &step, const Vector &d) const;
 
   Vector move(const Vector &w) const;   // B w
-  Vector pull(const Vector &t) const;   // B^T t (15): sum of dv_N/du t
+  Vector pull(const Vector &t) const;   // B^T t (15)
   Vector gapSlip(const Vector &d) const { return move(d) + offset; }
 
  private:
