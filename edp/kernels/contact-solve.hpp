@@ -26,8 +26,8 @@ struct Rows {
   int n = 0, points = 0, gapRows = 1;            // points: blocks of candidates
   Indices first{0}, column, blockOf;             // block b has the entries first[b] to
                                                  // first[b + 1] - 1; unknown and block of an entry
-  std::vector<double> value;
-  Vector geometric;                       // gapRows values an entry; stiffness c of the terms
+  std::vector<double> value;                     // gapRows values of each entry
+  Vector geometric;                              // stiffness c of the terms
   // Sparsity pattern of K and the diagonal for B with the entries `first`, `column`: by columns in
   // start and row; `place` of each contribution of stiffness(); UMFPACK's symbolic factorisation.
   struct Pattern { Indices first, column, start, row, place;  std::shared_ptr<void> symbolic; };

@@ -25,10 +25,10 @@ class ExplicitContact {
   void begin(const Step &step, const Vector &d, const Vector &compliance, double distance);
 
   // Replaces the increment h v- of a substep without contact forces by that with them; v- is
-  // halfStepVelocity. Returns succeeded or diverged. A B that changes with
-  // the increment is evaluated at the latest one, first with the forces of the last substep. Each
-  // pass reduces the error a thousandfold; there are at most ten. The rest changes no momentum,
-  // and the energy by a thousandth of Verlet's error.
+  // halfStepVelocity. Returns succeeded or diverged. If B changes with the increment, it is
+  // evaluated at the latest one, first with the forces of the last substep. Each pass reduces the
+  // error a thousandfold; there are at most ten. The remaining error changes no momentum, and the
+  // energy by a thousandth of Verlet's error.
   Status take(Eigen::Map<Vector> increment, const Vector &halfStepVelocity, double h);
 
  private:

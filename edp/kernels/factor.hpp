@@ -27,7 +27,8 @@ public:
   // about 1e-7. The current tangent differs from the frozen A by more.
   bool factorise(const std::vector<int> &w);
 
-  // Cost of a new matrix in iterations of solveStep(). Their time is mostly two back-substitutions.
+  // Cost of a new matrix in iterations of a step (step.hpp), which are mostly two
+  // back-substitutions.
   // The assembly costs 2, the factorisation its operations per number of L over 90. Returns 0 if L
   // is small, as the share of the back-substitutions is then small, too.
   long renewalCost() const { return isLarge() ? 2 + long(common.fl / (90. * L->xsize)) : 0; }

@@ -30,11 +30,11 @@ Vector Gaps::now(const Vector &at, double t, double distance) {
 void Gaps::search(const Step &step, const Vector &d) {
   const double dt = motionTime(step);
   if (fixed) return startFixed(dt);
-  const double way = std::max(increment(d, dt), step.isStatic() ? staticReach : 0.);
+  const double farthest = std::max(increment(d, dt), step.isStatic() ? staticReach : 0.);
   const double deepest = ns() > 0 ? std::max(0., q0.numbers().maxCoeff()) : 0;
-  q0.numbers() = now(u.numbers(), step.t, 1.25 * way + deepest);
+  q0.numbers() = now(u.numbers(), step.t, 1.25 * farthest + deepest);
   obstacles.countCrossings();
-  searchDistance = 1.25 * way;
+  searchDistance = 1.25 * farthest;
 }
 
 void Gaps::goOn(const Vector &at, double t, double h) {
@@ -51,8 +51,9 @@ void Gaps::follow(const Vector &d, double dt) {
 
 double Gaps::increment(const Vector &d, double dt) const {
   if (fixed) return 0;
-  const double way = obstacles.largestIncrement(d.data(), dt);
-  return pairs ? std::max(way, obstacles.largestMotion(d - dt * frameMotion.numbers())) : way;
+  const double farthest = obstacles.largestIncrement(d.data(), dt);
+  if (!pairs) return farthest;
+  return std::max(farthest, obstacles.largestMotion(d - dt * frameMotion.numbers()));
 }
 
 bool Gaps::movesTooFar(const Step &step, const Vector &d) const {

@@ -335,8 +335,8 @@ static void addGaps() {
     Kept<double>{&moved}.numbers() = gaps.move(Kept<double>{&w}.numbers());
     Kept<double>{&moved}.numbers() += share * gaps.motion.head(moved.N());
   });
-  add("kernelGapIncrement", +[](Reals d, double dt, double &way) {
-    way = gaps.increment(Kept<double>{&d}.numbers(), dt);
+  add("kernelGapIncrement", +[](Reals d, double dt, double &farthest) {
+    farthest = gaps.increment(Kept<double>{&d}.numbers(), dt);
   });
   add("kernelMovesTooFar", +[](Reals d) {
     return long(gaps.movesTooFar(stepNow, Kept<double>{&d}.numbers()));

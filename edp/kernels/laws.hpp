@@ -21,13 +21,13 @@ constexpr int mostOwn = 8;                 // numbers of a law, as in material.i
 struct Law;
 struct Material {
   const Law *law;
-  double lambda, mu, own[mostOwn];             // Lame's constants; further parameters of the law
+  double lambda, mu, own[mostOwn];         // Lame's constants; further parameters of the law
   double eta, zeta;                        // viscosities [Pa s]
   double relaxing, relaxTime;              // G [Pa], tau [s] of the Maxwell branch
   double bulk;                             // kappa [Pa]: part of lambda that acts on element means
                                            // of the volume (volume.idp)
   long volumeByTrace;                      // 1: W is quadratic in C, the volume measure is tr E
-  long incompressible;                               // 1: incompressible, J = 1 (material.idp)
+  long incompressible;                     // 1: incompressible, J = 1 (material.idp)
   bool operator==(const Material &m) const { return std::memcmp(this, &m, sizeof m) == 0; }
 };
 

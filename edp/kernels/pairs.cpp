@@ -9,7 +9,6 @@
 
 namespace pairs {
 
-
 using namespace tensors;
 
 // Monomials 1, r, r^2 on an edge and 1, r, s, r^2, r s, s^2 on a face, and their derivatives.
@@ -164,8 +163,8 @@ public:
     : surface(std::move(surfaceData)), beside(A == 2 ? 2 * surface.facets : 0, -1) {
     std::map<int, size_t> first;           // first edge end at each vertex
     for (size_t k = 0; k < beside.size(); k++) {
-      const auto [at, is_new] = first.insert({node(int(k / 2), 0, int(k % 2)), k});
-      if (!is_new) { beside[k] = int(at->second / 2);  beside[at->second] = int(k / 2); }
+      const auto [at, isNew] = first.insert({node(int(k / 2), 0, int(k % 2)), k});
+      if (!isNew) { beside[k] = int(at->second / 2);  beside[at->second] = int(k / 2); }
     }
     const std::vector<int> &own = surface.selfContact;
     if (std::find(own.begin(), own.end(), 1) != own.end()) describeFacets();
@@ -597,11 +596,11 @@ private:
     const bool same = was.facet == own,
       onwards = node(was.facet, 0, 1) == node(own, 0, 0) || (same && was.r == 0);
     const bool back = node(was.facet, 0, 0) == node(own, 0, 1) || (same && was.r == 1);
-    const int increments = int(onwards) - int(back);   // over a vertex: 1 along the edges, -1 back
-    const double increment = same ? 0 : (increments > 0 ? 1 - was.r : was.r) * was.length,
-      theta = increments * (was.n[1] * p.n[0] - was.n[0] * p.n[1]);
-    return theta > 1e-8 ? t * theta / (2 * (increment
-      + (increments > 0 ? r : 1 - r) * p.closestPoint.tangents.col(0).norm() - p.gap * theta)) : 0;
+    const int direction = int(onwards) - int(back);   // over a vertex: 1 along the edges, -1 back
+    const double path = same ? 0 : (direction > 0 ? 1 - was.r : was.r) * was.length,
+      theta = direction * (was.n[1] * p.n[0] - was.n[0] * p.n[1]);
+    return theta > 1e-8 ? t * theta / (2 * (path
+      + (direction > 0 ? r : 1 - r) * p.closestPoint.tangents.col(0).norm() - p.gap * theta)) : 0;
   }
 };
 

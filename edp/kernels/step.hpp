@@ -24,9 +24,10 @@ struct StepParameters : Step {
   double energyScale = 1, momentumScale = 1, roundOff = 0;
 };
 
-// Arrays of the scripts (integrators.idp): v (ndof) and so on.
+// Arrays of the scripts (integrators.idp, step.idp): d, v, frameMotion (ndof). The enumerations in
+// ImplicitStep list the entries of seconds and counts.
 struct StepArrays {
-  Kept<double> d, v, frameMotion, seconds;       // seconds, counts: see evaluations ... below
+  Kept<double> d, v, frameMotion, seconds;
   Kept<long> counts;
 };
 
@@ -35,7 +36,7 @@ class ImplicitStep {
   using Vector = Eigen::VectorXd;
   StepArrays script;
   Settings settings = {};
-  Triplets translations = {};            // (ndof x 3 bodies)
+  Triplets translations = {};                    // of the bodies (ndof x 3 bodies)
   double residualWorkRatio = 0;                  // work of the residual over energyScale
 
   ImplicitStep(bodies::Elements &all, bodies::Bodies &allBodies, const Terms &allTerms,

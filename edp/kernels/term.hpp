@@ -32,7 +32,8 @@ class Term {
   // last d. With the stress at stepMean it is d times the forces of the term.
   virtual double work(const Step &step, const Vector &d) const = 0;
 
-  // Adds massScale, stiffnessScale times the derivatives of the forces to the blocks of Elements.
+  // Adds the derivative of the forces by d to the blocks of Elements: massScale times the mass, or
+  // stiffnessScale times a stiffness.
   virtual void addTangent(const Step &) {}
 
   // Whether the last increment may end the step.
