@@ -59,6 +59,6 @@ class Answers(dict):
 
 def described(body) -> tuple:
     """What two bodies have in common if they are the same."""
-    own = body.young, body.nu, body.density, body.loss, body.angle, body.spin
+    own = body.material.young, body.material.nu, body.material.density, body.material.loss, body.angle, body.spin
     conditions = [[repr(condition.part) for condition in listed] for listed in (body.supports, body.loads)]
     return own, list(body.position), list(body.velocity), body.outline.area, conditions

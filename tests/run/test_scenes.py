@@ -412,8 +412,8 @@ def test_the_parameters_of_a_law_belong_to_it(tmp_path):
     file.write_text('law = "ogden"\nlaw_parameters = "2,1"\nyoung = 7e6\nnu = 0.4\ndensity = 1722\n[[body]]\nshape = "disc"\nradius = 0.05\n'
                     'position = [0, 0.06]\nvelocity = [0, -2]\n[[obstacle]]\nkind = "plane"\npoint = [0, 0]\nnormal = [0, 1]\n')
     other = scene.load(str(file)).override({"law": "neohookean"})
-    assert other.bodies[0].law_parameters == "none" and len(other.released) == 1 and other.released[0].startswith("law_parameters is reset")
-    assert scene.load(str(file)).override({"young": 5e6}).bodies[0].law_parameters == "2,1"
+    assert other.bodies[0].material.law_parameters == "none" and len(other.released) == 1 and other.released[0].startswith("law_parameters is reset")
+    assert scene.load(str(file)).override({"young": 5e6}).bodies[0].material.law_parameters == "2,1"
 
 
 def test_what_a_scene_of_bodies_fixed_follows():

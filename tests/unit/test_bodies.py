@@ -3,6 +3,7 @@
 import math
 import os
 import tomllib
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -60,8 +61,9 @@ def test_velocity_or_speed_and_direction(entries, velocity):
 def test_material_comes_from_the_body_or_from_the_top():
     """Material entries that a body does not have come from the top of the file."""
     first, second = read(changed(("body.2.young", 1e9), ("body.2.law", "neohookean"))).bodies
-    assert (first.law, first.young, first.nu, first.density) == ("svk", 7e6, 0.45, 1722)
-    assert (second.law, second.young, second.nu, second.density) == ("neohookean", 1e9, 0.45, 1722)
+    soft = first.material
+    assert (soft.law, soft.young, soft.nu, soft.density) == ("svk", 7e6, 0.45, 1722)
+    assert second.material == replace(soft, law="neohookean", young=1e9)
 
 
 def test_the_radius_of_a_body_is_half_its_thickness():
@@ -128,9 +130,9 @@ def test_entries_are_set_by_name():
     not change."""
     scene = read(SCENE | {"obstacle": [FLOOR]})
     other = scene.override({"body.2.young": "2e6", "body.1.velocity.2": -5, "contact.penalty": 1e8, "gravity": 9.81, "obstacle.1.point": "[0, -2]"})
-    assert other.bodies[1].young == 2e6 and list(other.bodies[0].velocity) == [0, -5]
+    assert other.bodies[1].material.young == 2e6 and list(other.bodies[0].velocity) == [0, -5]
     assert other.contact["penalty"] == 1e8 and other.values["gravity"] == 9.81
-    assert scene.bodies[1].young == 7e6 and list(scene.bodies[0].velocity) == [0, -10] and scene.content == SCENE | {"obstacle": [FLOOR]}
+    assert scene.bodies[1].material.young == 7e6 and list(scene.bodies[0].velocity) == [0, -10] and scene.content == SCENE | {"obstacle": [FLOOR]}
 
 
 @pytest.mark.parametrize("name, words", [

@@ -220,7 +220,10 @@ def _rebound(scene: Scene, onset: Onset) -> Scene | None:
         body, shape = scene.bodies[k], onset.shape(k)
         assert isinstance(shape, Outline)  # in the plane
         held = bool(body.supports)  # neither turns nor falls, as with infinite mass
-        lever, mass = _lever(shape, point, n), math.inf if held else body.density * shape.area
+        lever, mass = (
+            _lever(shape, point, n),
+            math.inf if held else body.material.density * shape.area,
+        )
         own_fall = np.zeros(len(n)) if held else fall
         yields += (1 + lever**2 / shape.gyration) / mass
         closing -= sign * ((body.velocity + own_fall) @ n + body.spin * lever)
@@ -345,7 +348,7 @@ def loaded_pull(body: Body) -> float:
     ]
     half = body.outline.half_thickness
     width = 2 * half if isinstance(body.outline, Outline) else math.pi * half**2
-    return sum(stress) * width / (body.density * body.outline.content)
+    return sum(stress) * width / (body.material.density * body.outline.content)
 
 
 def _pressed(scene: Scene, onset: Onset) -> float:
@@ -364,7 +367,7 @@ def _pressed(scene: Scene, onset: Onset) -> float:
         moved = farthest(drive.translation)[0] - drive.shift(onset.time if met else 0.0)
         depths.append(abs(float(moved @ onset.normal)))
     share = min(0.5, max([0.0, *depths]) / onset.radius)
-    bar_speed = min(math.sqrt(body.young / body.density) for body in bodies)
+    bar_speed = min(math.sqrt(body.material.young / body.material.density) for body in bodies)
     return bar_speed * (0.4 * share if scene.dimension is PLANE_STRAIN else 0.5 * share**1.25)
 
 

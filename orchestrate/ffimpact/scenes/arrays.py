@@ -14,7 +14,6 @@ from ..input.parameters import PARAMETERS, Value
 from ..mesh.mesh import AXIS, WIDEST, Mesh
 from ..mesh.plane_file import on_circle
 from ..mesh.solid_mesh import DEPTH, SolidMesh
-from .bodies import DAMPING
 from .mirror import copies
 from .scene import Scene
 
@@ -83,7 +82,10 @@ def scene_arrays(scene: Scene, centres: np.ndarray, pairs: list[dict[str, Value]
         {"script": scene.script}
         | {"symmetry_factor": 2 if scene.dimension is AXISYMMETRIC else copies(scene)}
         | table("bodies", _bodies(scene, centres))
-        | joined("bodies.law_numbers", [law_numbers(body.law_parameters) for body in scene.bodies])
+        | joined(
+            "bodies.law_numbers",
+            [law_numbers(body.material.law_parameters) for body in scene.bodies],
+        )
         | _obstacles(scene)
         | table("pairs", of_pairs)
         | table("rigid", rigid)
@@ -111,12 +113,12 @@ def _bodies(scene: Scene, centres: np.ndarray) -> list[Entries]:
     return [
         {
             "name": body.name,
-            "law": body.law,
-            "law_parameters": body.law_parameters,
-            "young": float(body.young),
-            "nu": float(body.nu),
-            "density": float(body.density),
-            "damping": [float(getattr(body, name)) for name in DAMPING],
+            "law": body.material.law,
+            "law_parameters": body.material.law_parameters,
+            "young": float(body.material.young),
+            "nu": float(body.material.nu),
+            "density": float(body.material.density),
+            "damping": body.material.damping,
             "centre": padded(centre),
             "shift": padded(body.position - centre),
             "turn": 0.0 if solid else float(body.angle),

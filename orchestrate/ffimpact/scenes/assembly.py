@@ -12,7 +12,7 @@ import hashlib
 import math
 import tomllib
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
@@ -24,7 +24,7 @@ from ..failure import BadInput
 from ..freefem.arrays import Entries, packed
 from ..geometry.outlines import Loop, TubeOutline, rotation
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID
-from ..input.models import MATERIAL, OWN
+from ..input.models import OWN
 from ..input.parameters import NOT_DECISIVE, Table, Value
 from ..input.toml_text import to_toml
 from ..mesh import mesh, revolution, solid_mesh, solids
@@ -32,7 +32,7 @@ from ..mesh.mesh import AXIS, FREE, Curve, Sizes, mesh_body, nearest
 from ..mesh.solids import Solid
 from .approach import Onset, loaded_pull, onsets_of, refuse_nothing, refuse_sinking, turned
 from .arrays import Arc, mesh_arrays, padded, parameter_arrays, scene_arrays
-from .bodies import DAMPING, STIFF, Body
+from .bodies import STIFF, Body
 from .front import Front, fronts, stretch_of
 from .mirror import COPIES, copies, mirror_axes
 from .needs import IMPLICIT, implicit_for
@@ -337,10 +337,10 @@ class Asker:
         impact = Impact(
             sphere=scene.dimension is not PLANE_STRAIN,
             radius=radius,
-            young=soft.young / (STIFF if soft.rigid else 1),
-            nu=soft.nu,
-            density=soft.density,
-            damping=tuple(getattr(soft, name) for name in DAMPING),
+            young=soft.material.young / (STIFF if soft.rigid else 1),
+            nu=soft.material.nu,
+            density=soft.material.density,
+            damping=soft.material.damping,
             closing=along,
             pressing=pressing,
             exponent=scene.number("exponent"),
@@ -430,12 +430,8 @@ def used_tables(
 
     bodies = []
     for body_table, body, size in zip(scene.content["body"], scene.bodies, sizes):
-        used = (
-            {"name": body.name}
-            | body_table
-            | ({} if body.rigid else {key: getattr(body, key) for key in MATERIAL})
-        )
-        used |= {"density": body.density} if body.rigid and not body.mass else {}
+        used = {"name": body.name} | body_table | ({} if body.rigid else asdict(body.material))
+        used |= {"density": body.material.density} if body.rigid and not body.mass else {}
         used |= {"mesh_size": size.bulk, "contact_mesh_size": size.contact} if size else {}
         used |= {"mesh_stretch": size.stretch} if size and size.stretch > 1 else {}
         used |= (
@@ -474,15 +470,16 @@ def _with_viscosity(k: int, ask: Asker) -> Body:
     another viscosity.
     """
     body = ask.scene.bodies[k]
-    if not body.loss:
+    material = body.material
+    if not material.loss:
         return body
-    viscosity = _disc_like(k, ask).viscosity(body.loss)
-    if body.viscosity and not math.isclose(body.viscosity, viscosity):
+    viscosity = _disc_like(k, ask).viscosity(material.loss)
+    if material.viscosity and not math.isclose(material.viscosity, viscosity):
         raise BadInput(
-            f"body.{k + 1}.loss: {body.loss:g} asks for viscosity {viscosity:g} Pa s of '{body.name}', which "
-            f"is {body.viscosity:g} (accepted: one of the two)"
+            f"body.{k + 1}.loss: {material.loss:g} asks for viscosity {viscosity:g} Pa s of '{body.name}', which "
+            f"is {material.viscosity:g} (accepted: one of the two)"
         )
-    return replace(body, viscosity=viscosity)
+    return replace(body, material=replace(material, viscosity=viscosity))
 
 
 def element_sizes(k: int, ask: Asker) -> Sizes:

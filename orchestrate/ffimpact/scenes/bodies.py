@@ -18,29 +18,24 @@ from ..geometry import tumbling
 from ..geometry.outlines import Outline, Shape, Turn
 from ..input import models, parameters
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
-from ..input.models import MATERIAL, MOST_STRETCH
+from ..input.models import MOST_STRETCH
 from ..input.parameters import Table, Value
 from ..input.rules import SHORTEST
 from ..mesh import flat, mesh, revolution, solids
 from ..mesh.solid_file import GEOMETRIES
 from ..mesh.solid_mesh import SolidMesh
 from ..mesh.solids import Solid
+from . import material
 from .conditions import Load, Support, read_loads, read_supports
+from .material import NOT_RIGID, Material
 
-__all__ = ["Body", "DAMPED", "DAMPING", "SIZES", "STIFF", "STIFFEST", "read", "stiffened"]
+__all__ = ["Body", "SIZES", "STIFF", "read", "stiffened"]
 
 # Modules with the functions shape() and motion().
 GEOMETRY = {PLANE_STRAIN: flat, AXISYMMETRIC: revolution, SOLID: solids}
-DAMPING = ("viscosity", "bulk_viscosity", "relaxation_modulus", "relaxation_time")
-# A body is damped if one of these is above 0.
-DAMPED = ("viscosity", "bulk_viscosity", "relaxation_modulus", "loss")
 # `young` of a rigid body over the largest of the others. Its strain is smaller by this factor.
 STIFF = 1e5
-# Largest nu in the speed of waves. The stiffness by a larger nu acts on the volume of elements
-# (docs/explanation/materials.md).
-STIFFEST = 0.45
 FINEST = 1 / 20000  # smallest element size over the half thickness of a body
-OPTIONAL = ("law_parameters", *DAMPING, "loss")
 SIZES = ("mesh_size", "contact_mesh_size")
 
 
@@ -60,16 +55,7 @@ class Body:
     angle: Turn
     velocity: np.ndarray
     spin: Turn
-    law: str
-    young: float
-    nu: float
-    density: float
-    law_parameters: str
-    viscosity: float
-    bulk_viscosity: float
-    relaxation_modulus: float
-    relaxation_time: float
-    loss: float
+    material: Material
     mesh_size: float
     contact_mesh_size: float
     mesh_stretch: float
@@ -82,36 +68,21 @@ class Body:
     moments: tuple[float, ...] = (0.0,) * 6
 
     @property
-    def damped(self) -> bool:
-        return any(getattr(self, name) for name in DAMPED)
-
-    @property
     def moduli(self) -> tuple[float, float]:
-        """lambda + 2 mu and mu [Pa] in a wave across the body. Damping adds to them: they are
-        absolute values at omega = pi / transit (stiffen() of edp/program/run/scales.idp).
-
-        The part of lambda above nu = STIFFEST acts on the volume of elements and not in waves.
-        """
-        nu = min(self.nu, STIFFEST)
-        mu, wave = self.young / (2 * (1 + nu)), self.young * (1 - nu) / ((1 + nu) * (1 - 2 * nu))
-        if not self.damped:
-            return wave, mu
-        turn = 1j * np.pi * math.sqrt(wave / self.density) / (2 * self.outline.half_thickness)
-        branch = self.relaxation_modulus * turn / (1 / (self.relaxation_time or 1) + turn)
-        shear = abs(mu + turn * self.viscosity + branch)
-        return abs(wave - 2 * mu + turn * self.bulk_viscosity) + 2 * shear, shear
+        """lambda + 2 mu and mu [Pa] in a wave across the body."""
+        return self.material.moduli(2 * self.outline.half_thickness)
 
     @property
     def stiffness(self) -> float:
         """Young's modulus [Pa] in an impact, over two, with the stiffening by damping; infinite for a
         rigid body.
         """
-        return math.inf if self.rigid else self.moduli[1] * (1 + self.nu)
+        return math.inf if self.rigid else self.moduli[1] * (1 + self.material.nu)
 
     @property
     def wave_speed(self) -> float:
         """The speed c [m/s] of a plane pressure wave, sqrt((lambda + 2 mu)/rho)."""
-        return math.sqrt(self.moduli[0] / self.density)
+        return math.sqrt(self.moduli[0] / self.material.density)
 
     @property
     def driven(self) -> bool:
@@ -204,7 +175,11 @@ def _body(table: models.Body, top: models.Top, folder: Path, dimension: Dimensio
         raise BadInput(
             f"{table.at('mesh_stretch')}: {stretch:g} is below 1 (accepted: 0, or from 1 to {MOST_STRETCH:g})"
         )
-    material = _rigid(table, top, dimension, outline) if table.rigid else _material(table, top)
+    made_of = (
+        _rigid(table, top, dimension, outline)
+        if table.rigid
+        else {"material": material.read(table, top)}
+    )
     end_time = top.end_time or 0.0
     motion = geometry.motion(table)
     if isinstance(table, models.Drawn) and table.is_placed_as_drawn:
@@ -214,7 +189,7 @@ def _body(table: models.Body, top: models.Top, folder: Path, dimension: Dimensio
         outline,
         body_mesh,
         **motion,
-        **material,
+        **made_of,
         mesh_size=bulk,
         contact_mesh_size=contact,
         mesh_stretch=stretch,
@@ -224,8 +199,8 @@ def _body(table: models.Body, top: models.Top, folder: Path, dimension: Dimensio
 
 
 def _rigid(table: models.Body, top: models.Top, dimension: Dimension, outline: Shape) -> Table:
-    """Returns the material entries of a rigid body. Its `young` is set later, by stiffened()."""
-    for key in ("law", "young", "nu", *OPTIONAL, "support"):
+    """Returns the material, mass and moments of a rigid body."""
+    for key in (*NOT_RIGID, "support"):
         if key in table:
             raise BadInput(
                 f"{table.at(key)}: a rigid body has none (accepted: density, or mass; without rigid = true)"
@@ -240,12 +215,8 @@ def _rigid(table: models.Body, top: models.Top, dimension: Dimension, outline: S
         )
     # For a body of revolution with a mass this density is only a scale.
     density = mass / outline.content if mass else table.density or top.density or 0.0
-    defaults = {key: parameters.PARAMETERS[key].default for key in OPTIONAL}
-    return defaults | {
-        "law": "svk",
-        "young": 1.0,
-        "nu": 0.0,
-        "density": float(density),
+    return {
+        "material": material.rigid(float(density)),
         "rigid": True,
         "mass": mass,
         "moments": _moments(table, dimension),
@@ -295,50 +266,17 @@ def stiffened(bodies: list[Body], penalties: list[Value], path: str) -> list[Bod
     """
     if not any(body.rigid for body in bodies):
         return bodies
-    soft = max((body.young for body in bodies if not body.rigid), default=0.0)
+    soft = max((body.material.young for body in bodies if not body.rigid), default=0.0)
     if not soft and "auto" in penalties:
         raise BadInput(
             f"{path}: 'auto' follows from a body that deforms, and all are rigid (accepted: a number, Pa/m^m)"
         )
     half = max(body.outline.half_thickness for body in bodies)
     young = STIFF * (soft or max(float(penalty) for penalty in penalties) * half)
-    return [replace(body, young=young) if body.rigid else body for body in bodies]
-
-
-def _material(table: models.Body, top: models.Top) -> dict[str, Value]:
-    """Returns the entries MATERIAL of a body: its own, else those at the top of the file. Raises
-    BadInput if one is in neither.
-
-    A viscosity of the body replaces a loss at the top of the file, and a loss of the body a
-    viscosity there.
-    """
-    values = {}
-    missing = [
-        key for key in MATERIAL if key not in table and key not in top and key not in OPTIONAL
+    return [
+        replace(body, material=replace(body.material, young=young)) if body.rigid else body
+        for body in bodies
     ]
-    if missing:
-        raise BadInput(
-            *(
-                f"{table.at(key)}: is missing, here and at the top of the file (accepted: "
-                f"{parameters.PARAMETERS[key].accepted})"
-                for key in missing
-            )
-        )
-    for key in MATERIAL:
-        rule, other = (
-            parameters.PARAMETERS[key],
-            {"viscosity": "loss", "loss": "viscosity"}.get(key),
-        )
-        common = rule.default if key not in top or other and other in table else getattr(top, key)
-        values[key] = getattr(table, key) if key in table else common
-    if values["relaxation_modulus"] == 0 and "relaxation_modulus" in table:
-        values["relaxation_time"] = 0.0
-    if (values["relaxation_modulus"] > 0) != (values["relaxation_time"] > 0):
-        raise BadInput(
-            f"{table.at('relaxation_time')}: {values['relaxation_time']:g} s with relaxation_modulus "
-            f"{values['relaxation_modulus']:g} Pa (accepted: both above 0, or none)"
-        )
-    return values
 
 
 def _refuse_size(path: str, size: float, outline: Shape, name: str) -> None:

@@ -27,8 +27,9 @@ from ..mesh.solid_file import declares_unit, takes_in_others
 from ..output import former
 from ..output.columns import Features, recorded
 from . import bodies, conditions, mirror, needs, obstacles
-from .bodies import SIZES, STIFFEST, Body
+from .bodies import SIZES, Body
 from .entries import release, set_entry, toml_value
+from .material import STIFFEST
 from .obstacles import Obstacle
 
 __all__ = ["Pair", "RUN", "Scene", "gap_between", "gap_to_obstacle", "read", "refuse_rest"]
@@ -223,14 +224,14 @@ class Scene:
     @property
     def damped(self) -> bool:
         """Whether any body is damped."""
-        return any(body.damped for body in self.bodies)
+        return any(body.material.damped for body in self.bodies)
 
     @property
     def _projected(self) -> bool:
         """Whether the volume of the elements is projected. This needs quadratic elements, a
         `volume` that is not "plain" and a body with nu above STIFFEST.
         """
-        stiffest = max(body.nu for body in self.bodies)
+        stiffest = max(body.material.nu for body in self.bodies)
         return (
             self.values["volume"] != "plain" and self.values["degree"] == 2 and stiffest > STIFFEST
         )
@@ -329,7 +330,9 @@ def read(content: Table, folder: Path, name: str) -> Scene:
     _refuse_friction(scene)
     _refuse_start(scene)
     for k, body in enumerate(all_bodies, 1):
-        _refuse_nu(f"body.{k}.nu" if len(all_bodies) > 1 else "nu", body.nu, body.law)
+        _refuse_nu(
+            f"body.{k}.nu" if len(all_bodies) > 1 else "nu", body.material.nu, body.material.law
+        )
     mirror.copies(scene)
     return scene
 
