@@ -59,8 +59,8 @@ def run(
     `figures` the figures are drawn. Progress is shown unless `progress` is False: as a line that
     changes, in a pipe or a file as a line every 20 s or more. `watch` is called with the Progress of
     the main run every 0.2 s or so; if it returns True the run ends there, without an error estimate,
-    and is never reused. If the scene leaves `fields` open, the run keeps 60 states. The
-    folder is that of the command `ffimpact run`. Raises the exceptions of ffimpact: BadInput,
+    and is never reused. If the scene does not set `fields`, the run keeps 60 states. The folder has
+    the files that the command `ffimpact run` leaves. Raises the exceptions of ffimpact: BadInput,
     StepFailed and so on.
     """
     if not isinstance(out or "", str | Path):

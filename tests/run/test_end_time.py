@@ -6,16 +6,19 @@ from ffimpact import scene
 from ffimpact.running import run
 from tests.support.front import BLOCK, scene_of
 
-BEAM = """
+RUBBER = """
 accuracy = 0.1
 law = "neohookean"
 young = 5e6
-nu = 0.45
 density = 1100
 end_time = 1
+"""
+A_DISC = """
 [[body]]
 shape = "disc"
 radius = 0.02
+"""
+BEAM = RUBBER + "nu = 0.45" + A_DISC + """
 position = [0.09, 0.0251]
 velocity = [0.5, -3]
 [[body]]
@@ -35,16 +38,7 @@ friction_static = 0.3
 
 
 # A disc above a plane, one of them moved.
-DISC = """
-accuracy = 0.1
-law = "neohookean"
-young = 5e6
-nu = 0.4
-density = 1100
-end_time = 1
-[[body]]
-shape = "disc"
-radius = 0.02
+DISC = RUBBER + "nu = 0.4" + A_DISC + """
 position = [0, 0.0201]
 """
 PRESSED = DISC + """

@@ -234,7 +234,9 @@ def _check_sides(made: Mesh) -> None:
 
 
 def _check_outline(made: Mesh) -> None:
-    """Checks that the body is one piece, which hangs together by sides, and may be touched."""
+    """Checks that the body is one piece, which hangs together by sides, and that an edge may come
+    into contact.
+    """
     ends = np.bincount(made.edges.ravel(), minlength=len(made.points))
     _refuse(
         ends > 2,

@@ -96,8 +96,8 @@ class State:
 
 
 class Fields(Sequence[State]):
-    """The kept states of a run in order of time; `times` has their times [s]. Each is read when it
-    is asked for. Access raises Unreadable if the run kept none.
+    """The kept states of a run in order of time; `times` has their times [s]. A state is read from its
+    file at each access. Access raises Unreadable if the run kept none.
     """
 
     def __init__(self, folder: Path, of_revolution: bool, symmetric_along: Sequence[str]):
@@ -186,7 +186,7 @@ def _locate(
 
 def _centre(elements: Array, of_revolution: bool) -> Array:
     """The centre of mass of quadratic elements (m, nodes, axes), by a rule with a point for each
-    corner; of a body of revolution about the first axis's zero.
+    corner. That of a body of revolution is on its axis, where the first coordinate is 0.
     """
     corners = elements.shape[2] + 1
     outer = {3: 2 / 3, 4: 0.5854101966249685}[corners]

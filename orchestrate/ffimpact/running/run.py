@@ -87,10 +87,9 @@ def run(
 
     `force` runs again from the start, even if the folder is up to date. Otherwise an interrupted
     run continues from its last checkpoint. Progress is shown unless `progress` is False
-    (progress.py). With `estimate` coarser runs estimate the error;
-    finer runs follow until the error is below the requested accuracy (output/estimate.py). If
-    `watch` ends the run, it has no estimate and is never reused. Raises Failure with the exit code
-    of the run contract.
+    (progress.py). With `estimate` coarser runs estimate the error; finer runs follow until the
+    error is below the requested accuracy (output/estimate.py). If `watch` ends the run, it has no
+    estimate and is never reused. Raises Failure with the exit code of the run contract.
     """
     started = time.monotonic()
     scene = scene.override(overrides or {})

@@ -84,8 +84,8 @@ class Front:
 
 def fronts(scene: Scene, onsets: list[Onset]) -> list[Front]:
     """Returns the flat strikes among the onsets of contact `onsets`. A strike is left out if it is
-    the first contact of neither body: the one before changes whether and how they meet. A body that
-    is set down, slower than constant forces make it in a transit, has no front.
+    the first contact of neither body: the one before changes the later one. A body that is set
+    down, slower than constant forces make it in a transit, has no front.
     """
     if scene.values["until"] == "rest":
         return []

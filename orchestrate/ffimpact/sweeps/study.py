@@ -67,11 +67,11 @@ def study(
     warnings (joined by "; "), reused, and the numbers of its summary; with `estimate` also their
     errors, <name>_error.
 
-    Every run is the scene `run_scene` with `base` and the parameters of the point, in folder/runs/, and
-    may take `limit` seconds. `cores` runs are computed at a time. Finished runs in the folder, and
+    Every run is the scene `run_scene` with `base` and the parameters of the point, in folder/runs/,
+    and may take `limit` seconds. `cores` runs are computed at a time. Finished runs in the folder, and
     failures of the same scene and code, are not repeated unless `force` is set. A run that fails is
-    a row like any other, with its exit code and message. NotInstalled is raised if FreeFem++ is missing. Several studies
-    may share a folder: each leaves out the runs that another one is computing.
+    a row like any other, with its exit code and message. Several studies may share a folder: each
+    leaves out the runs that another one is computing. Raises NotInstalled if FreeFem++ is missing.
     """
     places = [place(folder, point) for point in points]
     loaded = scene.load(run_scene) if isinstance(run_scene, str) else run_scene
@@ -189,9 +189,9 @@ def _outcome_of(future: Future[Any]) -> Any:
 
 
 def there(folder: Path, requested: Scene, estimate: bool = False) -> Table | None:
-    """Returns the outcome that is in `folder` already, None if there is none: a finished run, where
-    asked for with its error estimate, or a failure of the same scene and code, which would be
-    repeated.
+    """Returns the outcome that is in `folder` already, None if there is none: a finished run, with
+    `estimate` one that has its error estimate, or a failure of the same scene and code, which would
+    be repeated.
     """
     for candidate in (folder, failed_beside(folder)):
         failed = read_json(candidate / "failure.json")
@@ -212,9 +212,9 @@ def there(folder: Path, requested: Scene, estimate: bool = False) -> Table | Non
 def outcome_of(
     folder: Path, requested: Scene, limit: float, estimate: bool = False, force: bool = False
 ) -> Table | None:
-    """Runs a scene, unless its outcome is there already and `force` is not set, and returns the row of the table: exit
-    code, message, warnings, reused, and the numbers of the summary, as far as the run came in
-    `limit` seconds. None if another process is computing this run.
+    """Runs a scene, unless its outcome is there already and `force` is not set. Returns the row of the
+    table: exit code, message, warnings, reused, and the numbers of the summary, as far as the run
+    came in `limit` seconds. None if another process is computing this run.
     """
     if row := None if force else there(folder, requested, estimate):
         return row
