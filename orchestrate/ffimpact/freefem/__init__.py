@@ -1,1 +1,1 @@
-"""FreeFEM: its process, the compiled kernels and the descriptions that its scripts give."""
+"""FreeFEM: its process, the compiled kernels and the files of arrays that its scripts take."""
