@@ -25,9 +25,9 @@ class Contact : public Term {
   Arrays script;
   Problem problem;
   Law &law = problem.law;
-  Vector diagonal;                               // explicit steps: A^-1 is diagonal, else empty
+  Vector diagonal;                               // A^-1 of explicit steps, diagonal; else empty
   Indices candidates;                            // of the active set
-  Indices unknowns;                              // of it or, if B changes, of all sets so far
+  Indices unknowns;                              // of the active set; if B changes, of all so far
   Indices orderedLast;                           // unknowns that A orders last
   Vector lastForces;                             // candidateForces of the last solve
   std::vector<long> statusChanges;               // (ns) between stick and slip in the step

@@ -11,9 +11,9 @@ void Gaps::makeFixed() {
   if (!fixed) return;
   const Vector still = Vector::Zero(u.size());
   obstacles.start(still.data(), 0, tensors::infinity);
-  at(still, 1);
+  evaluate(still, 1);
   rates.numbers() = motion;
-  rest.numbers() = at(still, 0);
+  rest.numbers() = evaluate(still, 0);
 }
 
 Vector Gaps::now(const Vector &at, double t, double distance) {
@@ -24,7 +24,7 @@ Vector Gaps::now(const Vector &at, double t, double distance) {
     pairs->search(x.data(), 2 * distance);
     pairs->start(x.data(), x.size());
   }
-  return this->at(Vector::Zero(at.size()), 0);
+  return evaluate(Vector::Zero(at.size()), 0);
 }
 
 void Gaps::search(const Step &step, const Vector &d) {
@@ -46,7 +46,7 @@ void Gaps::goOn(const Vector &at, double t, double h) {
 }
 
 void Gaps::follow(const Vector &d, double dt) {
-  if (!fixed) q0.numbers() = at(d, dt);
+  if (!fixed) q0.numbers() = evaluate(d, dt);
 }
 
 double Gaps::increment(const Vector &d, double dt) const {
@@ -75,7 +75,7 @@ Vector Gaps::pull(const Vector &t) const {
   return force;
 }
 
-Vector Gaps::at(const Vector &d, double dt) {
+Vector Gaps::evaluate(const Vector &d, double dt) {
   // Rows, motion and offset of the step by d in dt. Returns the penetrations at its start.
   Vector start = Vector::Constant(ns(), -tensors::infinity), end = start;
   motion = Vector::Zero(obstacles.axes * ns());

@@ -18,16 +18,17 @@ class Gaps {
   using Indices = std::vector<int>;
   obstacles::Obstacles obstacles;
   std::unique_ptr<pairs::AnyPairs> pairs;  // of bodies, if there are any
-  // Positions of the nodes; their displacements by those of the unknowns, empty if they are these.
+  // Positions of the nodes [m]; matrix from the unknowns to displacements of nodes, empty if both are
+  // the same.
   Vector nodalPosition;
   Eigen::SparseMatrix<double, Eigen::RowMajor> spread;
   bool fixed = false;                      // the gaps are affine in u: B never changes
   int gapRows = 1;                         // rows of B for a candidate
-  double staticReach = 0;                  // search distance of static steps at least [m]
+  double staticReach = 0;                  // smallest search distance of static steps [m]
   // Script arrays: displacements and penetrations at the start of the step; velocity of the frame
   // at the unknowns [m/s]; if fixed, q at u = 0 and time 0 [m], and motion in 1 s [m].
   Kept<double> u, q0, frameMotion, rest, rates;
-  double searchDistance = 0;               // motion of points for which the search is valid [m]
+  double searchDistance = 0;               // largest motion of a point that the search allows [m]
   Vector motion;                           // [m] (axes ns)
   // B by rows: row r has the entries first[r] to first[r + 1] - 1.
   Indices first{0}, column;
@@ -36,8 +37,9 @@ class Gaps {
   long ns() const { return q0.size(); }
   void makeFixed();   // B, rest and rates, if fixed
 
-  // Penetrations at the displacements `at` and the time t. If B changes, it is that at `at`, and
-  // gaps are found up to `distance` [m], between bodies up to twice as much; others are infinite.
+  // Penetrations at the displacements `at` and the time t. If B is not fixed, it becomes that at
+  // `at`, and gaps are found up to `distance` [m], between bodies up to twice as much; others are
+  // infinite.
   Vector now(const Vector &at, double t, double distance);
 
   // Starts a step in which points move about as in d: searches for the candidates that may come
@@ -62,7 +64,7 @@ class Gaps {
   Vector offset;                           // gapSlip for d = 0
   JacobianRows ofPairs, ofObstacles;
   Vector nodal(const Vector &w) const { return spread.rows() > 0 ? Vector(spread * w) : w; }
-  Vector at(const Vector &d, double dt);
+  Vector evaluate(const Vector &d, double dt);
   void takeRows();
   void startFixed(double dt);
 };

@@ -27,7 +27,8 @@ class StressTerm {
   virtual ~StressTerm() {}
   History history;
 
-  // Before addStress() of all elements, with the increment as (node, component), and after it.
+  // begin() is called before addStress() of the first element, with the increment as (node,
+  // component); end() after that of the last.
   virtual void begin(const Step &, const std::vector<double> &) {}
   virtual void end(const Step &) {}
 
@@ -139,7 +140,8 @@ class Volume : public StressTerm {
   void addEnergy(Time time, const Deformed &e, double *W) const override;
   void accept() override { start = star; }
   void archive(Archive &archive) override { archive(start);  archive(ofTangent); }
-  // Adds what the elliptic test of a law that is quadratic in C lacks, at e.C1.
+  // Where W is quadratic in C: adds to the ellipticity at e.C1 what the pressure of the element has
+  // beyond kappa tr E of the point.
   void addEllipticity(const Deformed &e, double *ellipticity) const;
   Symmetric stress(int q, const Symmetric &C, double J, double p) const;   // p T
 

@@ -94,7 +94,7 @@ Progress = Callable[[At], None]
 @dataclass(frozen=True)
 class FreeFem:
     """A FreeFem++ that can run the scripts of this program: its path, its version, the environment
-    that it needs and the description that the scripts give.
+    that it needs and the answer of describe.edp.
     """
 
     command: str
@@ -270,8 +270,8 @@ def quick_clock(environment: Mapping[str, str]) -> dict[str, str]:
 
 
 def _probe(command: str, environment: dict[str, str]) -> dict[str, Any] | None:
-    """Returns the answer of edp/program/describe.edp without a scene, or None if FreeFem++ does not start
-    or lacks a plugin that the scenes load. The version is taken from the banner: scripts see it as
+    """Returns the answer of edp/program/describe.edp, or None if FreeFem++ does not start or lacks a
+    plugin that the scenes load. The version is taken from the banner: scripts see it as
     a number, in which 4.10 equals 4.1.
     """
     try:

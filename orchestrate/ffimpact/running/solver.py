@@ -31,9 +31,9 @@ Watch = Callable[[freefem.At, Path], object]
 
 class Solver(AbstractContextManager["Solver", None]):
     """Runs a scene with given values in given folders, one run after the other. If `pair` is set
-    and a core is free, the coarser runs start at the same time as the main run. `watch` may end the
-    main run. In a thread other
-    than the main thread they do not, because a study already has a run on every core.
+    and a core is free, the coarser runs start at the same time as the main run. In a thread other
+    than the main thread they do not, because a study already has a run on every core. `watch` may
+    end the main run.
     """
 
     def __init__(
