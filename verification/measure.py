@@ -23,7 +23,8 @@ from ffimpact.output import results
 from ffimpact.output.evaluate import evaluate
 from ffimpact.scene import read as read_scene
 from ffimpact.scenes import assembly
-from ffimpact.scenes.arrays import law_numbers, parameter_arrays
+from ffimpact.scenes.arrays import parameter_arrays
+from ffimpact.scenes.laws import law_numbers
 
 from . import solids
 

@@ -67,13 +67,14 @@ def test_terms_agree_with_differences_of_their_work(measure, body, flags):
     """In a step of energy-momentum d times the forces of a term is the energy that it stores and
     dissipates, with a history from the step before.
 
-    The forces of elastic bodies are the slope of their energy. The tangent at d = 0 is the
+    The forces of elastic bodies and of contact are the slope of their energy. The tangent at d = 0 is the
     derivative of all forces, those of damping among them."""
     if body == "3d" and flags["law"] == "svk":
         flags = flags | {"nu": 0.3}
     numbers = measure(f"terms-{body}", **COARSE[body] | flags)
     assert numbers["smallest"] < 0.6
-    assert abs(numbers["workBodies"]) < 1e-12 and abs(numbers["workInertia"]) < 1e-12
+    assert abs(numbers["workBodies"]) < 1e-12 and abs(numbers["workInertia"]) < 1e-12 and abs(numbers["workContact"]) < 1e-12
+    assert abs(numbers["slopeContact"]) < 1e-6
     assert numbers["tangent"] < 1e-7
     if flags in DAMPED:
         assert numbers["dissipated"] > 0.1

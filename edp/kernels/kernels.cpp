@@ -10,6 +10,7 @@
 #include "input.hpp"
 #include "loads.hpp"
 #include "step.hpp"
+#include "turning.hpp"
 
 static bodies::Elements elements;
 static bodies::Bodies body(elements);
@@ -17,7 +18,8 @@ static bodies::Inertia inertia(elements);
 static bodies::Loads loads;
 static bodies::Supports supports(elements, body);
 static Step stepNow;                                 // set by kernelIntegrator
-static std::vector<const laws::Law *> law;           // by its number in lawOfPoint
+static std::vector<TimeFunction> functions;
+static std::vector<const laws::Law *> law;           // of the bodies
 static Factor factor;
 static contact::Gaps gaps;
 static contact::Contact touching(gaps, factor, elements.ndof, elements.free);
@@ -43,21 +45,19 @@ static void addBodies() {
   add("kernelComponent", +[](long i, long dimensions, Sparse pick) {
     elements.component(int(i), int(dimensions), entries(pick));
   });
-  add("kernelKnows", +[](std::string &name) { return long(laws::find(name) != nullptr); });
-  add("kernelLawNumber", +[](long number, std::string &name) {
-    // The number of a law in lawOfPoint.
-    law.resize(std::max(law.size(), size_t(number + 1)));
-    law[number] = laws::find(name);
+  add("kernelLawOf", +[](long body, std::string &name) {
+    law.resize(std::max(law.size(), size_t(body + 1)));
+    law[body] = laws::find(name);
   });
   add("kernelMaterial", +[](Reals lambda, Reals mu, Reals own, Reals eta, Reals zeta,
-                           Reals relaxing, Reals relaxTime, Reals bulk, Ints lawOfPoint,
+                           Reals relaxing, Reals relaxTime, Reals bulk, Ints bodyOfPoint,
                            Ints volumeByTrace, Ints incompressible, Reals weight) {
     // Arrays over the nq quadrature points; `own` has mostOwn stacked components.
     const long nq = weight.N();
     ffassert(own.N() == laws::mostOwn * nq);
     elements.weight = copied<double>(weight);
     for (long q = 0; q < nq; q++) {
-      laws::Material m = {law[lawOfPoint[q]], lambda[q], mu[q], {}, eta[q], zeta[q], relaxing[q],
+      laws::Material m = {law[bodyOfPoint[q]], lambda[q], mu[q], {}, eta[q], zeta[q], relaxing[q],
                           relaxTime[q], bulk[q], volumeByTrace[q], incompressible[q]};
       for (int k = 0; k < laws::mostOwn; k++) m.own[k] = own[k * nq + q];
       elements.addPoint(m);
@@ -128,6 +128,39 @@ static void addBodies() {
   });
 }
 
+static const TimeFunction &functionOf(long f) {      // -1: the function 0
+  static const TimeFunction none = {};
+  return f < 0 ? none : functions[f];
+}
+
+static void addFunctions() {
+  // Kernels of time-function.hpp: functions of time by their numbers.
+  add("kernelFunctions", +[](Ints first, Reals time, Reals value, Reals slope, Reals soFar,
+                            Table largest) {
+    const auto part = [&](Reals of, long f) {
+      return std::vector<double>((double *)of + first[f], (double *)of + first[f + 1]);
+    };
+    for (long f = 0; f < first.N() - 1; f++)
+      functions.push_back({part(time, f), part(value, f), part(slope, f), part(soFar, f),
+                           largest(0L, f)});
+  });
+  add("kernelFunctionRate", +[](long f, double t) { return functionOf(f).rate(t); });
+  add("kernelBend", +[](double t, double dt, bool untilThen) {
+    double most = 0;
+    for (const TimeFunction &f : functions) most = std::max(most, f.bend(t, dt, untilThen));
+    return most;
+  });
+  add("kernelMoveSupports", +[](Ints motion, double t, double dt, Reals increment, Reals speed) {
+    // Increments of the unknowns from t to t + dt, and velocities at the end; motion (ndof): their
+    // functions.
+    for (long i = 0; i < motion.N(); i++) {
+      const TimeFunction &f = functionOf(motion[i]);
+      increment[i] = f.at(t + dt) - f.at(t);
+      speed[i] = f.rate(t + dt);
+    }
+  });
+}
+
 static Eigen::SparseMatrix<double, Eigen::RowMajor> byRows(Sparse A) {
   const Triplets all = entries(A);
   std::vector<Eigen::Triplet<double>> list;
@@ -146,12 +179,9 @@ static void addLoads() {
     loads.inflation = {&inflation};
     supports.reaction = {&heldResidual};
   });
-  add("kernelLoad", +[](long kind, bool ofRigidBody) {   // appends a load
-    loads.load.push_back({int(kind), ofRigidBody, {}});
-  });
-  add("kernelLoadFunction", +[](long k, long c, Reals time, Reals value, Reals slope) {
-    loads.load[k].function[c] =
-      {copied<double>(time), copied<double>(value), copied<double>(slope)};
+  add("kernelLoad", +[](long kind, bool ofRigidBody, Ints f) {   // appends a load
+    loads.load.push_back({int(kind), ofRigidBody,
+                          {functionOf(f[0]), functionOf(f[1]), functionOf(f[2])}});
   });
   add("kernelLoadShapes", +[](long c, Sparse place, Sparse alongR, Sparse alongS) {
     loads.place[c] = byRows(place);
@@ -283,7 +313,7 @@ static void addStep() {
     return long(substep.take(Kept<double>{&increment}.numbers(),
                              Kept<double>{&halfStepVelocity}.numbers(), h));
   });
-  add("kernelDampingWork", +[](double &work) { work = touching.dampingWork(); });
+  add("kernelDampingWork", +[]() { return touching.dampingWork(); });
   add("kernelLaw", +[](double exponent, double retardation, double slipVelocity, double bridge,
                       double sticksBelow, std::string &regularization, bool jumps, long slips,
                       long mostStatusChanges) {
@@ -335,13 +365,13 @@ static void addGaps() {
     Kept<double>{&moved}.numbers() = gaps.move(Kept<double>{&w}.numbers());
     Kept<double>{&moved}.numbers() += share * gaps.motion.head(moved.N());
   });
-  add("kernelGapIncrement", +[](Reals d, double dt, double &farthest) {
-    farthest = gaps.increment(Kept<double>{&d}.numbers(), dt);
+  add("kernelGapIncrement", +[](Reals d, double dt) {
+    return gaps.increment(Kept<double>{&d}.numbers(), dt);
   });
   add("kernelMovesTooFar", +[](Reals d) {
     return long(gaps.movesTooFar(stepNow, Kept<double>{&d}.numbers()));
   });
-  add("kernelObstacleWork", +[](double &work) { work = touching.obstacleWork(); });
+  add("kernelObstacleWork", +[]() { return touching.obstacleWork(); });
   add("kernelCrossed", +[](Ints crossed) {   // points that passed through each obstacle
     gaps.obstacles.crossed.resize(crossed.N());
     std::copy(gaps.obstacles.crossed.begin(), gaps.obstacles.crossed.end(), (long *)crossed);
@@ -399,23 +429,21 @@ static void addObstacles() {
     added.velocity = spatial(velocity);
     gaps.obstacles.obstacle.push_back(std::move(added));
   });
-  add("kernelDrive", +[](long k, Reals pivot, Reals axis) {
-    gaps.obstacles.obstacle[k].driven = true;
-    gaps.obstacles.obstacle[k].pivot = spatial(pivot);
-    gaps.obstacles.obstacle[k].axis = spatial(axis);
-  });
-  add("kernelDriveFunction", +[](long k, long c, Reals time, Reals value, Reals slope) {
-    // Function c of the driven obstacle k: components 0 to 2 of the displacement, 3 the angle.
+  add("kernelDrive", +[](long k, Reals pivot, Reals axis, Ints f) {
+    // f: functions of the displacement (3) and of the angle
     obstacles::Obstacle &driven = gaps.obstacles.obstacle[k];
-    (c < 3 ? driven.displacement[c] : driven.angle) =
-      {copied<double>(time), copied<double>(value), copied<double>(slope)};
+    driven.driven = true;
+    driven.pivot = spatial(pivot);
+    driven.axis = spatial(axis);
+    for (int c = 0; c < 3; c++) driven.displacement[c] = functionOf(f[c]);
+    driven.angle = functionOf(f[3]);
   });
   add("kernelContactPoints", +[](long axes, Reals places, Sparse traces) {
     gaps.obstacles.axes = int(axes);
     gaps.obstacles.setPoints(places, entries(traces));
   });
-  add("kernelObstacleIncrement", +[](Reals d, double dt, double &farthest) {
-    farthest = gaps.obstacles.largestIncrement(d, dt);
+  add("kernelObstacleIncrement", +[](Reals d, double dt) {
+    return gaps.obstacles.largestIncrement(d, dt);
   });
   add("kernelObstacleGaps", +[](long k, Reals x, double t, Reals gap, Reals normal) {
     // Gaps (m) [m] and normals (axes m) of obstacle k at time t, for m positions x (axes m).
@@ -429,6 +457,14 @@ static void addObstacles() {
       gap[i] = closest.gap;
       for (long c = 0; c < axes; c++) normal[c * m + i] = n[c];
     }
+  });
+  add("kernelTurn", +[](Table J, double t, Reals spin, Table R) {   // of turning.hpp
+    turning::Vector w(spin[0], spin[1], spin[2]);
+    turning::Matrix turned = Eigen::Map<turning::Matrix>(&R(0, 0));
+    const long tumbles = turning::turnFreely(Eigen::Map<turning::Matrix>(&J(0, 0)), t, w, turned);
+    for (int c = 0; c < 3; c++) spin[c] = w[c];
+    Eigen::Map<turning::Matrix>(&R(0, 0)) = turned;
+    return tumbles;
   });
   add("kernelObstaclePoint", +[](long k, double t, Reals X, Reals x) {
     // Position x (3) in the scene at time t of the point X of the frame of obstacle k.
@@ -467,6 +503,7 @@ static void addKernels() {
   addStatuses();
   addInput();
   addBodies();
+  addFunctions();
   addLoads();
   addFactor();
   addStep();

@@ -1,5 +1,5 @@
-// laws.cpp: the laws of laws.hpp. A new law is a struct derived from Conserving, a line in find(),
-// and one in program/law/laws.idp.
+// laws.cpp: the laws of laws.hpp. A new law is a struct derived from Conserving, and a line in
+// find().
 #include <map>
 #include "logarithm.hpp"
 

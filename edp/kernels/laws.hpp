@@ -46,7 +46,7 @@ struct Law {
   virtual double ellipticity(const Material &m, const Symmetric &C, bool spatial) const = 0;
 };
 
-// The compiled law with this name in laws.idp; null if it is not compiled.
+// The law with this name; null if there is none.
 const Law *find(const std::string &name);
 
 // W(C) - W(I) [J/m3] without cancellation at small strains.

@@ -1,17 +1,17 @@
-"""The rotation of a free rigid body, from Euler's equations.
+"""The rotation of a free rigid body (edp/kernels/turning.hpp)."""
 
-The angular momentum L is constant in space: dR/dt = w x R with w = R J^-1 R^T L, where R is the
-rotation matrix, J the matrix of inertia in the body's axes and w the angular velocity [rad/s].
-"""
-
+import ctypes
 import math
-from functools import lru_cache
-from typing import TYPE_CHECKING
+import subprocess
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from scipy.integrate import OdeSolution
+from ..failure import NotInstalled
+from ..freefem import kernels
+from ..freefem.compiled import QUIET, compiled
 
 __all__ = ["fastest", "rotation", "turned"]
 
@@ -28,12 +28,10 @@ def turned(moments: np.ndarray, start: np.ndarray, spin: np.ndarray, t: float) -
     if _principal(moments, start, spin):
         turned: np.ndarray = rotation(spin * t) @ start
         return turned
-    # Solutions are kept for horizons that double, the first of one radian.
-    radian = 1 / fastest(moments, start, spin)
-    horizon = radian * 2.0 ** max(0, math.ceil(math.log2(max(t / radian, 1))))
-    solution = _solution(moments.tobytes(), start.tobytes(), spin.tobytes(), horizon)
+    J, w, R = (np.array(values, dtype=float, order="C") for values in (moments, spin, start))
+    _turn()(J.ctypes.data, t, w.ctypes.data, R.ctypes.data)
     # The result is the rotation closest to the solution.
-    left_vectors, _, right_vectors = np.linalg.svd(solution(t).reshape(3, 3))
+    left_vectors, _, right_vectors = np.linalg.svd(R)
     closest: np.ndarray = left_vectors @ right_vectors
     return closest
 
@@ -74,22 +72,33 @@ def _principal(moments: np.ndarray, start: np.ndarray, spin: np.ndarray) -> bool
     )
 
 
-@lru_cache(maxsize=64)
-def _solution(moments: bytes, start: bytes, spin: bytes, horizon: float) -> "OdeSolution":
-    """The rotation matrix as a function of time from 0 to `horizon` [s], with an error of about
-    1e-9 a radian."""
-    from scipy.integrate import solve_ivp  # imported here: most scenes need none
+@cache
+def _turn() -> Callable[[int, float, int, int], None]:
+    """The function of edp/kernels/turning.cpp, by which flights turn bodies, too. Arguments: addresses
+    of the moments, time [s], addresses of spin and matrix, which it replaces."""
+    sources = [kernels.SOURCES / name for name in ("turning.cpp", "turning.hpp")]
 
-    J, R, w = (np.frombuffer(buffer) for buffer in (moments, start, spin))
-    inverse = np.linalg.inv(J.reshape(3, 3))
-    momentum = R.reshape(3, 3) @ J.reshape(3, 3) @ R.reshape(3, 3).T @ w
+    def make(folder: Path) -> None:
+        subprocess.run(
+            [
+                "c++",
+                "-O2",
+                "-std=c++17",
+                "-shared",
+                "-fPIC",
+                "-o",
+                folder / "turning.so",
+                sources[0],
+            ],
+            check=True,
+            timeout=60,
+            **QUIET,
+        )
 
-    def rate(_: float, entries: np.ndarray) -> np.ndarray:
-        R = entries.reshape(3, 3)
-        change: np.ndarray = _cross(R @ inverse @ R.T @ momentum) @ R
-        return change.ravel()
-
-    solution: OdeSolution = solve_ivp(
-        rate, (0, horizon), R, method="DOP853", rtol=1e-10, atol=1e-10, dense_output=True
-    ).sol
-    return solution
+    library = compiled("turning.so", [source.read_text() for source in sources], make)
+    if not library:
+        raise NotInstalled(f"the rotation of bodies cannot be compiled; {kernels.HOW}")
+    function = ctypes.CDLL(str(library)).ffimpact_turn
+    function.argtypes = [ctypes.c_void_p, ctypes.c_double, ctypes.c_void_p, ctypes.c_void_p]
+    function.restype = None
+    return function

@@ -14,7 +14,7 @@ __all__ = ["LAWS", "PARAMETERS", "SCRIPTS"]
 
 SCRIPTS = ("bodies", "bodies-axisymmetric", "bodies-3d")
 OF_BODIES = ("",)  # of no script: entries of bodies
-LAWS = ("svk", "neohookean", "mooney-rivlin", "ogden", "incompressible")  # edp/program/law/laws.idp
+LAWS = ("svk", "neohookean", "mooney-rivlin", "ogden", "incompressible")  # edp/kernels/laws.cpp
 
 # A row without scripts behind the meaning is a parameter of all scripts.
 ROWS = (
@@ -22,8 +22,7 @@ ROWS = (
         "law",
         "svk",
         LAWS,
-        "constitutive law: St. Venant-Kirchhoff (5), compressible neo-Hookean (6), or another of "
-        "program/law/laws.idp",
+        "constitutive law: St. Venant-Kirchhoff (5), compressible neo-Hookean (6), or another",
         OF_BODIES,
     ),
     real("young", 7e6, 1e-6, 1e18, "Pa", "Young's modulus E", OF_BODIES),
@@ -39,7 +38,7 @@ ROWS = (
     real("density", 1722, 1e-15, 1e12, "kg/m3", "reference density", OF_BODIES),
     numbers(
         "law_parameters",
-        "what the law takes beyond young and nu, separated by commas: program/law/laws.idp",
+        "what the law takes beyond young and nu, separated by commas",
         OF_BODIES,
     ),
     real(

@@ -14,13 +14,13 @@ from ..input.parameters import PARAMETERS, Value
 from ..mesh.mesh import AXIS, WIDEST, Mesh
 from ..mesh.plane_file import on_circle
 from ..mesh.solid_mesh import DEPTH, SolidMesh
+from .laws import law_numbers
 from .mirror import copies
 from .scene import Scene
 
 __all__ = [
     "SHAPES",
     "Arc",
-    "law_numbers",
     "mesh_arrays",
     "padded",
     "parameter_arrays",
@@ -92,11 +92,6 @@ def scene_arrays(scene: Scene, centres: np.ndarray, pairs: list[dict[str, Value]
     )
 
 
-def law_numbers(text: str) -> np.ndarray:
-    """The numbers of a law, which are separated by commas, or none."""
-    return np.array([float(word) for word in text.split(",") if text != "none"], dtype=float)
-
-
 def parameter_arrays(values: Mapping[str, Value]) -> Entries:
     """Returns the parameters of a run: `values`, and the defaults of those that its script has not."""
     chosen = {
@@ -114,7 +109,6 @@ def _bodies(scene: Scene, centres: np.ndarray) -> list[Entries]:
         {
             "name": body.name,
             "law": body.material.law,
-            "law_parameters": body.material.law_parameters,
             "young": float(body.material.young),
             "nu": float(body.material.nu),
             "density": float(body.material.density),

@@ -26,7 +26,7 @@ from ..input.parameters import Table, Value
 from ..mesh.solid_file import declares_unit, takes_in_others
 from ..output import former
 from ..output.columns import Features, recorded
-from . import bodies, conditions, mirror, needs, obstacles
+from . import bodies, conditions, laws, mirror, needs, obstacles
 from .bodies import SIZES, Body
 from .entries import release, set_entry, toml_value
 from .material import STIFFEST
@@ -330,8 +330,10 @@ def read(content: Table, folder: Path, name: str) -> Scene:
     _refuse_friction(scene)
     _refuse_start(scene)
     for k, body in enumerate(all_bodies, 1):
-        _refuse_nu(
-            f"body.{k}.nu" if len(all_bodies) > 1 else "nu", body.material.nu, body.material.law
+        prefix, material = f"body.{k}." if len(all_bodies) > 1 else "", body.material
+        _refuse_nu(f"{prefix}nu", material.nu, material.law)
+        laws.refuse_numbers(
+            f"{prefix}law_parameters", material.law, material.law_parameters, material.nu
         )
     mirror.copies(scene)
     return scene
