@@ -40,7 +40,6 @@ Status ExplicitContact::take(Eigen::Map<Vector> increment, const Vector &halfSte
     change = contact.gaps.fixed ? 0 : (before - increment).lpNorm<Eigen::Infinity>();
   }
   contact.script.q1.numbers() = contact.script.gapSlip.numbers().head(ns);
-  contact.script.force.numbers() = contact.gaps.pull(contact.script.candidateForces.numbers());
   return succeeded;
 }
 
