@@ -42,11 +42,11 @@ def refuse_numbers(entry: str, law: str, text: str, nu: float) -> None:
 def _mooney_rivlin_fault(share: float, nu: float) -> str:
     if not 0 <= share <= 1:
         return f"share {share:g} (accepted: 0 to 1)"
-    most = nu / (1 - 2 * nu) if nu < 0.5 else np.inf  # lambda / (2 mu)
-    if share > most:
+    limit = nu / (1 - 2 * nu) if nu < 0.5 else np.inf  # lambda / (2 mu)
+    if share > limit:
         return (
             f"share {share:g} with a Poisson's ratio that is too small "
-            f"(accepted: to lambda/(2 mu), {most:g})"
+            f"(accepted: to lambda/(2 mu), {limit:g})"
         )
     return ""
 
