@@ -18,8 +18,8 @@ class Gaps {
   using Indices = std::vector<int>;
   obstacles::Obstacles obstacles;
   std::unique_ptr<pairs::AnyPairs> pairs;  // of bodies, if there are any
-  // Positions of the nodes [m]; matrix from the unknowns to displacements of nodes, empty if both are
-  // the same.
+  // Positions of the nodes [m]; the matrix from the unknowns to the displacements of the nodes,
+  // empty if they are the same.
   Vector nodalPosition;
   Eigen::SparseMatrix<double, Eigen::RowMajor> spread;
   bool fixed = false;                      // the gaps are affine in u: B never changes
