@@ -263,7 +263,7 @@ def report(table: pd.DataFrame) -> str:
     ended = table.error.dropna()
     shown = table.assign(warnings=table.warnings.fillna("").str.len() > 0)
     for name in estimate.PROMISED:
-        shown[name] = [f"{error:.2f} of {stated:.2f}" if error == error else ""
+        shown[name] = [f"{error:.2f} of {stated:.2f}".replace(" of nan", "") if error == error else ""
                        for error, stated in zip(table[name], table[f"{name} stated"])]
     return "\n".join([
         "A row a scene. `0.02 of 0.07`: the error is 0.02 of the accuracy asked for, 0.07 was stated; `error`, `estimated`: the largest "

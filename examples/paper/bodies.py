@@ -96,9 +96,9 @@ def total_energy(results: Results, law: str) -> tuple[bool, str]:
 def _velocities(results: Results, name: str) -> tuple[tuple[float, float], float, float]:
     """Upward velocities [m/s] of the disc before and after contact, of the block after contact, and
     the error estimate for the disc, or nan."""
-    history, estimated = results.history(name), results.summary(name)["estimated_error"]
+    history, estimated = results.history(name), results.summary(name)["estimated_error"] or {}
     start = history["vy_1"][0]
-    return (start, history["vy_1"][-1]), history["vy_2"][-1], abs(start) * (estimated["rebound"] if estimated else np.nan)
+    return (start, history["vy_1"][-1]), history["vy_2"][-1], abs(start) * estimated.get("rebound", np.nan)
 
 
 @states("Sections 3.2, 3.3", "that the energy is constant tests the numerical convergence and the steps", STEPS)

@@ -49,6 +49,12 @@ def test_promise_is_kept_by_enough_scenes_at_no_more_than_its_price(values, good
     assert f"{sum(value <= 1 for value in values)} of {sum(value == value for value in values)} scenes are within" in promise.report(errors(*values))
 
 
+def test_an_error_without_an_estimate_stands_alone():
+    """In an impact that is not over."""
+    text = promise.report(errors(0.5).assign(**{"rebound stated": float("nan")}))
+    assert "0.50 of 2.00" in text and "nan" not in text.partition("Stated errors")[0]
+
+
 @pytest.mark.parametrize("values, stated, good", [
     ([0.5] * 37 + [2.1] * 3, 2.0, True), ([0.5] * 36 + [2.1] * 4, 2.0, False), ([0.5] * 40, 2.6, False), ([0.5] * 40, 0.5, True), ([0.5] * 40, 0.49, False)])
 def test_stated_errors_hold_and_are_not_far_too_large(values, stated, good):

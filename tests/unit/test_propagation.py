@@ -6,6 +6,7 @@ import math
 
 import pytest
 
+from ffimpact.failure import Unreadable
 from ffimpact.output.errors import errors
 from ffimpact.output.rest import rest_errors
 from ffimpact.output.results import Answers, Record
@@ -112,6 +113,17 @@ def test_two_bodies_and_a_body_on_supports(tmp_path):
     alone = record(tmp_path, other=None)
     (tmp_path / "scene.toml").write_text('[[body]]\nname = "bar"\nsupport = [{where = "left"}]\n')
     assert not [name for name in errors(alone) if name.startswith(("rebound", "final"))]
+
+
+def test_an_impact_that_is_not_over_has_errors_of_the_record_alone(tmp_path):
+    """Without the estimates of the whole impact, energies keep theirs, and no other number has one,
+    nor nan. A summary that lacks the energy is damaged."""
+    cut = record(tmp_path)
+    cut.summary["estimated_error"] = {"energy": 0.01, "friction_work": 0.01}
+    assert errors(cut) == {"energy_final": pytest.approx(1.0)}
+    cut.summary["estimated_error"] = {"friction_work": 0.01}
+    with pytest.raises(Unreadable, match="'energy'"):
+        errors(cut)
 
 
 def bounced(restitutions: list[float], time: float, ended: str = "rest") -> Answers:

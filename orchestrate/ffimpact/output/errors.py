@@ -15,7 +15,7 @@ import numpy as np
 
 from ..input.parameters import Table
 from .estimate import OF_IMPACT
-from .results import Answers, Record, held_bodies, numbers, read_answers, read_table
+from .results import Answers, Contents, Record, held_bodies, numbers, read_answers, read_table
 
 __all__ = ["errors", "zero_by_symmetry"]
 
@@ -58,7 +58,10 @@ def errors(record: Record) -> dict[str, float]:
     names = numbers(summary)
     if not summary.get("estimated_error"):
         return {}
-    share = dict.fromkeys(OF_IMPACT, math.nan) | summary["estimated_error"]
+    share = Contents(
+        dict.fromkeys(OF_IMPACT, math.nan) | summary["estimated_error"],
+        record.folder / "summary.json",
+    )
     answers = read_answers(record.folder)
     energy, reach = float(answers.summary["largest_energy"]), record.scene.get("radius")
     estimates: dict[str, float] = {

@@ -28,10 +28,10 @@ Finer runs follow if the estimate of a promised result is above WORTH times the 
 runs are then the levels of the new one. The contact time scatters with the vibration at the end of
 contact (by 0.8 % rms in hard impacts, on any mesh and with any step that was tried). If it alone is
 above, a finer run follows only if the gain of the last level, gained again, brings its estimate
-there. An estimate that is still above WORTH times the request is a warning. One that is
-above the request by less, that scatters, or of a result that is not promised, is a note
-(notes.py). Runs with different numbers of contact intervals are a warning (touches()). An impact
-that is not over has no estimates of the results OF_IMPACT.
+there. An estimate that is still above WORTH times the request is a warning. One that is above the
+request by less, or of a result that is not promised, is a note (notes.py). Runs with different
+numbers of contact intervals are a warning (touches()). An impact that is not over has no estimates
+of the results OF_IMPACT.
 """
 
 import math
@@ -176,8 +176,8 @@ def settle(
         # Whether only scatter is left, which finer runs reduce too little.
         scatter = above == [SCATTERS] and estimated[SCATTERS] * gain(runs) > WORTH * accuracy
         made = 0.0 if fixed else accuracy / 2**refinements
-        exceeding = excess(estimated, accuracy, values["accuracy_of"], made)
-        sentences, notes = ([], exceeding) if scatter or not above else (exceeding, [])
+        exceeding = excess(estimated, accuracy, values["accuracy_of"], made, scatter)
+        sentences, notes = (exceeding, []) if above else ([], exceeding)
         lost = runs[0].summary.get("ellipticity_lost_time") is not None
         if not above or scatter or fixed or lost or refinements == MOST:
             break
@@ -583,10 +583,13 @@ def touches(runs: Sequence[Answers]) -> list[str]:
     )
 
 
-def excess(estimated: Mapping[str, float], accuracy: float, also: str, made: float) -> list[str]:
+def excess(
+    estimated: Mapping[str, float], accuracy: float, also: str, made: float, scatter: bool = False
+) -> list[str]:
     """Returns a message about the results whose error estimate is above the accuracy, or above
     LOOSER times the accuracy if they are not promised. It names the accuracy that would do, as errors
-    are about proportional to the one that elements and steps were `made` for (0: they are given).
+    are about proportional to the one that elements and steps were `made` for (0: they are given),
+    or, if `scatter` alone is why no finer run follows, says so.
     """
     limits = {name: accuracy for name in wanted(also)} | {
         name: LOOSER * accuracy for name in ("contact_time", "peak_force") if name != also
@@ -602,6 +605,8 @@ def excess(estimated: Mapping[str, float], accuracy: float, also: str, made: flo
     worst = max(main, key=lambda name: estimated[name])
     needed = made / max(estimated[name] / limits[name] for name in above)
     advice = f"ask for accuracy = {needed:.1g}" if made else "take smaller elements and steps"
+    if scatter:
+        advice = "ask for a smaller accuracy: no finer run was made, as coarser ones determine it hardly worse"
     return [
         f"estimated errors: {above[worst]}, requested {100 * accuracy:g} %: "
         f"all above it: {', '.join(above.values())}: if you need these numbers, {advice}"
