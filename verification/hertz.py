@@ -1,7 +1,7 @@
 """Contact and impact of Hertz.
 
 V6: a cylinder and a ball are pressed on the plane (hertz.edp); V7: impact of a ball on the plane;
-V15: impact of two balls (two-balls.edp).
+V15: impact of two balls of revolution.
 """
 
 import math

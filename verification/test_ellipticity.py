@@ -95,5 +95,5 @@ def test_limits_of_ellipticity(nu):
     for _ in range(40):
         low, high = ((low + high) / 2, high) if least(1, (low + high) / 2) < 0 else (low, (low + high) / 2)
     assert high > aligned and high > 1 / np.sqrt(3)
-    # Values of svk.idp.
+    # Values of Svk in edp/kernels/laws.cpp.
     assert high == pytest.approx({0: 0.586, 0.3: 0.706, 0.45: 0.906}.get(nu, high), abs=5e-4)
