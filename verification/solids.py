@@ -131,7 +131,7 @@ def entries(scene: Scene) -> Entries:
     spheres = [Arc(b, padded(sphere[:3]), np.zeros(3), float(sphere[3])) for b, body in enumerate(scene.bodies) for sphere in body.spheres]
     meshes = [_mesh(body, scene.copies) for body in scene.bodies]
     return (parameter_arrays({"penalty": 1.0, "slip_velocity": 1.0, "friction_dynamic": 0.0})
-            | {"script": "bodies-3d", "symmetry_factor": scene.copies, "contact_pressure": 0.0, "implicit_why": "", "front_transit": 0.0, "front_rise": 0.0}
+            | {"script": "bodies-3d", "symmetry_factor": scene.copies, "implicit_why": "", "front_transit": 0.0, "front_rise": 0.0}
             | table("bodies", bodies) | joined("bodies.law_numbers", [np.zeros(0)] * len(bodies)) | table("obstacles", obstacles)
             | joined("obstacles.numbers", [np.array(numbers, float) for _, numbers, _ in scene.obstacles]) | table("pairs", pairs)
             | {name: 0 for name in ("rigid", "functions", "kinks", "drives", "supports", "loads")}

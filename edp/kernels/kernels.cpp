@@ -225,7 +225,7 @@ static void addFactor() {
     sumTangents(terms, rest, elements.block);
     factor.numbers(elements);
   });
-  add("kernelTangent", +[]() {             // at the last evaluation (for verification)
+  add("kernelTangent", +[]() {             // at the last evaluation
     body.linearise(true);
     sumTangents(terms, stepNow, elements.block);
     factor.numbers(elements);

@@ -6,8 +6,8 @@
 // -B^T t_N - S_a^T (-t_Ta); the work of the obstacle on the body is motion.(t_N, -t_T).
 // Exports Obstacles.
 #pragma once
-#include <eigen3/Eigen/Sparse>
 #include "arrays.hpp"
+#include <eigen3/Eigen/Sparse>
 #include "shapes.hpp"
 #include "time-function.hpp"
 

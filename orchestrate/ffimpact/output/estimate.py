@@ -27,11 +27,11 @@ except the penalty of a flat strike.
 Finer runs follow if the estimate of a promised result is above WORTH times the request. The former
 runs are then the levels of the new one. The contact time scatters with the vibration at the end of
 contact (by 0.8 % rms in hard impacts, on any mesh and with any step that was tried). If it alone is
-above, a finer run follows only if the gain of the last level, gained again, brings its estimate
-there. An estimate that is still above WORTH times the request is a warning. One that is above the
-request by less, or of a result that is not promised, is a note (notes.py). Runs with different
-numbers of contact intervals are a warning (touches()). An impact that is not over has no estimates
-of the results OF_IMPACT.
+above, finer runs follow only if the gain of the last level, gained again by each that may follow,
+brings its estimate there. An estimate that is still above WORTH times the request is a warning. One
+that is above the request by less, or of a result that is not promised, is a note (notes.py). Runs
+with different numbers of contact intervals are a warning (touches()). An impact that is not over
+has no estimates of the results OF_IMPACT.
 """
 
 import math
@@ -173,8 +173,9 @@ def settle(
             for name in wanted(values["accuracy_of"])
             if estimated.get(name, 0.0) > WORTH * accuracy
         ]
-        # Whether only scatter is left, which finer runs reduce too little.
-        scatter = above == [SCATTERS] and estimated[SCATTERS] * gain(runs) > WORTH * accuracy
+        # Whether only scatter is left, which the finer runs that may follow reduce too little.
+        likely = estimated.get(SCATTERS, 0.0) * gain(runs) ** (MOST - refinements)
+        scatter = above == [SCATTERS] and likely > WORTH * accuracy
         made = 0.0 if fixed else accuracy / 2**refinements
         exceeding = excess(estimated, accuracy, values["accuracy_of"], made, scatter)
         sentences, notes = (exceeding, []) if above else ([], exceeding)

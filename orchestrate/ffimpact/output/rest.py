@@ -40,7 +40,7 @@ def rest_errors(fine: Answers, coarse: Answers) -> dict[str, float]:
             for run in (fine, coarse)
         ),
         "energy": max(
-            summary.get("energy_drift", 0.0),
+            summary.get("energy_drift") or 0.0,
             *(
                 run.summary["energy_final"] / run.summary["largest_energy"]
                 for run in (fine, coarse)

@@ -158,9 +158,6 @@ def assemble(scene: Scene, onsets: list[Onset] | None = None) -> Assembly:
         meshes, centres, arcs = (_solids if scene.dimension is SOLID else _sections)(scene, sizes)
     together, regions = stack(meshes, centres)
     files = [k for k, table in enumerate(scene.content["body"]) if "file" in table]
-    disc = ask.disc(
-        scene.bodies, min(body.outline.half_thickness for body in scene.bodies), slides=True
-    )
     penalties = {
         (pair.first, pair.second): float(own["penalty"]) for pair, own in zip(scene.pairs, pairs)
     }
@@ -171,7 +168,6 @@ def assemble(scene: Scene, onsets: list[Onset] | None = None) -> Assembly:
     ]
     arrays: Entries = (
         {
-            "contact_pressure": float(disc.pressure),
             "implicit_why": why,
             "front_transit": float(min((strike.tau for strike in ask.fronts.values()), default=0)),
             "front_rise": float(max(rises, default=0)),

@@ -140,11 +140,6 @@ class Impact:
         return self._in_impact[0] * share * (2 / math.pi if self.sphere else 0.5)
 
     @property
-    def pressure(self) -> float:
-        """The largest contact pressure [Pa]."""
-        return self._pressure(self.half_width)
-
-    @property
     def penalty(self) -> float:
         """The penalty k [Pa/m^m]: the pressure makes a small penetration."""
         b = max(self.half_width, min(WIDEST * self.radius, ELEMENTS * self.given_contact_size))
