@@ -17,8 +17,9 @@ from ffimpact.running import forecast, plan, run
     ("disc-beam", {"end_time": 0.004}),
 ])
 def test_a_plan_foretells_the_run(tmp_path, monkeypatch, name, values):
-    """Unknowns and the largest step are those of the run. Its steps and its processor time are within the stated
-    bounds, its memory to a quarter. Not all steps are taken for the plan."""
+    """Unknowns and the largest step are those of the run. Its steps are within the stated
+    bounds, its processor time within twice these, as other processes may slow down one of the two,
+    its memory to a quarter. Not all steps are taken for the plan."""
     monkeypatch.setattr(plan, "TIMED", 0.05)
     loaded = scene.load(name)
     foretold = run.plan(loaded, values | {"fields": 0}, estimate=False)
@@ -27,7 +28,7 @@ def test_a_plan_foretells_the_run(tmp_path, monkeypatch, name, values):
     assert sum(foretold.unknowns.values()) == made["dofs"] and all(count > 0 for count in foretold.elements.values())
     assert foretold.timed_steps < made["steps"] and low < 1 < high
     assert low * foretold.steps < made["steps"] < high * foretold.steps
-    assert low * foretold.seconds < made["cpu_seconds"] < high * foretold.seconds
+    assert low / 2 * foretold.seconds < made["cpu_seconds"] < 2 * high * foretold.seconds
     assert 0.75 * made["peak_memory"] < foretold.memory <= 1.01 * made["peak_memory"]
     assert re.search(rf"of at most {foretold.step:.3g} s", str(foretold))
 
