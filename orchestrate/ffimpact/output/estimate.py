@@ -27,8 +27,8 @@ except the penalty of a flat strike.
 Finer runs follow if the estimate of a promised result is above WORTH times the request. The former
 runs are then the levels of the new one. The contact time scatters with the vibration at the end of
 contact (by 0.8 % rms in hard impacts, on any mesh and with any step that was tried). If it alone is
-above, finer runs follow only if the gain of the last level, gained again by each that may follow,
-brings its estimate there. An estimate that is still above WORTH times the request is a warning. One
+above, a second finer run follows only if the gain of the first one, gained again, brings its
+estimate there. An estimate that is still above WORTH times the request is a warning. One
 that is above the request by less, or of a result that is not promised, is a note (notes.py). Runs
 with different numbers of contact intervals are a warning (touches()). An impact that is not over
 has no estimates of the results OF_IMPACT.
@@ -173,9 +173,12 @@ def settle(
             for name in wanted(values["accuracy_of"])
             if estimated.get(name, 0.0) > WORTH * accuracy
         ]
-        # Whether only scatter is left, which the finer runs that may follow reduce too little.
-        likely = estimated.get(SCATTERS, 0.0) * gain(runs) ** (MOST - refinements)
-        scatter = above == [SCATTERS] and likely > WORTH * accuracy
+        # Whether only scatter is left, which a second finer run reduces too little.
+        scatter = (
+            refinements > 0
+            and above == [SCATTERS]
+            and estimated[SCATTERS] * gain(runs) > WORTH * accuracy
+        )
         made = 0.0 if fixed else accuracy / 2**refinements
         exceeding = excess(estimated, accuracy, values["accuracy_of"], made, scatter)
         sentences, notes = (exceeding, []) if above else ([], exceeding)
@@ -590,7 +593,7 @@ def excess(
     """Returns a message about the results whose error estimate is above the accuracy, or above
     LOOSER times the accuracy if they are not promised. It names the accuracy that would do, as errors
     are about proportional to the one that elements and steps were `made` for (0: they are given),
-    or, if `scatter` alone is why no finer run follows, says so.
+    or, if only `scatter` is left, says so.
     """
     limits = {name: accuracy for name in wanted(also)} | {
         name: LOOSER * accuracy for name in ("contact_time", "peak_force") if name != also
@@ -607,7 +610,7 @@ def excess(
     needed = made / max(estimated[name] / limits[name] for name in above)
     advice = f"ask for accuracy = {needed:.1g}" if made else "take smaller elements and steps"
     if scatter:
-        advice = "ask for a smaller accuracy: no finer run was made, as coarser ones determine it hardly worse"
+        advice = "ask for a smaller accuracy, which may not help: it scatters from mesh to mesh"
     return [
         f"estimated errors: {above[worst]}, requested {100 * accuracy:g} %: "
         f"all above it: {', '.join(above.values())}: if you need these numbers, {advice}"
