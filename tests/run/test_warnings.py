@@ -133,13 +133,13 @@ def test_scenes_of_the_paper_have_no_warning_or_those_that_a_reader_must_know(tm
     its mark at the number, and the place of the whole text.
 
     The contact time of disc-normal scatters with the mesh, by 1 % on meshes of the requested
-    accuracy of 0.5 %: its estimate alone is above twice the request, and no finer run follows. The
+    accuracy of 0.5 %: its estimate alone is above twice the request, on the finest mesh too. The
     ball of St. Venant-Kirchhoff loses ellipticity; on its mesh no element is inverted.
     """
     result = run.run(scene.load(name), {"fields": 0}, tmp_path / "out")
     assert [notes.name(sentence) for sentence in result.summary["warnings"]] == names
     scatters = result.summary["warnings"][0].startswith("estimated errors: thresholded contact time ")
-    assert name != "disc-normal" or scatters and result.summary["refinements"] == 0
+    assert name != "disc-normal" or scatters and result.summary["refinements"] > 0
     lines, whole = report.report(result).splitlines(), report.report(result, verbose=True)
     assert [line.split(maxsplit=1)[1].partition(":")[0] for line in lines if line.startswith("  warning ")] == names
     footnotes = [line for line in lines if line.startswith("  [")]
