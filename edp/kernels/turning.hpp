@@ -11,8 +11,8 @@ using Vector = Eigen::Vector3d;
 using Matrix = Eigen::Matrix3d;
 
 // R and spin [rad/s] after the time t >= 0 [s]; J in any unit. About a principal axis the body
-// turns uniformly. Otherwise it tumbles (returns true): in each period of the spin in its own axes
-// it has turned as a whole about L, and only the rest is integrated.
+// rotates uniformly. Otherwise it tumbles (returns true): after each period of the spin in its own
+// axes it is rotated about L, always by the same angle, and only the rest is integrated.
 bool turnFreely(const Matrix &J, double t, Vector &spin, Matrix &R);
 
 }

@@ -205,7 +205,7 @@ def test_a_return_by_gravity_within_the_impact_has_no_estimate(tmp_path):
 
 def test_prestress_is_no_vibration(tmp_path):
     """Supports pull a strip taut, a ball hits it and leaves at 11 m/s, faster than the strip vibrates
-    about its taut shape. The energy of the tension promises no further strike: the steps grow."""
+    about its taut shape. The energy of the tension brings no further strike: the steps grow."""
     pull = "0.006*(1-cos(pi*min(t,0.008)/0.008))/2"
     ball = DISC | {"young": 1e6, "position": [0, 0.15], "velocity": [0, -12]}
     strip = {

@@ -11,14 +11,13 @@ an impact runs agree by chance. So the error estimate of a result is
 
     d_k: difference of the result between the two runs (differences());
     h_k: difference of its time history (history_differences());
-    q: the order of the errors, which is p = 2, or 1 in a flat strike, as its penalty follows the
-       elements (scenes/front.py), where the levels resolve the vibrations of the bodies. Else
-       errors fall more slowly: q is the median of the orders of all results, (d_k, h_k) of the
-       second pair over those of the first, between SLOWEST p and p. The order of a single result
-       scatters too much.
+    q: the order of the errors. It is p where the runs resolve the vibrations of the bodies: 2, or 1
+       in a flat strike, as its penalty follows the elements (scenes/front.py). Elsewhere errors
+       fall more slowly. So q is the median of the orders of all results, by the differences of the
+       two pairs, but at least SLOWEST p and at most p. The order of a single result scatters.
 
-Errors of order q would give differences in the ratio r^q, errors that scatter equal ones. Most are
-in between, so the second difference counts by r^(q/2). All results of all scenes have the same
+Between errors of order q differences have the ratio r^q, between errors that scatter they are
+equal. Most errors are in between, so the second difference is divided by r^(q/2). All results of all scenes have the same
 factor SAFETY (benchmarks/promise.py lists the scenes of its calibration). The estimate contains
 the error in 95 of 100 runs and is about four times the usual error. It covers mesh and steps:
 penalty, slip velocity and the growth of elements away from the contact are the same in all runs,
@@ -29,7 +28,7 @@ runs are then the levels of the new one. The contact time scatters with the vibr
 contact (by 0.8 % rms in hard impacts, on any mesh and with any step that was tried). If it alone is
 above, a second finer run follows only if the gain of the first one, gained again, brings its
 estimate there. An estimate that is still above WORTH times the request is a warning. One
-that is above the request by less, or of a result that is not promised, is a note (notes.py). Runs
+that is above the request by less, or of a result that is not requested, is a note (notes.py). Runs
 with different numbers of contact intervals are a warning (touches()). An impact that is not over
 has no estimates of the results OF_IMPACT.
 """
