@@ -16,7 +16,7 @@ from .modes import write_modes
 from .paper_script import ANSWERS, evaluate_script
 from .results import read_history, read_json, reading, write_json
 
-__all__ = ["RECORD", "evaluate"]
+__all__ = ["RECORD", "evaluate", "evaluate_numbers"]
 
 RECORD = "record.json"  # written last by edp/program/run/summary.idp
 
@@ -27,21 +27,32 @@ def evaluate(folder: Path) -> None:
     """
     if (folder / ANSWERS).exists():
         return evaluate_script(folder)
-    failed = read_json(folder / "failure.json") if not (folder / RECORD).exists() else {}
-    if "diagnostics" not in failed and not (folder / RECORD).exists():
+    if _record(folder):
+        write_fields(folder)
+        evaluate_numbers(folder)
+
+
+def _record(folder: Path) -> Path | None:
+    """The file of a run that has ended and is not evaluated yet."""
+    if (folder / RECORD).exists():
+        return folder / RECORD
+    return folder / "failure.json" if "diagnostics" in read_json(folder / "failure.json") else None
+
+
+def evaluate_numbers(folder: Path) -> None:
+    """As evaluate(), for a run of the program, without its fields."""
+    if not (path := _record(folder)):
         return
-    path = folder / ("failure.json" if failed else RECORD)
     with reading(path):
-        record = failed or json.loads(path.read_text("utf-8"))
+        record = json.loads(path.read_text("utf-8"))
         facts = record["diagnostics"]
-    write_fields(folder)
     write_modes(folder)
     intervals = contacts.intervals_of(folder, facts)
     contacts.write_contacts(folder / "contacts.csv", intervals, bool(facts["damped"]))
     record = contacts.with_self_contact(record, intervals)
     evidence = warnings.Evidence(record, read_history(folder), intervals)
     summary = _summary(evidence)
-    if failed:
+    if path.name != RECORD:
         write_json(path, summary)
     else:
         write_json(folder / "summary.json.part", summary)

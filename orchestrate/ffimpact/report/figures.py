@@ -168,7 +168,7 @@ def save(figure: Figure, path: Path) -> None:
     with catch_warnings():
         # A letter that the font lacks is drawn as an empty box, without a warning.
         filterwarnings("ignore", "Glyph .* missing from", UserWarning)
-        figure.savefig(path)
+        figure.savefig(path, pil_kwargs={"compress_level": 1})  # half the time, a sixth larger
     plt.close(figure)
 
 

@@ -23,6 +23,7 @@ from ..input.parameters import Table, Value
 from ..input.toml_text import to_toml
 from ..mesh import mesh
 from ..output import estimate as estimates, notes
+from ..output.fields import write_fields
 from ..output.folder import (
     checkpoints,
     clear,
@@ -143,6 +144,7 @@ def run(
             # Failures of these three kinds leave no files.
             elif failure.code not in (TooLong.code, BadInput.code, Unreadable.code):
                 failure.folder = failed_beside(folder) if finished else folder
+                write_fields(stage)
                 _keep_failed(stage, failure, scene, provenance | request_entries)
                 _put(stage, failure.folder, scene)
             raise
@@ -150,6 +152,7 @@ def run(
             "git": commit(),
             "mesh": _sha256(stage / scene.mesh_name),
         }
+        write_fields(stage)
         _tell_used(stage / "scene.toml", scene)
         _finish(stage, scene, estimated | {"total_seconds": time.monotonic() - started}, provenance)
         _put(stage, folder, scene)

@@ -11,7 +11,7 @@ from ..failure import Failure
 from ..freefem import freefem
 from ..input.parameters import Table
 from ..output import estimate
-from ..output.evaluate import RECORD, evaluate
+from ..output.evaluate import RECORD, evaluate_numbers
 from ..output.results import write_json
 from ..progress import Line, work
 from ..scene import Scene
@@ -88,7 +88,7 @@ class Solver(AbstractContextManager["Solver", None]):
             record = where / RECORD
             if record.exists() and not record.read_bytes().rstrip().endswith(b"}"):
                 record.unlink()  # FreeFem++ was killed while it wrote this last file
-            evaluate(where)  # what a run has left that was killed before it was evaluated
+            evaluate_numbers(where)  # what a run has left that was killed before it was evaluated
         if taken or not (where / "summary.json").exists():
             with ExitStack() as leaving:
                 process = taken or self._started(overrides, where, leaving, display)
@@ -103,7 +103,7 @@ class Solver(AbstractContextManager["Solver", None]):
 
                 exit_code, message = process.end(show)
         (where / STOP).unlink(missing_ok=True)
-        evaluate(where)
+        evaluate_numbers(where)
         check(where, exit_code, message)
         display.at("ready", 1.0)
 
