@@ -1,5 +1,5 @@
 // arrays.hpp: arrays of FreeFEM scripts as the kernels see them. It needs one header of FreeFEM, as
-// the others take long to compile. Exports Reals, Ints, Table, copied(), Kept, Triplets,
+// the others take long to compile. Exports Reals, Ints, Table, IntTable, copied(), Kept, Triplets,
 // JacobianRows and Archive.
 #pragma once
 #include <vector>
@@ -9,6 +9,7 @@
 typedef KN<double> &Reals;                 // real[int]; converts to double *
 typedef KN<long> &Ints;                    // int[int]
 typedef KNM<double> &Table;                // real[int, int]
+typedef KNM<long> &IntTable;               // int[int, int]
 
 template <class T, class R> std::vector<T> copied(const KN<R> &array) {
   const R *from = array;

@@ -5,10 +5,12 @@
 #include "call.hpp"
 #include "bodies.hpp"
 #include "contact.hpp"
+#include "depths.hpp"
 #include "explicit.hpp"
 #include "factor.hpp"
 #include "input.hpp"
 #include "loads.hpp"
+#include "outline.hpp"
 #include "step.hpp"
 #include "turning.hpp"
 
@@ -27,6 +29,9 @@ static const Terms terms = {&body, &inertia, &loads, &touching, &supports};   //
 static const Terms besideContact = {&body, &inertia, &loads, &supports};   // of explicit steps
 static ImplicitStep step(elements, body, terms, factor, touching);
 static ExplicitContact substep(touching);
+static outline::Outline outlines;
+static facets::Surface surface;
+static depths::Depths between(surface, gaps.obstacles);   // contact points
 
 static Triplets entries(Sparse A) {
   // The entries of a sparse matrix. The kernels take no half (symmetric) or 1-based storage.
@@ -243,6 +248,12 @@ static void addFactor() {
   });
 }
 
+static void archiveAll(Archive &archive) {
+  step.archive(archive);
+  outlines.archive(archive);
+  between.archive(archive);
+}
+
 static void addStep() {
   // Kernels of contact.hpp, step.hpp and explicit.hpp. The first two are called once.
   add("kernelContactArrays", +[](Reals q1, Reals gapSlip, Reals candidateForces, Reals force,
@@ -292,7 +303,7 @@ static void addStep() {
   add("kernelState", +[](Reals state) {
     // Stores in an array what the step remembers from earlier steps.
     Archive archive;
-    step.archive(archive);
+    archiveAll(archive);
     state.resize(long(archive.numbers.size()));
     std::copy(archive.numbers.begin(), archive.numbers.end(), (double *)state);
   });
@@ -300,7 +311,7 @@ static void addStep() {
     Archive archive;
     archive.numbers = copied<double>(state);
     archive.reads = true;
-    step.archive(archive);
+    archiveAll(archive);
     if (step.isFactorised()) step.restore();
   });
   add("kernelSubsteps", +[](Reals d, Reals compliance, double distance) {
@@ -348,14 +359,16 @@ static void addGaps() {
   add("kernelSpread", +[](Sparse spread) { gaps.spread = byRows(spread); });
   add("kernelSurface", +[](Table shape, long points, long obstacles, long bodies, Ints unknown,
                           Ints body, Reals side, Reals pointShape, Ints selfContact,
-                          Reals reference, Ints deformable) {
+                          Reals reference, Ints deformable, bool meet) {
+    // meet: bodies may come into contact with each other or themselves
     const int facets = int(body.N()), nodes = int(shape.N());
-    pairs::Surface s = {facets, nodes, int(points), facets * int(points), int(obstacles),
+    surface = {facets, nodes, int(points), facets * int(points), int(obstacles),
       int(bodies), copied<int>(unknown), copied<int>(body), copied<double>(side),
       copied<double>(pointShape), copied<int>(selfContact), copied<double>(reference),
-      copied<int>(deformable), pairs::ShapeCoefficients(nodes, shape.M())};
-    for (int a = 0; a < nodes; a++) for (int j = 0; j < shape.M(); j++) s.shape(a, j) = shape(a, j);
-    gaps.pairs = pairs::make(std::move(s));
+      copied<int>(deformable), facets::ShapeCoefficients(nodes, shape.M())};
+    for (int a = 0; a < nodes; a++) for (int j = 0; j < shape.M(); j++)
+      surface.shape(a, j) = shape(a, j);
+    if (meet) gaps.pairs = pairs::make(surface);
   });
   add("kernelGapsNow", +[](Reals u, double t, double distance, Reals q) {
     Kept<double>{&q}.numbers() = gaps.now(Kept<double>{&u}.numbers(), t, distance);
@@ -442,9 +455,6 @@ static void addObstacles() {
     gaps.obstacles.axes = int(axes);
     gaps.obstacles.setPoints(places, entries(traces));
   });
-  add("kernelObstacleIncrement", +[](Reals d, double dt) {
-    return gaps.obstacles.largestIncrement(d, dt);
-  });
   add("kernelObstacleGaps", +[](long k, Reals x, double t, Reals gap, Reals normal) {
     // Gaps (m) [m] and normals (axes m) of obstacle k at time t, for m positions x (axes m).
     const obstacles::Pose pose = gaps.obstacles.obstacle[k].pose(t);
@@ -479,6 +489,57 @@ static void addObstacles() {
   });
 }
 
+static void addOutline() {
+  // Kernels of facets.hpp, depths.hpp and outline.hpp. The first four are called at the start.
+  add("kernelPieces", +[](Ints from, Ints to, Ints piece, Ints hasCorner, IntTable ridge) {
+    const facets::Pieces pieces =
+      facets::piecesOf(surface, copied<int>(from), copied<int>(to));
+    std::copy(pieces.piece.begin(), pieces.piece.end(), (long *)piece);
+    std::copy(pieces.hasCorner.begin(), pieces.hasCorner.end(), (long *)hasCorner);
+    for (size_t k = 0; k < pieces.ridge.size(); k++) {
+      ridge(0L, long(k)) = pieces.ridge[k].first;
+      ridge(1L, long(k)) = pieces.ridge[k].second;
+    }
+  });
+  add("kernelRidges", +[](Ints from, Ints to) {
+    between.make(copied<int>(from), copied<int>(to), surface.reference.data());
+  });
+  add("kernelOutline", +[](Table places, Ints nodeBody, Ints selfContact, Reals radius,
+                          double leastMotion, bool mirroredX, bool mirroredZ) {
+    outlines.reference = Eigen::Map<outline::Places>(&places(0, 0), places.N(), 3);
+    outlines.nodeBody = copied<int>(nodeBody);
+    outlines.selfContact = copied<int>(selfContact);
+    outlines.radius = copied<double>(radius);
+    outlines.leastMotion = leastMotion;
+    outlines.mirrored = {mirroredX, false, mirroredZ};
+  });
+  add("kernelOutlineSide", +[](Ints node, long axes, long kind, long turned) {
+    outlines.add(copied<int>(node), int(axes), outline::Kind(kind), int(turned));
+  });
+  add("kernelOutlineChanges", +[](double motion, bool holds) {
+    return long(outlines.mayChange(motion, holds));
+  });
+  add("kernelWatchOutline", +[](Table places, double t, double penetration, Ints heldNode,
+                               Ints support, bool seeksOverlap) {
+    outlines.watch(Eigen::Map<outline::Places>(&places(0, 0), places.N(), 3), t, penetration,
+                   copied<int>(heldNode), copied<int>(support), gaps.obstacles, seeksOverlap);
+  });
+  add("kernelDepth", +[](Reals x, double t) { return between.measure(x, t); });
+  add("kernelMayCross", +[](Reals d, double dt) {
+    return long(between.mayCross(gaps.obstacles.largestIncrement(d, dt)));
+  });
+  add("kernelDepthOf", +[](long body, long counterBody, Reals numbers) {
+    const depths::Depths::Pair &of = between.of(int(body), int(counterBody));
+    fill(numbers, {of.deepest, of.radius, of.length, of.blunt});
+  });
+  add("kernelOutlineSeen", +[](long k, Reals seen) {
+    // Value, time, place, and what it belongs to, of the overlap (0), a sunk or a held part.
+    const outline::Seen &of = k == 0 ? outlines.overlap : k == 1 ? outlines.sunk : outlines.held;
+    const auto X = outlines.reference.row(of.node);
+    fill(seen, {of.value, of.time, X[0], X[1], X[2], double(of.first), double(of.second)});
+  });
+}
+
 extern "C" void openblas_set_num_threads(int) __attribute__((weak));
 
 static void limitThreads() {
@@ -510,6 +571,7 @@ static void addKernels() {
   addGaps();
   addRows();
   addObstacles();
+  addOutline();
 }
 
 LOADFUNC(addKernels)

@@ -10,132 +10,7 @@
 namespace pairs {
 
 using namespace tensors;
-
-// Monomials 1, r, r^2 on an edge and 1, r, s, r^2, r s, s^2 on a face, and their derivatives.
-constexpr int termsOf(int A) { return A == 2 ? 3 : 6; }
-template<int A> using Terms = Vector<termsOf(A)>;
-template<int A> using Slopes = Eigen::Matrix<double, termsOf(A), A - 1>;
-inline void monomials(const Vector<1> &r, Terms<2> &p, Slopes<2> &slope) {
-  p << 1, r[0], r[0] * r[0];
-  slope << 0, 1, 2 * r[0];
-}
-inline void monomials(const Vector<2> &r, Terms<3> &p, Slopes<3> &slope) {
-  p << 1, r[0], r[1], r[0] * r[0], r[0] * r[1], r[1] * r[1];
-  slope.col(0) << 0, 1, 0, 2 * r[0], r[1], 0;
-  slope.col(1) << 0, 0, 1, 0, r[0], 2 * r[1];
-}
-
-// The closest point y of a facet to a point x: its parameters r, gapVector = y - x, and
-// the tangents y_,l there.
-template<int A> struct ClosestPoint {
-  Vector<A - 1> r;
-  Vector<A> gapVector;
-  Eigen::Matrix<double, A, A - 1> tangents;
-};
-
-// Coefficients (A, terms) of the monomials in y - x for a facet and a point, or in its increment in
-// a step.
-template<int A> using Patch = Eigen::Matrix<double, A, termsOf(A)>;
-
-template<int A> void evaluate(const Patch<A> &patch, ClosestPoint<A> &closestPoint) {
-  // Gap vector and tangents at the parameters r of the closest point.
-  Terms<A> p;
-  Slopes<A> slope;
-  monomials(closestPoint.r, p, slope);
-  closestPoint.gapVector = patch * p;
-  closestPoint.tangents = patch * slope;
-}
-
-inline double clip(double a) { return std::min(1., std::max(0., a)); }
-
-// Convergence test of an iteration. The error after a step is estimated as change^2 / last, that of
-// linear convergence, the slowest case.
-struct Convergence {
-  double change = 1, last = 1;
-  bool going() const { return change * (change / last) > 3e-15; }
-  void moved(double by) {
-    last = change;
-    change = std::max(by, 1e-300);
-  }
-};
-
-inline void closest(const Patch<2> &patch, ClosestPoint<2> &closestPoint) {
-  // Closest point of an edge: Newton's method for (y - x).y' = 0 with r in [0, 1], from the
-  // projection onto the chord. The slope is at least a quarter of the squared chord, so that the
-  // distance decreases.
-  const Vector<2> a = patch.col(0), b = patch.col(1), c = patch.col(2), chord = b + c;
-  const double c0 = a.dot(b), c1 = 2 * a.dot(c) + b.dot(b), c2 = 3 * b.dot(c),
-    c3 = 2 * c.dot(c), square = chord.dot(chord);
-  double r = clip(-a.dot(chord) / square);
-  Convergence steps;
-  for (int it = 0; it < 40 && steps.going(); it++) {
-    const double f = c0 + r * (c1 + r * (c2 + r * c3)), slope = c1 + r * (2 * c2 + r * 3 * c3),
-      next = clip(r - f / std::max(slope, square / 4));
-    steps.moved(std::abs(next - r));
-    r = next;
-  }
-  closestPoint.r[0] = r;
-  evaluate<2>(patch, closestPoint);
-}
-
-inline Vector<2> stepOnFace(const Vector<2> &r, const Vector<2> &g, const Eigen::Matrix2d &H) {
-  // The point r + p of the triangle that minimises g.p + p.H p / 2: the free minimum or, if that is
-  // outside, the best of the minima on the three edges.
-  const auto model = [&](const Vector<2> &R) { return (R - r).dot(0.5 * H * (R - r) + g); };
-  const Vector<2> inside = r - H.inverse() * g;
-  if (inside.minCoeff() >= 0 && inside.sum() <= 1) return inside;
-  const double along = g[0] - g[1] + (H(0, 0) - H(0, 1)) * (1 - r[0]) + (H(1, 1) - H(0, 1)) * r[1],
-    S = clip(along / (H(0, 0) - 2 * H(0, 1) + H(1, 1)));
-  const Vector<2> bottom(clip(r[0] + (H(0, 1) * r[1] - g[0]) / H(0, 0)), 0),
-    leftSide(0, clip(r[1] + (H(0, 1) * r[0] - g[1]) / H(1, 1))), slant(1 - S, S);
-  const Vector<2> &better = model(leftSide) < model(bottom) ? leftSide : bottom;
-  return model(slant) < model(better) ? slant : better;
-}
-
-inline void closest(const Patch<3> &patch, ClosestPoint<3> &closestPoint) {
-  // Closest point of a face: Newton's method on the triangle, from its centroid.
-  closestPoint.r.setConstant(1. / 3);
-  Convergence steps;
-  for (int it = 0; it < 20 && steps.going(); it++) {
-    evaluate<3>(patch, closestPoint);
-    const Vector<3> &y = closestPoint.gapVector;
-    const Vector<2> g = closestPoint.tangents.transpose() * y;
-    Eigen::Matrix2d H = closestPoint.tangents.transpose() * closestPoint.tangents, curved = H;
-    curved(0, 0) += 2 * y.dot(patch.col(3));
-    curved(0, 1) = curved(1, 0) = H(0, 1) + y.dot(patch.col(4));
-    curved(1, 1) += 2 * y.dot(patch.col(5));
-    // The curvature terms are added if the matrix stays positive definite. Beyond the centre of
-    // curvature the tangent terms alone keep the distance decreasing.
-    if (curved.determinant() > 0.1 * H.determinant() && curved.trace() > 0) H = curved;
-    const Vector<2> next = stepOnFace(closestPoint.r, g, H);
-    steps.moved((next - closestPoint.r).lpNorm<Eigen::Infinity>());
-    closestPoint.r = next;
-  }
-  evaluate<3>(patch, closestPoint);
-}
-
-// Whether r is, to round-off, at an end of an edge or on the boundary of a face. If so, r is set
-// exactly there.
-inline bool onBoundary(Vector<1> &r) {
-  if (r[0] > 1e-12 && r[0] < 1 - 1e-12) return false;
-  r[0] = r[0] < 0.5 ? 0 : 1;
-  return true;
-}
-inline bool onBoundary(Vector<2> &r) {
-  for (int l = 0; l < 2; l++) if (r[l] <= 1e-12) r[l] = 0;
-  const bool slant = 1 - r[0] - r[1] <= 1e-12;
-  if (slant) r[0] = 1 - r[1];
-  return slant || r[0] == 0 || r[1] == 0;
-}
-
-// Outward unit normal of a facet. An edge has the body to its left; `side` is the sign of a face.
-inline Vector<2> normalOf(const ClosestPoint<2> &closestPoint, double) {
-  const Vector<2> &t = closestPoint.tangents;
-  return Vector<2>(t[1], -t[0]).normalized();
-}
-inline Vector<3> normalOf(const ClosestPoint<3> &closestPoint, double side) {
-  return side * closestPoint.tangents.col(0).cross(closestPoint.tangents.col(1)).normalized();
-}
+using namespace facets;
 
 // The slip of x past the rotating facet along t is t.rho - t.(theta x g n) = t.rho + c_l.(N_a,l
 // delta y_a), g the gap, n its normal, m the normal of the facet. The facet rotates by theta =
@@ -159,8 +34,8 @@ inline Eigen::Matrix<double, 3, 2> turning(const ClosestPoint<3> &closestPoint, 
 
 template<int A> class Pairs : public AnyPairs {
 public:
-  explicit Pairs(Surface surfaceData)
-    : surface(std::move(surfaceData)), beside(A == 2 ? 2 * surface.facets : 0, -1) {
+  explicit Pairs(const Surface &ofBodies)
+    : surface(ofBodies), beside(A == 2 ? 2 * surface.facets : 0, -1) {
     std::map<int, size_t> first;           // first edge end at each vertex
     for (size_t k = 0; k < beside.size(); k++) {
       const auto [at, isNew] = first.insert({node(int(k / 2), 0, int(k % 2)), k});
@@ -290,7 +165,7 @@ private:
   // State at the previous evaluation of the step: facet (-1: there was none), r, |y_,r|, normal.
   struct Before { int facet;  double r, length;  Vector<A> n; };
 
-  Surface surface;
+  const Surface &surface;
   std::vector<int> beside;                 // (2 facets) neighbours of an edge at its ends; -1: none
   double searchDistance = 0, roundOff = 0; // [m]; roundOff of the positions
   typedef Eigen::AlignedBox<double, A> Box;
@@ -323,14 +198,8 @@ private:
   std::vector<bool> tied;                  // facets that share the vertex or edge with the closest
                                            // point, see markShared()
 
-  int node(int c, int i, int a) const {   // unknown of component i of node a of facet c
-    return surface.unknown[(i * surface.nodes + a) * surface.facets + c];
-  }
-  Vector<A> nodePlace(const double *x, int c, int a) const {
-    Vector<A> y;
-    for (int i = 0; i < A; i++) y[i] = x[node(c, i, a)];
-    return y;
-  }
+  int node(int c, int i, int a) const { return surface.node(c, i, a); }
+  Vector<A> nodePlace(const double *x, int c, int a) const { return surface.place<A>(x, c, a); }
   Vector<A> pointPlace(const double *x, int p) const {
     Vector<A> y = Vector<A>::Zero();
     for (int a = 0; a < surface.nodes; a++)
@@ -344,12 +213,10 @@ private:
     Slopes<A> slope;
     monomials(r, power, slope);
     for (int a = 0; a < surface.nodes; a++) {
-      const Terms<A> ofNode = shapeOf(a);
+      const Terms<A> ofNode = surface.shape.row(a);
       f(a, ofNode.dot(power), Vector<A - 1>(slope.transpose() * ofNode));
     }
   }
-
-  Eigen::Matrix<double, 1, termsOf(A)> shapeOf(int a) const { return surface.shape.row(a); }
 
   Box boxOf(const double *x, int c) const {
     // Box of facet c at the nodal positions x. A curved edge, y = chord + r (r - 1) C, lies within
@@ -371,10 +238,8 @@ private:
     const double *x = surface.reference.data();
     for (int c = 0; c < surface.facets; c++) {
       ClosestPoint<A> centre;
-      Patch<A> patch = Patch<A>::Zero();
       centre.r.setConstant(1. / A);
-      for (int a = 0; a < surface.nodes; a++) patch += nodePlace(x, c, a) * shapeOf(a);
-      evaluate<A>(patch, centre);
+      evaluate<A>(surface.patch<A>(x, c), centre);
       double radius = 0;
       for (int a = 0; a < A; a++)
         radius = std::max(radius, 2.5 * (nodePlace(x, c, a) - centre.gapVector).norm());
@@ -436,12 +301,11 @@ private:
   void patches(const double *w, std::vector<Patch<A>> &all) const {
     // Coefficients of y - x for every entry of `facet`, at nodal positions w; or of its increment,
     // for nodal displacements w.
-    all.assign(facet.size(), Patch<A>::Zero());
+    all.resize(facet.size());
     for (size_t k = 0; k < candidate.size(); k++) {
       const Vector<A> point = pointPlace(w, int(candidate[k] % surface.np));
       for (int e = first[k]; e < first[k + 1]; e++) {
-        for (int a = 0; a < surface.nodes; a++)
-          all[e] += nodePlace(w, facet[e], a) * shapeOf(a);
+        all[e] = surface.patch<A>(w, facet[e]);
         all[e].col(0) -= point;
       }
     }
@@ -604,9 +468,9 @@ private:
   }
 };
 
-std::unique_ptr<AnyPairs> make(Surface surface) {
-  if (surface.shape.cols() == termsOf(2)) return std::make_unique<Pairs<2>>(std::move(surface));
-  return std::make_unique<Pairs<3>>(std::move(surface));
+std::unique_ptr<AnyPairs> make(const Surface &surface) {
+  if (surface.shape.cols() == termsOf(2)) return std::make_unique<Pairs<2>>(surface);
+  return std::make_unique<Pairs<3>>(surface);
 }
 
 }

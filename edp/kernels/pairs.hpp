@@ -8,24 +8,12 @@
 #include <memory>
 #include <vector>
 #include "arrays.hpp"
+#include "facets.hpp"
 #include "geometric.hpp"
 
 namespace pairs {
 
-// at most 6 x 6
-typedef Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> ShapeCoefficients;
-
-// The surface of the bodies, set once; arrays as in pair.idp.
-struct Surface {
-  int facets, nodes, points, np, obstacles, bodies;   // nodes and points of one facet; np points
-  std::vector<int> unknown, body;          // unknown of component i of node a of facet c at
-                                           // (i nodes + a) facets + c; body of a facet
-  std::vector<double> side, pointShape;    // sign of the normal; N_a at point p at a np + p
-  std::vector<int> selfContact;            // (bodies) 1 if it may come into contact with itself
-  std::vector<double> reference;           // nodal positions in the reference
-  std::vector<int> deformable;             // unknown of a nodal displacement; -1 in rigid bodies
-  ShapeCoefficients shape;                             // N_a = shape(a, :) . monomials
-};
+using facets::Surface;
 
 struct AnyPairs {
   virtual ~AnyPairs() {}
@@ -39,6 +27,6 @@ struct AnyPairs {
 };
 
 // The pairs in the plane or in space.
-std::unique_ptr<AnyPairs> make(Surface surface);
+std::unique_ptr<AnyPairs> make(const Surface &surface);
 
 }

@@ -27,6 +27,10 @@ class Circle : public Shape {
     const double r = side * std::max(1e-300, (x - centre).norm());
     return {r - rounding, (x - centre) / r, -1};
   }
+  std::vector<Corner> corners() const override {
+    if (side < 0) return {};
+    return {{centre, rounding}};
+  }
 
  private:
   Point centre;
@@ -71,6 +75,16 @@ class Polyline : public Shape {
       both = side[v].normal + side[v > 0 ? v - 1 : side.size() - 1].normal;
     const double h = (both.dot(r) < 0 ? -1 : 1) * std::max(1e-300, r.norm());
     return {h - rounding, r / h, -long(v) - 1};
+  }
+  std::vector<Corner> corners() const override {
+    // Vertices at which the chain bends clockwise by more than 30 degrees.
+    std::vector<Corner> sharp;
+    const size_t n = vertex.size();
+    for (size_t v = side.size() == n ? 0 : 1; v < side.size(); v++) {
+      const Point &a = side[(v + n - 1) % n].along, &b = side[v].along;
+      if (std::atan2(b.cross(a)[2], a.dot(b)) > M_PI / 6) sharp.push_back({vertex[v], rounding});
+    }
+    return sharp;
   }
 
  private:

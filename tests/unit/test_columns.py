@@ -76,7 +76,7 @@ def test_scripts_write_the_numbers_of_the_table():
     text = re.sub(r'writeExtreme\(out, "(\w+)", \w+\);', lambda match: " ".join(
         f'entry("{match[1]}{end}")' for end in ("", "_time", "_x", "_y", "_z")), text)
     tables = FILES["summary.json"][:3]
-    evaluated = {row.name for row in RUN_NUMBERS}
+    evaluated = {row.name for row in RUN_NUMBERS} | {"corner_share"}
     rows = [row for table in tables for row in table
             if row.name not in evaluated and not row.name.startswith("final_")]
     for kind, call in (("whole", "entry"), ("part", "entryOf")):

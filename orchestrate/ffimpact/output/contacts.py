@@ -80,7 +80,7 @@ class Motion:
 
 
 class Interval:
-    """One interval of contact: `rows` (steps, 36) and `head` (14,) as recorded, the reduced mass
+    """One interval of contact: `rows` (steps, 41) and `head` (14,) as recorded, the reduced mass
     [kg/m], whether the integrator takes forces at the ends of steps (`means_of_ends`), and whether
     there is friction.
     """
@@ -235,7 +235,7 @@ def intervals_of(folder: Path, diagnostics: Mapping[str, Any]) -> list[Interval]
     """The intervals of the run in `folder` in the order in which they ended; those that bore no
     load are left out."""
     arrays, _ = read_arrays(folder / RECORDED)
-    rows, heads = arrays["rows"].reshape(-1, 36), arrays["intervals"].reshape(-1, 14)
+    rows, heads = arrays["rows"].reshape(-1, 41), arrays["intervals"].reshape(-1, 14)
     bodies, result = diagnostics["bodies"], []
     for k in np.argsort(heads[:, 2], kind="stable"):
         own = rows[rows[:, 0] == k]

@@ -79,6 +79,8 @@ def _summary(evidence: warnings.Evidence) -> dict[str, Any]:
         summary |= sentences if name == "diagnostics" else _at_both_ends(evidence, name, value)
         if name == "contact_time":
             summary |= {column.name: numbers[column.name] for column in RUN_NUMBERS}
+        if name == "max_penetration":
+            summary["corner_share"] = evidence.corner_share
         if name == "ended":
             summary["later_contact_possible"] = evidence.later_contact_possible
     return summary

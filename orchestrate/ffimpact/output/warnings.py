@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from ..input.parameters import Table
+from . import points
 from .contacts import THRESHOLD, Interval, thresholds
 
 __all__ = [
@@ -86,6 +87,16 @@ class Evidence:
     def bodies(self) -> list[Table]:
         """The bodies of the record."""
         return list(self.facts["bodies"])
+
+    @cached_property
+    def pairs(self) -> list[Table]:
+        """The contact pairs of the record, with what their points bore (points.of_pairs)."""
+        return points.of_pairs(self.facts["pairs"], self.intervals)
+
+    @property
+    def corner_share(self) -> float | None:
+        """The share of contacts that began at a sharp corner in the impulse (points.corner_share)."""
+        return points.corner_share(self.facts["pairs"], self.intervals, self.facts["transit"])
 
     @cached_property
     def forces(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -192,10 +203,6 @@ class Evidence:
     def obstacle(self, number: int) -> str:
         """The name of an obstacle."""
         return str(self.facts["obstacles"][number]["name"])
-
-    def hit_obstacle(self, fact: str) -> str:
-        """The obstacle with the number in this fact, as a message names it."""
-        return self.obstacle(self.facts[fact])
 
     def pair(self, pair: Mapping[str, Any]) -> str:
         """The names of a contact pair."""
@@ -341,7 +348,8 @@ def _shape(e: Evidence) -> Iterator[Sentence]:
 
 
 def _overlap(e: Evidence) -> Iterator[Sentence]:
-    first, body, other = e.facts["overlap"], e.facts["overlap_of"], e.facts["overlap_with"]
+    first = e.facts["overlap"]
+    body, other = map(int, first[5:])  # -1: the mirror image
     if first[1] < 0:
         return
     another = other >= 0 and other != body
@@ -567,10 +575,10 @@ def _obstacles(e: Evidence) -> Iterator[Sentence]:
             )
     sunk = e.facts["sunk"]
     if sunk[1] >= 0:
-        into = e.hit_obstacle("sunk_in")
+        body, into = map(int, sunk[5:])
         yield warn(
-            f"sinks: {e.bodies[e.facts['sunk_body']]['name']} is up to {rounded(sunk[0])} m inside "
-            f"{into}{e.near(sunk)}, at t = {sunk[1]:g} s, at a part of "
+            f"sinks: {e.bodies[body]['name']} is up to {rounded(sunk[0])} m inside "
+            f"{e.obstacle(into)}{e.near(sunk)}, at t = {sunk[1]:g} s, at a part of "
             "its boundary that is no contact boundary: no contact force acts there, and the "
             "results are not those of a body on a rigid obstacle: take "
             "a file with a contact boundary there"
@@ -580,7 +588,7 @@ def _obstacles(e: Evidence) -> Iterator[Sentence]:
 def _pairs(e: Evidence) -> Iterator[Sentence]:
     """The worst contact pair of each kind by name: penetration, contact points, and what passes
     between these."""
-    pairs = e.facts["pairs"]
+    pairs = e.pairs
     deep = [pair for pair in pairs if pair["deepest"] > TRIFLE * DEEPEST * e.radius(pair)]
     if deep and not e.is_pushed_in:
         worst = max(pairs, key=lambda pair: pair["deepest"] / e.radius(pair))
@@ -629,7 +637,7 @@ def _points(e: Evidence) -> Iterator[Sentence]:
     """Too few contact points at the largest force, of pairs with a hundredth of the largest force
     and more.
     """
-    pairs, needed = e.facts["pairs"], FEWEST_POINTS[e.facts["dimension"]]
+    pairs, needed = e.pairs, FEWEST_POINTS[e.facts["dimension"]]
     largest = max((pair["peak"] for pair in pairs), default=0)
     rough = [
         pair
@@ -653,7 +661,7 @@ def _corners(e: Evidence) -> Iterator[Sentence]:
     its length from the corner, in the mean of all directions, however small the load; a free
     neo-Hookean surface folds at 0.65 (Hohlfeld, Mahadevan 2011).
     """
-    share = e.record["corner_share"] or 0
+    share = e.corner_share or 0
     if share > CORNER:
         yield warn(
             f"corner: {percent(share)} of the impulse comes from contacts that began at a sharp "
@@ -670,10 +678,10 @@ def _corners(e: Evidence) -> Iterator[Sentence]:
 def _held(e: Evidence) -> Iterator[Sentence]:
     held = e.facts["held"]
     if e.is_pushed_in:
-        into = e.hit_obstacle("held_in")
+        support, into = map(int, held[5:])
         yield warn(
-            f"held part: support {e.facts['held_by'] + 1} pushes its part up to {rounded(held[0])} m "
-            f"into {into}{e.near(held)}, at t = {held[1]:g} s: its nodes follow the support, and no "
+            f"held part: support {support + 1} pushes its part up to {rounded(held[0])} m "
+            f"into {e.obstacle(into)}{e.near(held)}, at t = {held[1]:g} s: its nodes follow the support, and no "
             "contact force moves them: take a motion that keeps the part outside, or support "
             "another part"
         )
@@ -838,7 +846,7 @@ def _friction(e: Evidence) -> Iterator[Sentence]:
     if not facts["friction"]:
         return
     fastest, centre = facts["fastest_motion"], facts["centre_increment"]
-    moves = centre > 0.01 * max(facts["slid_increment"], facts["whole_load"] * fastest)
+    moves = centre > 0.01 * max(facts["slid_increment"], points.whole_load(e.intervals) * fastest)
     if not facts["mirrored"] and facts["creep_increment"] > CREEP * centre and moves:
         yield warn(
             "creep: sticking contact points move at "
