@@ -41,7 +41,6 @@ KILLS = [
     ("run", signal.SIGKILL, "python", EARLY, True),
     ("checkpoints", signal.SIGTERM, "python", LATE, False),
     ("checkpoints", signal.SIGKILL, "freefem", LATE, True),
-    ("sweep", signal.SIGTERM, "python", EARLY, False),
     ("sweep", signal.SIGKILL, "python", EARLY, False),
     ("direct-checkpoints", signal.SIGKILL, "freefem", LATE, False),
 ]
@@ -58,7 +57,7 @@ def command(route: str, out: Path, speed: str = "8", **changed: str) -> list[str
         return [sys.executable, "-m", "ffimpact", "sweep", str(file), "--out", str(out)]
     if route.startswith("direct"):   # fine enough that it does not end while it is being stopped
         return impact_words(values | {"accuracy": "0.005", "out": out})
-    return [sys.executable, "-m", "ffimpact", "run", "disc-normal", "--quiet", "--set", *(f"{name}={value}" for name, value in values.items()), "--out", str(out)]
+    return [sys.executable, "-m", "ffimpact", "run", "disc-normal", "--quiet", "--no-figures", "--set", *(f"{name}={value}" for name, value in values.items()), "--out", str(out)]
 
 
 def start(words: list[str]) -> subprocess.Popen:
