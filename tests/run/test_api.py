@@ -19,7 +19,9 @@ from tests.support.api import RUBBER, drop
 
 @pytest.fixture(scope="module")
 def result(tmp_path_factory):
-    return ff.run(drop(), accuracy=0.1, fields=6, out=tmp_path_factory.mktemp("api") / "run")
+    return ff.run(
+        drop(), accuracy=0.1, fields=6, figures=False, out=tmp_path_factory.mktemp("api") / "run"
+    )
 
 
 # ---- scenes
@@ -159,7 +161,7 @@ def test_a_player_shows_itself_as_html(result):
 
 
 def test_a_run_that_is_there_is_not_made_again(result):
-    assert ff.run(drop(), accuracy=0.1, fields=6, out=result.folder).reused
+    assert ff.run(drop(), accuracy=0.1, fields=6, figures=False, out=result.folder).reused
     assert ff.load(result.folder)["impulse"] == result["impulse"]
     with pytest.raises(ff.Unreadable):
         ff.load("nowhere")
@@ -375,7 +377,7 @@ def test_a_run_is_watched_and_stopped(tmp_path):
         return progress.steps > 20
 
     given = {"dt": 1e-6, "fields": 0, "end_time": 0.05}  # 50,000 steps
-    result = ff.run(drop(**given), out=tmp_path / "run", watch=watch)
+    result = ff.run(drop(**given), figures=False, out=tmp_path / "run", watch=watch)
     assert result["ended"] == "stopped" and result["steps"] < 40_000 and not result.errors
     assert (
         len(seen) > 1
@@ -383,7 +385,9 @@ def test_a_run_is_watched_and_stopped(tmp_path):
         and result.history.t.iloc[-1] >= 0.9999 * seen[-1][0]
     )
     assert not (result.folder / "stop").exists()
-    again = ff.run(drop(**given), out=tmp_path / "run", watch=lambda progress: True)
+    again = ff.run(
+        drop(**given), figures=False, out=tmp_path / "run", watch=lambda progress: True
+    )
     assert not again.reused and again["ended"] == "stopped"
 
 

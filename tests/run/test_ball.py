@@ -19,16 +19,12 @@ MASS = 4 / 3 * math.pi * 0.05**3 * 1722
 
 @pytest.fixture(scope="module")
 def result(tmp_path_factory):
-    record = run.run(scene.load("ball"), {"accuracy": 0.05, "fields": 3}, tmp_path_factory.mktemp("ball") / "ball")
-    report.draw(record)
-    return record
+    return run.run(scene.load("ball"), {"accuracy": 0.05, "fields": 3}, tmp_path_factory.mktemp("ball") / "ball")
 
 
 @pytest.fixture(scope="module")
 def oblique(tmp_path_factory):
-    record = run.run(scene.load("ball-oblique"), {"accuracy": 0.1, "fields": 5, "end_time": 2e-3}, tmp_path_factory.mktemp("ball") / "ball", estimate=False)
-    report.draw(record)
-    return record
+    return run.run(scene.load("ball-oblique"), {"accuracy": 0.1, "fields": 5, "end_time": 2e-3}, tmp_path_factory.mktemp("ball") / "ball", estimate=False)
 
 
 def test_run_of_a_whole_ball(result):
@@ -50,6 +46,8 @@ def test_run_of_a_whole_ball(result):
 @pytest.mark.robustness
 def test_units_and_pictures_are_those_of_a_ball(result, oblique):
     """No unit is per metre. All figures of a quarter are drawn with its mirror image."""
+    for record in (result, oblique):
+        report.draw(record)
     text = report.report(result, verbose=True)
     assert "N s" in text and "/m" not in text.replace("m/s", "").replace("Pa/m", "").replace("kg/m3", "")
     pictures = {"energies", "force", "velocity", "shapes", "contact"} | ({"solid"} if find_spec("pyvista") else set())

@@ -115,7 +115,7 @@ def test_a_restart_beside_obstacles_that_move(tmp_path):
 # ---- repeated command
 
 SET = dict(law="neohookean", nu=0.4, accuracy=0.1, dt=2e-5, fields=2, checkpoint_every=10)
-COMMAND = ("run", "disc-normal", "--quiet", "--checkpoint-every", "10", "--set",
+COMMAND = ("run", "disc-normal", "--quiet", "--no-figures", "--checkpoint-every", "10", "--set",
            *(f"{name}={value}" for name, value in SET.items() if name != "checkpoint_every"), "--out")
 
 
@@ -165,7 +165,7 @@ def test_killed_driver(out, straight):
     result = results.Record(out, results.read_summary(out), False)
     assert result.summary["resumed_at"] > 1.5e-3
     assert set(result.summary["provenance"]) == set(straight.summary["provenance"])
-    assert {path.name for path in out.iterdir()} == {path.name for path in straight.folder.iterdir()} | {"figures"}
+    assert {path.name for path in out.iterdir()} == {path.name for path in straight.folder.iterdir()}
     assert_same(out, straight.folder)
     assert not list(out.parent.glob("out.*"))
 

@@ -43,7 +43,7 @@ def test_a_run_needs_no_matplotlib(fake, tmp_path, monkeypatch, capsys):
 
 def test_published_numbers_are_not_shown_beside_another_scene(fake, tmp_path, capsys):
     """The paper has no number at another speed, and none is shown."""
-    assert main(["run", "disc-normal", "--set", "speed=4", "--set", "fields=0", "--out", str(tmp_path / "out")]) == 0
+    assert main(["run", "disc-normal", "--no-figures", "--set", "speed=4", "--set", "fields=0", "--out", str(tmp_path / "out")]) == 0
     out = capsys.readouterr().out
     assert "contact time" in out and "paper" not in out and "NGSolve" not in out
 
@@ -51,7 +51,7 @@ def test_published_numbers_are_not_shown_beside_another_scene(fake, tmp_path, ca
 def test_quiet_is_quiet(fake, tmp_path):
     """--quiet prints warnings only, not even the new place of an earlier run of another scene."""
     for speed in ("4", "5"):
-        words = "run", "disc-normal", "--quiet", "--set", f"speed={speed}", "fields=0", "--out", str(tmp_path / "out")
+        words = "run", "disc-normal", "--quiet", "--no-figures", "--set", f"speed={speed}", "fields=0", "--out", str(tmp_path / "out")
         code, out, error = call(*words)
         assert (code, out) == (0, "") and all(line.startswith("ffimpact: warning: ") for line in error.splitlines())
     assert (tmp_path / "out.1").exists()
@@ -93,7 +93,7 @@ def test_progress_is_shown_on_a_terminal_only(fake, tmp_path):
     time, from the mesh on; elsewhere it is not shown."""
     master, slave = pty.openpty()
     termios.tcsetwinsize(slave, (24, 100))
-    process = start("run", "disc-normal", "--set", "fields=0", "--out", str(tmp_path / "out"), stderr=slave)
+    process = start("run", "disc-normal", "--no-figures", "--set", "fields=0", "--out", str(tmp_path / "out"), stderr=slave)
     os.close(slave)
     seen = ""
     try:

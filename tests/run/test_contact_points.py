@@ -1,6 +1,8 @@
 """fields/contact.csv: the loaded contact points along the outlines, against the forces of the
 history."""
 
+import functools
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -21,7 +23,8 @@ CORNER = {"law": "neohookean", "young": 7e6, "nu": 0.4, "density": 1722, "accura
 
 @pytest.fixture(scope="module")
 def ran(tmp_path_factory):
-    """ran(name, **set): a coarse run of the scene with 8 snapshots or the entries `set`."""
+    """ran(name, **set): a coarse run of the scene with 8 snapshots or the entries `set`, made once."""
+    @functools.cache
     def at(name: str, **entries) -> Record:
         folder = tmp_path_factory.mktemp("run")
         problem = read_scene(CORNER, folder, name) if name == "corner" else scene.load(name)

@@ -60,7 +60,7 @@ def apart(history: pd.DataFrame, result: ffimpact.Result, speed: float) -> dict[
 def test_a_body_on_the_plane_as_the_program_has_it(tmp_path, scene, script, flags):
     """On the program's mesh impulse, rebound, contact time and spin agree; the energy is constant,
     with friction its loss included."""
-    result = ffimpact.run(scene, out=tmp_path / "run", estimate=False, mesh_size=0.02, contact_mesh_size=0.01, penalty=1e9, fields=0)
+    result = ffimpact.run(scene, out=tmp_path / "run", estimate=False, figures=False, mesh_size=0.02, contact_mesh_size=0.01, penalty=1e9, fields=0)
     ends, history = answers(script, tmp_path, mesh=scripts.on_the_plane(tmp_path / "run/mesh.msh"), penalty=1e9, **flags)
     differences = apart(history, result, flags.get("speed", 8))
     assert max(differences.values()) < SAME, differences
@@ -72,8 +72,8 @@ def test_a_body_on_the_plane_as_the_program_has_it(tmp_path, scene, script, flag
 
 
 def reads_as_a_result(folder: Path, history: pd.DataFrame, result: ffimpact.Result) -> None:
-    """load() makes a summary of the script's files, marked and without estimates; compare() and the
-    figures read it beside the run in folder/run."""
+    """load() makes a summary of the script's files, marked and without estimates; compare() reads it
+    beside the run in folder/run."""
     loaded = ffimpact.load(folder / "script")
     assert loaded.summary["made_by"] == "script" and not loaded.errors and "by a script of the paper" in repr(loaded)
     assert loaded["impulse"] == pytest.approx((history.dt * history.normal_force)[1:].sum()) and loaded["steps"] == len(history) - 1
@@ -81,13 +81,12 @@ def reads_as_a_result(folder: Path, history: pd.DataFrame, result: ffimpact.Resu
     assert loaded["vibration_energy"] == pytest.approx(result["vibration_energy"], abs=2 * SAME * result["energy_initial"])
     table = ffimpact.compare(folder / "script", folder / "run")
     assert {"contact_time", "impulse", "rebound_vy", "peak_force", "energy_drift"} <= set(table.index)
-    assert main(["figures", str(folder / "script")]) == 0 and (folder / "script/figures/force.png").exists()
 
 
 def test_a_ball_in_space_as_the_program_has_it(tmp_path):
     """With elements of the same sizes impulse and rebound agree with those of the program's ball."""
     sizes = {"mesh_size": 0.03, "contact_mesh_size": 0.015, "penalty": 1e9}
-    result = ffimpact.run("ball", out=tmp_path / "run", estimate=False, fields=0, **sizes)
+    result = ffimpact.run("ball", out=tmp_path / "run", estimate=False, figures=False, fields=0, **sizes)
     ends, history = answers("ball-plane", tmp_path, law="neohookean", dt=2e-4, **sizes)
     differences = apart(history, result, 8)
     assert max(differences.values()) < SAME, differences
@@ -98,7 +97,7 @@ def test_a_ball_in_space_as_the_program_has_it(tmp_path):
 def test_a_disc_on_a_block_as_the_program_has_it(tmp_path):
     """By closest points (9), on the program's mesh, impulse and rebounds agree with the program;
     momentum is constant."""
-    result = ffimpact.run("disc-block", out=tmp_path / "run", estimate=False, fields=0, mesh_size=0.4, contact_mesh_size=0.2, penalty=1e9)
+    result = ffimpact.run("disc-block", out=tmp_path / "run", estimate=False, figures=False, fields=0, mesh_size=0.4, contact_mesh_size=0.2, penalty=1e9)
     ends, history = answers("disc-block", tmp_path, mesh=scripts.on_the_block(tmp_path / "run/mesh.msh"), penalty=1e9, dt=2e-3)
     assert ends["mass_2"] == pytest.approx(result["mass_2"], rel=1e-12) and ends["mass_1"] == pytest.approx(result["mass_1"], rel=1e-3)
     differences = apart(history, result, 10)
@@ -126,6 +125,7 @@ def test_a_set_down_disc_slips(tmp_path):
     sliding = history[history.sliding_fraction > 0.999]
     assert len(sliding) > 10 and sliding.friction_force.to_numpy() == pytest.approx(-0.4 * sliding.normal_force.to_numpy())
     assert history.balance.abs().max() < 1e-8 * history.kinetic[0] and history.external_work.iloc[-1] != 0
+    assert main(["figures", str(tmp_path / "script")]) == 0 and (tmp_path / "script/figures/force.png").exists()
 
 
 @pytest.mark.parametrize("words, line", [

@@ -34,7 +34,7 @@ ARGUMENTS = (
 @pytest.fixture(scope="module", params=SCENES)
 def result(request, tmp_path_factory):
     out = tmp_path_factory.mktemp("view") / request.param
-    return ff.run(SCENES[request.param], accuracy=0.2, estimate=False, out=out)
+    return ff.run(SCENES[request.param], accuracy=0.2, estimate=False, figures=False, out=out)
 
 
 @pytest.fixture(scope="module")

@@ -19,7 +19,7 @@ print(last.von_mises.max(), last.positions.min(axis=0), result.probe(0, -0.05).y
 """
 PLAYER = 'print(result.view("impact.html"))'
 SWEEP = """
-study = ff.sweep(scene, {"body.1.velocity.2": [-2, -4, -8], "contact.friction_static": [0.1, 0.3]}, workers=2)
+study = ff.sweep(scene, {"body.1.velocity.2": [-2, -8], "contact.friction_static": [0.1, 0.3]}, workers=2)
 study.table
 """
 STUDY = 'study.plot(x="body.1.velocity.2", y="restitution", by="contact.friction_static")'

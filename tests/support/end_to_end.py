@@ -21,7 +21,7 @@ def direct(*flags: str) -> subprocess.CompletedProcess:
 
 def call(*settings: str, out, environment: dict | None = None) -> subprocess.CompletedProcess:
     arguments = [word for setting in settings for word in ("--set", setting)]
-    return subprocess.run([sys.executable, "-m", "ffimpact", "run", "disc-normal", "--out", str(out), "--set", "fields=0", *arguments],
+    return subprocess.run([sys.executable, "-m", "ffimpact", "run", "disc-normal", "--no-figures", "--out", str(out), "--set", "fields=0", *arguments],
                           cwd=parameters.ROOT, env=os.environ | (environment or {}), capture_output=True, text=True,
                           stdin=subprocess.DEVNULL, timeout=120)
 

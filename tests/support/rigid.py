@@ -24,12 +24,13 @@ penalty = 1e7
 """
 
 
-def run(tmp_path, text: str, name: str = "scene", **more):
-    """Runs a scene and returns its summary and history."""
+def run(tmp_path, text: str, name: str = "scene", estimate: bool = False, **more):
+    """Runs a scene, without figures, and returns its summary and history."""
     file = tmp_path / f"{name}.toml"
     file.write_text(text)
     out = tmp_path / name
     flags = [word for key, value in more.items() for word in ("--set", f"{key.replace('__', '.')}={value}")]
+    flags += ["--no-figures"] if estimate else ["--no-figures", "--no-estimate"]
     assert main(["run", str(file), "--out", str(out), "--quiet", *flags]) == 0
     return json.loads((out / "summary.json").read_text()), pd.read_csv(out / "history.csv")
 

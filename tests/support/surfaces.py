@@ -63,5 +63,5 @@ def run(tmp_path, obstacle: str, position="[0.01, 0.0501, 0.003]", name="scene")
     """The summary of a ball that hits the obstacle."""
     file, out = tmp_path / f"{name}.toml", tmp_path / name
     file.write_text(SCENE.format(obstacle=obstacle, position=position))
-    assert main(["run", str(file), "--out", str(out), "--quiet"]) == 0
+    assert main(["run", str(file), "--out", str(out), "--quiet", "--no-figures", "--no-estimate"]) == 0
     return json.loads((out / "summary.json").read_text())

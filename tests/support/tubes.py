@@ -24,5 +24,5 @@ def run(tmp_path, entries: str, nu=0.0, accuracy=0.05, **more):
     """The summary of a scene on a plane."""
     file, out = tmp_path / "scene.toml", tmp_path / "out"
     file.write_text(HEAD.format(nu=nu, accuracy=accuracy) + entries + "\n" + more.get("beside", ""))
-    assert main(["run", str(file), "--out", str(out), "--quiet", "--force"]) == 0
+    assert main(["run", str(file), "--out", str(out), "--quiet", "--force", "--no-figures"]) == 0
     return json.loads((out / "summary.json").read_text())
