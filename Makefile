@@ -43,7 +43,7 @@ disc-block: $(READY) ## a disc falls on a free block of the same material: with 
 	@$(PYTHON) -m ffimpact compare disc-block disc-block-neohookean $(ARGS)
 
 friction-laws: $(READY) ## draw the friction laws (figure 3)
-	@$(PYTHON) -m ffimpact $@ $(ARGS)
+	@$(PYTHON) -m examples.paper.friction_laws $(ARGS)
 
 $(SWEEPS): $(READY)
 	@$(PYTHON) -m ffimpact sweep $@ $(ARGS)

@@ -12,12 +12,12 @@ import numpy as np
 import pandas as pd
 
 from ffimpact.output.results import mechanical_energy
-from ffimpact.report.friction_laws import VALUES
 from ffimpact.report.impacts import spectrum
 from ffimpact.sweeps import study
 from ffimpact.sweeps.sweep_figures import bars
 
 from . import stick_slip
+from .friction_laws import VALUES
 from .judging import (
     CONSTANT,
     LAWS,

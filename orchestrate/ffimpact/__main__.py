@@ -28,13 +28,11 @@ Command = Callable[[list[str]], int | None]
 # Each of these commands has a module of its own with a function main(argv).
 OWN_MAIN = {
     "sweep": "ffimpact.sweeps.sweep",
-    "friction-laws": "ffimpact.report.friction_laws",
     "compare": "ffimpact.report.compare",
     "movie": "ffimpact.report.movie",
 }
 HELP = {
     "sweep": "run a scene for every combination of some entries: a table and a figure",
-    "friction-laws": "draw the friction laws",
     "compare": "several runs in one figure, with a table",
     "movie": "a film of a scene",
 }

@@ -7,16 +7,24 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import matplotlib.pyplot as plt
-import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.tri import Triangulation
+from matplotlib.figure import Figure
 
 from .failure import BadInput, Unreadable, unknown
 from .input.dimension import per_metre
 from .output import vtu
 from .output.results import body_names
-from .report.bodies import draw_obstacles, obstacles_of
-from .report.figures import is_half
+from .report.bodies import down_the_slope, draw_energies, draw_obstacles, limits, obstacles_of
+from .report.drawing import pictures
+from .report.figures import (
+    UNITS,
+    arranged,
+    colour_limits,
+    deformed,
+    draw_body,
+    is_half,
+    styled,
+)
 
 if TYPE_CHECKING:
     from .result import Result
@@ -24,21 +32,11 @@ if TYPE_CHECKING:
 __all__ = ["Plots"]
 
 MS = 1e3
-# Units of the fields of a state. All other fields are in Pa.
-UNITS = {"displacement": "m", "velocity": "m/s", "jacobian": ""}
-ENERGIES = {
-    "kinetic": "kinetic",
-    "elastic": "elastic",
-    "contact": "contact",
-    "friction_work": "friction",
-    "viscous_work": "viscosity",
-    "penalty_damping_work": "damping of the penalty",
-}
 
 
 class Plots:
-    """Draws the figures of a finished run. Each method draws into the axes `ax`, by default into
-    new axes, and returns the axes.
+    """Draws the pictures of a finished run. A method with `ax` draws into these axes, by default into
+    new ones, and returns them. The others return a figure, that of the same name in figures/.
     """
 
     def __init__(self, result: Result):
@@ -65,11 +63,7 @@ class Plots:
     def energies(self, ax: Axes | None = None) -> Axes:
         """Draws the energies and the work of friction and viscosity [J] over time [ms]."""
         history, ax = self.result.history, _axes(ax)
-        for name, label in ENERGIES.items():
-            if name in history and history[name].any():
-                ax.plot(MS * history.t, history[name], label=label)
-        mechanical = history.kinetic + history.elastic + history.contact
-        ax.plot(MS * history.t, mechanical, "k--", label="mechanical")
+        draw_energies(ax, {str(name): history[name].to_numpy() for name in history}, {})
         return _labelled(ax, f"energy [J{self.per}]")
 
     def velocities(self, ax: Axes | None = None) -> Axes:
@@ -102,35 +96,49 @@ class Plots:
         state = vtu.read(path)
         if field not in state.fields:
             raise BadInput(f"field: {unknown(field, state.fields, ', ')}")
-        values = state.fields[field]
-        values = np.linalg.norm(values, axis=1) if values.ndim > 1 else values
-        points, triangles = (
-            state.points[:, :2] + state.fields["displacement"][:, :2],
-            state.triangles,
+        scene = self.result.scene
+        body, rigid = deformed(state, is_half(scene), field), obstacles_of(scene)
+        view = x_min, x_max, y_min, y_max = down_the_slope(limits([body]), rigid)
+        drawn = draw_body(ax, body, colour_limits([body]))
+        drawn.set_rasterized(True)
+        unit, name = (
+            UNITS.get(field, "MPa"),
+            field.replace("_", " ").replace("mises", "Mises stress"),
         )
-        if is_half(self.result.scene):  # adds the mirror image of the computed half
-            triangles = np.vstack([triangles, triangles + len(points)])
-            points, values = np.vstack([points, points * [-1, 1]]), np.concatenate([values, values])
-        drawn = ax.tripcolor(
-            Triangulation(points[:, 0], points[:, 1], triangles),
-            values,
-            shading="gouraud",
-            rasterized=True,
-        )
-        unit = UNITS.get(field, "Pa")
-        ax.figure.colorbar(
-            drawn, ax=ax, label=f"{field.replace('_', ' ')} [{unit}]" if unit else field
-        )
-        low, high = points.min(axis=0), points.max(axis=0)
-        margin = 0.06 * (high - low).max()
-        draw_obstacles(
-            ax,
-            obstacles_of(self.result.scene),
-            (low[0] - margin, high[0] + margin, low[1] - margin, high[1] + margin),
-            when,
-        )
-        ax.set(aspect="equal", xlabel="x [m]", ylabel="y [m]", title=f"t = {MS * when:.3g} ms")
+        ax.figure.colorbar(drawn, ax=ax, label=f"{name} [{unit}]" if unit else name)
+        draw_obstacles(ax, rigid, view, when)
+        ax.set(aspect="equal", xlim=(x_min, x_max), ylim=(y_min, y_max))
+        ax.set(xlabel="x [m]", ylabel="y [m]", title=f"t = {MS * when:.3g} ms")
         return ax
+
+    def bodies(self) -> Figure:
+        """Draws the deformed bodies at up to nine instants: figures/shapes.png."""
+        return self._picture("shapes")
+
+    def contact(self) -> Figure:
+        """Draws pressure, stick and slip along the outlines and over time: figures/contact.png."""
+        return self._picture("contact")
+
+    def bounces(self) -> Figure:
+        """Draws the restitution of each of several impacts: figures/bounces.png."""
+        return self._picture("bounces")
+
+    def heights(self) -> Figure:
+        """Draws the height of each body until it rests: figures/height.png."""
+        return self._picture("height")
+
+    def modes(self) -> Figure:
+        """Draws the energy left in each natural mode (entry `modes`): figures/vibration.png."""
+        return self._picture("vibration")
+
+    def _picture(self, name: str) -> Figure:
+        """Draws figures/<name>.png. Raises BadInput if the run has nothing to show there."""
+        drawn = pictures(self.result.folder)
+        with styled():
+            figure = drawn[name]() if name in drawn else None
+        if not figure:
+            raise BadInput(f"plot: the run has no picture '{name}' (accepted: {', '.join(drawn)})")
+        return arranged(figure)
 
 
 def _axes(ax: Axes | None) -> Axes:

@@ -188,8 +188,8 @@ class Result:
 
     @property
     def plot(self) -> Plots:
-        """The figures: result.plot.force(), .energies(), .velocities(), .shapes(). Each method
-        accepts axes as `ax` and returns the axes.
+        """The pictures: result.plot.force(), .energies(), .velocities() and .shapes() draw into axes
+        `ax` and return them; .bodies(), .contact(), .bounces(), .heights() and .modes() are figures.
         """
         from .plot import Plots
 

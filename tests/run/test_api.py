@@ -385,9 +385,7 @@ def test_a_run_is_watched_and_stopped(tmp_path):
         and result.history.t.iloc[-1] >= 0.9999 * seen[-1][0]
     )
     assert not (result.folder / "stop").exists()
-    again = ff.run(
-        drop(**given), figures=False, out=tmp_path / "run", watch=lambda progress: True
-    )
+    again = ff.run(drop(**given), figures=False, out=tmp_path / "run", watch=lambda progress: True)
     assert not again.reused and again["ended"] == "stopped"
 
 

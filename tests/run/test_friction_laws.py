@@ -4,9 +4,9 @@ and their figure."""
 import numpy as np
 import pytest
 
-from ffimpact.__main__ import main
+from examples.paper import friction_laws
+from ffimpact.__main__ import guarded
 from ffimpact.failure import Failure
-from ffimpact.report import friction_laws
 
 STATIC, DYNAMIC, EPSILON = 0.7, 0.5, 0.02
 CLOSED_FORMS = {"sqrt": lambda s: s / np.sqrt(s**2 + 1), "tanh": np.tanh, "linear": lambda s: np.clip(s, -1, 1),
@@ -54,7 +54,7 @@ def test_all_laws_are_odd(laws):
 
 def test_picture(tmp_path, capsys):
     """The command writes the table and the figure, and prints the path of the figure."""
-    assert main(["friction-laws", "--out", str(tmp_path / "laws")]) == 0
+    assert guarded(friction_laws.main, ["--out", str(tmp_path / "laws")]) == 0
     assert capsys.readouterr().out.strip().endswith("friction-laws.png")
     assert (tmp_path / "laws/friction-laws.png").stat().st_size > 20_000 and (tmp_path / "laws/laws.csv").exists()
 
@@ -73,6 +73,6 @@ def test_bad_coefficients_are_named(tmp_path):
 ])
 def test_bad_input_is_one_line(tmp_path, capsys, arguments, line):
     """Bad input gives exit code 10 and one line."""
-    assert main(["friction-laws", "--out", str(tmp_path / "laws"), *arguments]) == 10
+    assert guarded(friction_laws.main, ["--out", str(tmp_path / "laws"), *arguments]) == 10
     error = capsys.readouterr().err
     assert error.startswith(f"ffimpact: {line}") and error.count("\n") == 1

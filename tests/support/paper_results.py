@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from examples.paper import judging as paper_judging, scripts
-from ffimpact.report.friction_laws import VALUES
+from examples.paper.friction_laws import VALUES
 
 # An impact of eleven steps in contact and a flight after it. The force has two maxima; everything
 # slides in the first two steps.

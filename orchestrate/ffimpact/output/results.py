@@ -310,7 +310,7 @@ def _frame(used: Table, like: np.ndarray, bodies: int) -> np.ndarray | None:
     return np.mean(velocities, axis=0) if velocities else None
 
 
-def mechanical_energy(history: dict[str, np.ndarray]) -> np.ndarray:
+def mechanical_energy(history: Mapping[str, np.ndarray]) -> np.ndarray:
     """Returns the sum of kinetic, elastic and contact energy (steps,) [J, in plane strain J/m]."""
     total: np.ndarray = history["kinetic"] + history["elastic"] + history["contact"]
     return total

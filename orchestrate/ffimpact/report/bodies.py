@@ -2,7 +2,7 @@
 velocities, forces, and the deformed shapes with the obstacles.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -23,13 +23,14 @@ from .figures import (
     BAND,
     BLACK,
     BLUE,
-    COLOURED,
     GREEN,
     GREY,
+    MEAN_PRESSURE,
     ORANGE,
     ORIGIN,
     PURPLE,
     SHAPES,
+    STRESS,
     VISCOUS,
     Body,
     amid,
@@ -55,7 +56,7 @@ from .impact import impact_of
 __all__ = [
     "columns_of",
     "down_the_slope",
-    "draw",
+    "draw_energies",
     "draw_obstacles",
     "ends",
     "energies",
@@ -63,6 +64,7 @@ __all__ = [
     "limits",
     "obstacles_of",
     "panels",
+    "pictures",
     "shapes",
     "title",
     "velocities",
@@ -77,6 +79,13 @@ ACROSS = 3  # largest number of panels side by side
 NAMED = 6
 GRID = 200  # grid points along each side of a picture, at which the gap to obstacles is computed
 DOTS = (0, (1, 1.5))
+# Work: its name, its column, how it enters the sum that is constant, its sign there, its colour.
+WORKS = (
+    ("lost to friction", "friction_work", "+ lost", 1, "#d4a017"),
+    ("lost to viscosity", "viscous_work", "+ lost", 1, VISCOUS),
+    ("lost to penalty damping", "penalty_damping_work", "+ lost", 1, "#0072b2"),
+    ("external work", "external_work", "− work", -1, "#888888"),
+)
 ABOVE: dict[str, Any] = {
     "loc": "lower center",
     "bbox_to_anchor": (0.5, 1),
@@ -108,34 +117,31 @@ def ends(items: list[T], between: T | None = None) -> list[T]:
     )
 
 
-def draw(
+def pictures(
     history: dict[str, np.ndarray],
     contact: dict[str, np.ndarray],
     scene: Table,
     snapshots: list[tuple[float, Path]],
-) -> dict[str, Figure | None]:
-    """Draws the figures of a run and returns them by name. `contact` is the part of the history
-    from the onset of contact on.
+) -> dict[str, Callable[[], Figure]]:
+    """Returns the functions that draw the pictures of a run, by name. `contact` is the part of the
+    history from the onset of contact on.
     """
     impact = impact_of(scene)
-    drawn: dict[str, Figure | None] = {
-        "energies": energies(contact, scene),
-        "velocity": velocities(contact, scene),
+    drawn: dict[str, Callable[[], Figure]] = {
+        "energies": lambda: energies(contact, scene),
+        "velocity": lambda: velocities(contact, scene),
+        "force": lambda: forces(contact, scene),
     }
-    drawn |= (
-        {"force": friction_force(contact, impact), "rolling": rolling(contact, impact)}
-        if impact and history["friction_force"].any()
-        else {"force": forces(contact, scene)}
-    )
+    if impact and history["friction_force"].any():
+        drawn["force"] = lambda: friction_force(contact, impact)
+        drawn["rolling"] = lambda: rolling(contact, impact)
     # There are no triangles if no body crosses the plane z = 0.
     if snapshots and len(vtu.read(snapshots[0][1]).triangles):
-        drawn |= {
-            name: shapes(snapshots, scene, *field)
-            for name, field in COLOURED.items()
-            if name == "shapes" or "hydrostatic_pressure" in history
-        }
+        drawn["shapes"] = lambda: shapes(snapshots, scene, "von_mises", STRESS)
+        if "hydrostatic_pressure" in history:
+            drawn["pressure"] = lambda: shapes(snapshots, scene, "pressure", MEAN_PRESSURE)
     if len(snapshots) > 2 and impact and not is_half(scene) and goes_along(history, impact):
-        drawn |= {"flight": flight(history, impact, snapshots)}
+        drawn["flight"] = lambda: flight(history, impact, snapshots)
     return drawn
 
 
@@ -174,15 +180,9 @@ def columns_of(history: dict[str, np.ndarray], scene: Table) -> dict[str, str]:
 
 def energies(history: dict[str, np.ndarray], scene: Table) -> Figure:
     """Draws energies [J/m] over time. Each of several bodies has a panel. One panel shows all
-    bodies, the contact energy, which belongs to no body, and the work of friction, viscosity and
-    external forces, so that the dashed sum is constant. The last panel shows the error of this
-    balance.
+    (draw_energies), the last one the error of their balance.
     """
-    t, unit, bodies = (
-        1e3 * history["t"],
-        f"energy [J{per_metre(scene)}]",
-        columns_of(history, scene),
-    )
+    t, bodies = 1e3 * history["t"], columns_of(history, scene)
     if several := len(bodies) > 1:
         figure, (*own, together, balance) = panels(len(bodies) + 2)
     else:
@@ -190,59 +190,15 @@ def energies(history: dict[str, np.ndarray], scene: Table) -> Figure:
             2, sharex=True, figsize=(5.6, 4.6), height_ratios=[3, 1]
         )
         balance.set_xlabel("time [ms]")
-    for body, (axes, (name, suffix), colour) in enumerate(
-        zip(own, bodies.items(), COLOURS * len(bodies))
-    ):
+    for axes, (name, suffix), colour in zip(own, bodies.items(), COLOURS * len(bodies)):
         kinetic, elastic = history[f"kinetic{suffix}"], history[f"elastic{suffix}"]
         axes.plot(t, kinetic + elastic, color=colour, label=name)
         axes.plot(t, kinetic, color=colour, linestyle="--", linewidth=1.0, label="kinetic")
         axes.plot(t, elastic, color=colour, linestyle=DOTS, linewidth=1.0, label="elastic")
-        together.plot(t, kinetic + elastic, color=colour, linewidth=width(body), label=name)
-    total, words = mechanical_energy(history), "total"
-    lines = (
-        {}
-        if several
-        else {"kinetic": (history["kinetic"], BLUE), "elastic": (history["elastic"], ORANGE)}
-    )
-    lines["contact"] = history["contact"], "#56b4e9"
-    for name, column, words_of_it, sign, colour in (
-        ("lost to friction", "friction_work", "+ lost", 1, "#d4a017"),
-        ("lost to viscosity", "viscous_work", "+ lost", 1, VISCOUS),
-        ("lost to penalty damping", "penalty_damping_work", "+ lost", 1, "#0072b2"),
-        ("external work", "external_work", "− work", -1, "#888888"),
-    ):
-        if np.any(history.get(column, 0)):
-            lines[name] = history[column], colour
-            total, words = (
-                total + sign * history[column],
-                words if words.endswith(words_of_it) else f"{words} {words_of_it}",
-            )
-    largest = max(
-        np.abs(values).max()
-        for values in (
-            total,
-            *(values for values, _ in lines.values()),
-            history["kinetic"],
-            history["elastic"],
-        )
-    )
-    if words != "total":
-        together.plot(
-            t, mechanical_energy(history), color=BAND, linewidth=4.5, zorder=1, label="total"
-        )
-    # The line width decreases, so that overlapping lines remain visible.
-    for k, (name, (values, colour)) in enumerate(lines.items()):
-        together.plot(
-            t,
-            values,
-            color=colour,
-            linewidth=2.6 - 0.4 * (k + 2 * several),
-            label=name + least(values, largest),
-        )
-    together.plot(t, total, color=BLACK, linestyle="--", linewidth=1.0, label=words)
+    largest = draw_energies(together, history, bodies if several else {})
     for axes in (*own, together):
         axes.axhline(0, color=GREY, linewidth=0.6)
-        axes.set_ylabel(unit)
+        axes.set_ylabel(f"energy [J{per_metre(scene)}]")
     over_time([together, balance, *own], history, scene)
     for axes in (*own, together):
         legend(axes, ends, **ABOVE, ncols=2 if axes is together and 1 < len(bodies) < 4 else 3)
@@ -251,6 +207,40 @@ def energies(history: dict[str, np.ndarray], scene: Table) -> Figure:
     balance_error(balance, history, largest or 1.0)
     balance.set_ylabel("|balance| /\nlargest energy")
     return figure
+
+
+def draw_energies(
+    axes: Axes, history: Mapping[str, np.ndarray], bodies: Mapping[str, str]
+) -> float:
+    """Draws into `axes` the energies over time [ms]: those of the `bodies` (suffixes of their
+    columns by name), or without these all kinetic and all elastic energy; the contact energy, which
+    belongs to no body; and the work of friction, viscosity and external forces, so that the dashed
+    sum is constant. Returns the largest energy.
+    """
+    t, kinetic, elastic = 1e3 * history["t"], history["kinetic"], history["elastic"]
+    for body, ((name, suffix), colour) in enumerate(zip(bodies.items(), COLOURS * len(bodies))):
+        own = history[f"kinetic{suffix}"] + history[f"elastic{suffix}"]
+        axes.plot(t, own, color=colour, linewidth=width(body), label=name)
+    total, words = mechanical_energy(history), "total"
+    lines = {} if bodies else {"kinetic": (kinetic, BLUE), "elastic": (elastic, ORANGE)}
+    lines["contact"] = history["contact"], "#56b4e9"
+    for name, column, words_of_it, sign, colour in WORKS:
+        if np.any(history.get(column, 0)):
+            lines[name] = history[column], colour
+            total, words = (
+                total + sign * history[column],
+                words if words.endswith(words_of_it) else f"{words} {words_of_it}",
+            )
+    drawn = [values for values, _ in lines.values()]
+    largest = max(float(np.abs(values).max()) for values in (total, kinetic, elastic, *drawn))
+    if words != "total":
+        axes.plot(t, mechanical_energy(history), color=BAND, linewidth=4.5, zorder=1, label="total")
+    # The line width decreases, so that overlapping lines remain visible.
+    for k, (name, (values, colour)) in enumerate(lines.items(), 2 if bodies else 0):
+        label = name + least(values, largest)
+        axes.plot(t, values, color=colour, linewidth=2.6 - 0.4 * k, label=label)
+    axes.plot(t, total, color=BLACK, linestyle="--", linewidth=1.0, label=words)
+    return largest
 
 
 def velocities(history: dict[str, np.ndarray], scene: Table) -> Figure:

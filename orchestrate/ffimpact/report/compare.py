@@ -29,7 +29,6 @@ from .figures import (
     LAWS,
     ORANGE,
     PURPLE,
-    numbers_of_the_paper,
     per_metre,
     save,
     styled,
@@ -125,7 +124,8 @@ def draw(results: dict[str, Record], path: Path) -> None:
                 color=colour,
                 label=f"{name}: {_material(used)}{result.summary['dofs']} dofs",
             )
-            _contact(force, result, colour)
+            if when := touched(result.summary):
+                force.axvline(1e3 * when[1], color=colour, linestyle=":", linewidth=0.9)
             drag.plot(
                 t,
                 1e-3 * h["friction_force"] / heavy if rubs else h["max_penetration"] * 1e3,
@@ -173,32 +173,13 @@ def draw(results: dict[str, Record], path: Path) -> None:
             ylim=(0, None),
             xlabel="time [ms]",
         )
-        stated = any(
-            numbers_of_the_paper(record.scene, "contact_time") for record in results.values()
-        )
-        _key(
-            force,
-            {"end of the contact": ":", "by the paper": "-."}
-            if stated
-            else {"end of the contact": ":"},
-        )
+        _key(force, {"end of the contact": ":"})
         _key(energy, {"total": "--", "elastic": "-"})
         velocity.set(ylabel="velocity [m/s]", xlabel="time [ms]")
         _key(velocity, {"along x": "-", "along y": "--", "−ωR": ":"} if rubs else {"along y": "--"})
         force.margins(x=0)
         figure.legend(*force.get_legend_handles_labels(), loc="outside upper center", ncols=1)
         save(figure, path)
-
-
-def _contact(axes: Axes, result: Record, colour: str) -> None:
-    """Marks the end of the contact, and the end that follows from the contact time that the paper
-    prints for the same impact with the same law.
-    """
-    if not (when := touched(result.summary)):
-        return
-    axes.axvline(1e3 * when[1], color=colour, linestyle=":", linewidth=0.9)
-    for _, seconds, _ in numbers_of_the_paper(result.scene, "contact_time"):
-        axes.axvline(1e3 * (when[0] + seconds), color=colour, linestyle="-.", linewidth=0.9)
 
 
 def contact_force(history: dict[str, np.ndarray]) -> np.ndarray:

@@ -1,10 +1,13 @@
 """All figures of a finished run, each with its title."""
 
 import re
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from textwrap import wrap
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from ..failure import Unreadable
 from ..input.parameters import Table
@@ -15,14 +18,32 @@ from . import bodies, contact as contacts, impacts, solid
 from .figures import BODY, as_written, is_half, material, per_metre, save, styled, touched
 from .impact import impact_of
 
-__all__ = ["LETTERS", "MOST_LINES", "draw", "title", "wrapped"]
+__all__ = ["LETTERS", "MOST_LINES", "draw", "pictures", "title", "wrapped"]
 
 LETTERS, MOST_LINES = 14, 4       # letters per inch of a title; lines of each of its parts
 
 
 def draw(folder: Path) -> list[Path]:
-    """Draws all figures of the run in `folder` into folder/figures and returns their paths. The last
+    """Draws all pictures of the run in `folder` into folder/figures and returns their paths. The last
     one is energies.png: if it exists, all do. Raises Unreadable for a damaged folder.
+    """
+    target = folder / "figures"
+    target.mkdir(exist_ok=True)
+    with styled():
+        drawn = {name: picture() for name, picture in pictures(folder).items()}
+        figures = {name: figure for name, figure in drawn.items() if figure}
+        for name, figure in reversed(figures.items()):
+            save(figure, target / f"{name}.png")
+    # Figures that this version does not draw; `solid` stays, for which a library may be missing.
+    for name in set(FIGURES) - {*figures, "solid"}:
+        (target / f"{name}.png").unlink(missing_ok=True)
+    return [target / f"{name}.png" for name in figures]
+
+
+def pictures(folder: Path) -> dict[str, Callable[[], Figure | None]]:
+    """Returns a function for each picture of the run in `folder`, by the name of its file. It draws
+    the picture, with its title, or returns None if there is nothing to show. Raises Unreadable for a
+    damaged folder.
     """
     check_files(folder)
     history, scene = impacts.with_flights(read_history(folder)), read_scene(folder)
@@ -30,34 +51,41 @@ def draw(folder: Path) -> list[Path]:
     if "body" not in scene:
         raise Unreadable(f"{folder}: of a run without Python, which keeps neither names of bodies nor obstacles (accepted: a folder of "
                          "ffimpact run)")
-    snapshots = vtu.series(folder / "fields.pvd")
-    target = folder / "figures"
-    target.mkdir(exist_ok=True)
-    touches, names, impact = history["normal_force"] > 0, body_names(scene), impact_of(scene)
+    snapshots, touches, names = vtu.series(folder / "fields.pvd"), history["normal_force"] > 0, body_names(scene)
     # without free flight
     contact = Contents[np.ndarray]({name: column[max(0, int(np.argmax(touches)) - 1):] for name, column in history.items()}, history.path)
-    with styled():
-        drawn = bodies.draw(history, contact, scene, snapshots)
-        if (folder / "fields/contact.csv").exists():
-            table = contacts.read(folder)
-            ball, free = impact if impact and impact["kind"] in BODY and is_half(scene) else None, history["t"][~touches]
-            drawn["contact"] = contacts.draw(table, names, is_half(scene), free, ball, scene.get("symmetry", "full"), history)
-            if snapshots and hasattr(table, "Z"):
-                drawn["solid"] = solid.draw(snapshots, table, scene)
-        if (folder / "contacts.csv").exists():
-            bounces, rigid = impacts.read(folder), [as_written(obstacle["name"]) for obstacle in scene.get("obstacle", [])] or ["plane"]
-            drawn["bounces"] = impacts.draw(bounces, names, rigid)
-            drawn["height"] = impacts.heights(history, bounces, names) if scene.get("until") == "rest" else None
-        if (folder / "modes.csv").exists():
-            drawn["vibration"] = impacts.vibration(impacts.read_modes(folder), history, per_metre(scene))
-        figures = {name: figure for name, figure in drawn.items() if figure}
-        for name, figure in reversed(figures.items()):
-            figure.suptitle(wrapped(title(scene), figure.get_figwidth()))
-            save(figure, target / f"{name}.png")
-    # Figures that this version does not draw; `solid` stays, for which a library may be missing.
-    for name in set(FIGURES) - {*figures, "solid"}:
-        (target / f"{name}.png").unlink(missing_ok=True)
-    return [target / f"{name}.png" for name in figures]
+    made: dict[str, Callable[[], Figure | None]] = {**bodies.pictures(history, contact, scene, snapshots)}
+    if (folder / "fields/contact.csv").exists():
+        made |= _of_the_contact(contacts.read(folder), history, scene, snapshots)
+    if (folder / "contacts.csv").exists():
+        bounces, rigid = impacts.read(folder), [as_written(obstacle["name"]) for obstacle in scene.get("obstacle", [])] or ["plane"]
+        made["bounces"] = lambda: impacts.draw(bounces, names, rigid)
+        if scene.get("until") == "rest":
+            made["height"] = lambda: impacts.heights(history, bounces, names)
+    if (folder / "modes.csv").exists():
+        modes = impacts.read_modes(folder)
+        made["vibration"] = lambda: impacts.vibration(modes, history, per_metre(scene))
+    return {name: partial(_titled, picture, scene) for name, picture in made.items()}
+
+
+def _of_the_contact(table: np.recarray, history: Contents[np.ndarray], scene: Table,
+                    snapshots: list[tuple[float, Path]]) -> dict[str, Callable[[], Figure | None]]:
+    """Returns the functions that draw the pictures of the contact points in `table`."""
+    impact = impact_of(scene)
+    ball = impact if impact and impact["kind"] in BODY and is_half(scene) else None
+    free, symmetry = history["t"][history["normal_force"] == 0], scene.get("symmetry", "full")
+    made: dict[str, Callable[[], Figure | None]] = {
+        "contact": lambda: contacts.draw(table, body_names(scene), is_half(scene), free, ball, symmetry, history)}
+    if snapshots and hasattr(table, "Z"):
+        made["solid"] = lambda: solid.draw(snapshots, table, scene)
+    return made
+
+
+def _titled(picture: Callable[[], Figure | None], scene: Table) -> Figure | None:
+    """Draws a picture and gives it the title of its run."""
+    if figure := picture():
+        figure.suptitle(wrapped(title(scene), figure.get_figwidth()))
+    return figure
 
 
 def title(scene: Table) -> str:

@@ -25,7 +25,6 @@ from ..input.parameters import Table, Value
 from ..mesh import mesh
 from ..output import vtu
 from . import literature
-from .impact import impact_of
 
 __all__ = [
     "ABOVE",
@@ -35,11 +34,11 @@ __all__ = [
     "BLUE",
     "BODY",
     "Body",
-    "COLOURED",
     "DASHED",
     "GREEN",
     "GREY",
     "LAWS",
+    "MEAN_PRESSURE",
     "ORANGE",
     "ORIGIN",
     "PURPLE",
@@ -49,10 +48,13 @@ __all__ = [
     "STICKS",
     "STRESS",
     "STYLE",
+    "UNITS",
     "VISCOUS",
     "amid",
+    "arranged",
     "as_written",
     "balance_error",
+    "colour_limits",
     "deformed",
     "diameter",
     "draw_body",
@@ -70,7 +72,6 @@ __all__ = [
     "over_time",
     "per_metre",
     "pose_at",
-    "published",
     "rigid_rolling",
     "rolling",
     "save",
@@ -124,8 +125,9 @@ STYLE: dict[str, Any] = {
 NUMBERS = 6  # largest number of intervals between the ticks of an axis
 BODY = {"ball": "ball: ", "ball-axisymmetric": "ball as a body of revolution: "}
 STRESS = "von Mises stress [MPa]"
-# For each picture of deformed shapes: the field that colours the shapes, and its label.
-COLOURED = {"shapes": ("von_mises", STRESS), "pressure": ("pressure", "pressure −tr(σ)/3 [MPa]")}
+MEAN_PRESSURE = "pressure −tr(σ)/3 [MPa]"
+# Units of the fields of a state as they are drawn; that of all others is MPa.
+UNITS = {"displacement": "m", "velocity": "m/s", "jacobian": ""}
 SHAPES = 9  # largest number of shapes in one picture
 # A legend above its panel.
 ABOVE: dict[str, Any] = {
@@ -157,18 +159,25 @@ def styled() -> Iterator[None]:
     matplotlib.interactive(interactive)
 
 
-def save(figure: Figure, path: Path) -> None:
-    """Writes the figure to a file and closes it."""
+def arranged(figure: Figure) -> Figure:
+    """Gives the figure a layout without overlaps, and its axes few ticks."""
     if not figure.get_layout_engine():
         figure.set_layout_engine("constrained")
     for axes in (part for panel in figure.axes for part in (panel, *panel.child_axes)):
         for axis in (axes.xaxis, axes.yaxis):
             if type(axis.get_major_locator()) is AutoLocator:
                 axis.set_major_locator(MaxNLocator(NUMBERS, steps=(1, 2, 2.5, 5, 10)))
+    return figure
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Writes the figure to a file and closes it."""
     with catch_warnings():
         # A letter that the font lacks is drawn as an empty box, without a warning.
         filterwarnings("ignore", "Glyph .* missing from", UserWarning)
-        figure.savefig(path, pil_kwargs={"compress_level": 1})  # half the time, a sixth larger
+        arranged(figure).savefig(
+            path, pil_kwargs={"compress_level": 1}
+        )  # half the time, a sixth larger
     plt.close(figure)
 
 
@@ -243,42 +252,17 @@ def over_time(panels: list[Axes], history: dict[str, np.ndarray], scene: Table) 
             )
 
 
-def published(axes: Axes, scene: Table) -> None:
-    """Draws a line at the end of the contact by the paper's contact time of the same impact, if the
-    paper prints one.
-    """
-    if not scene.get("touched"):
-        return
-    begin, _ = scene["touched"]
-    for _, seconds, words in numbers_of_the_paper(scene, "contact_time", any_law=True):
-        axes.axvline(
-            1e3 * (begin + seconds),
-            color=BLACK,
-            linestyle="-.",
-            linewidth=0.9,
-            label=f"{words}: {1e3 * seconds:.3g} ms",
-        )
-        axes.set_xlim(right=max(axes.get_xlim()[1], 1.02e3 * (begin + seconds)))
-
-
 def numbers_of_the_paper(
-    scene: Table, key: str, over: str = "", any_law: bool = False
+    scene: Table, key: str, over: str
 ) -> list[tuple[Value | None, float, str]]:
-    """Returns all numbers `key` (as in summary.json, SI) that the paper prints for this scene, or
-    for this scene with another value of the parameter `over`: (value of `over`, number, words).
-
-    With `any_law` it includes numbers for other laws, which are then part of the words.
+    """Returns all numbers `key` (as in summary.json, SI) that the paper prints for this scene with
+    any value of the parameter `over`: (value of `over`, number, words).
     """
-    numbers = []
-    free = ("law", over) if any_law else (over,)
-    law_of_scene = (impact_of(scene) or {}).get("law")
-    for run in literature.published(scene, free):
-        when = run["when"]
-        if run["source"].startswith("paper") and key in run["numbers"]:
-            same = over == "law" or when["law"] == law_of_scene
-            law = "" if same else f", {LAWS[when['law']]}"
-            numbers.append((when.get(over), run["numbers"][key]["value"], run["source"] + law))
-    return numbers
+    return [
+        (run["when"].get(over), run["numbers"][key]["value"], run["source"])
+        for run in literature.published(scene, (over,))
+        if run["source"].startswith("paper") and key in run["numbers"]
+    ]
 
 
 def legend(axes: Axes, shown: Callable[[list[Any]], list[Any]] = list, **how: Any) -> None:
@@ -311,11 +295,8 @@ def least(values: np.ndarray, largest: float) -> str:
 
 
 def end_of_contact(panels: list[Axes], history: dict[str, np.ndarray], scene: Table) -> None:
-    """Sets up the time axes of panels. The end of the contact and the paper's contact time are
-    listed above the first panel.
-    """
+    """Sets up the time axes of panels. The end of the contact is listed above the first panel."""
     over_time(panels, history, scene)
-    published(panels[0], scene)
     legend(panels[0], **ABOVE, ncols=2)
 
 
@@ -714,12 +695,7 @@ def side_by_side(
         ylim=(y_min - (rows - 1) * step[1], y_min + step[1]),
         aspect="equal",
     )
-    # The colour scale ends at the 0.5 % and 99.5 % quantiles of all nodes and includes 0, so that a
-    # single spot does not dominate it.
-    low_stress, high_stress = np.quantile(
-        np.concatenate([body.stress for body in bodies]), [0.005, 0.995]
-    )
-    ends = min(0.0, low_stress), high_stress or 1.0
+    ends = colour_limits(bodies)
     places = [step * (k % columns, -(k // columns)) for k in range(len(bodies))]
     behind(axes, times, places)
     for body, t, shift in zip(bodies, times, places):
@@ -734,6 +710,14 @@ def side_by_side(
         extend="both" if ends[0] < 0 else "max",
     )
     return figure
+
+
+def colour_limits(bodies: Sequence["Body"]) -> tuple[float, float]:
+    """Returns the ends of the colour scale: the 0.5 % and 99.5 % quantiles of all nodes and 0, so that
+    a single spot does not dominate it.
+    """
+    low, high = np.quantile(np.concatenate([body.stress for body in bodies]), [0.005, 0.995])
+    return min(0.0, float(low)), float(high) or 1.0
 
 
 def scale_bar(axes: Axes, share: float = 0.25) -> None:
@@ -773,8 +757,8 @@ def scale_bar(axes: Axes, share: float = 0.25) -> None:
 
 @dataclass(frozen=True)
 class Body:
-    """The whole deformed body: points (n, 2) in m, triangles (t, 3), and von Mises stress or
-    another stress field (n,) in MPa.
+    """The whole deformed body: points (n, 2) in m, triangles (t, 3), and the field (n,) that colours
+    it: von Mises stress in MPa, or another (UNITS).
     """
 
     points: np.ndarray
@@ -796,7 +780,9 @@ def deformed(snapshot: vtu.Snapshot, half: bool, field: str = "von_mises") -> Bo
     at the left end, the axis, is added.
     """
     points = snapshot.points + snapshot.fields["displacement"][:, :2]
-    triangles, stress = snapshot.triangles, 1e-6 * snapshot.fields[field]
+    triangles, stress = snapshot.triangles, snapshot.fields[field]
+    stress = np.linalg.norm(stress, axis=1) if stress.ndim > 1 else stress
+    stress = stress if field in UNITS else 1e-6 * stress
     if half:
         triangles = np.vstack([triangles, triangles + len(points)])
         points, stress = (

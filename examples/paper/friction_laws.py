@@ -3,20 +3,31 @@ tabulates them.
 """
 
 import argparse
+import sys
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import pandas as pd
 from matplotlib.axes import Axes
 
-from ..failure import Failure, Unreadable
-from ..freefem import freefem
-from ..input import parameters
-from ..output.folder import result_folder
-from ..places import RESULTS, shown
-from .figures import BELOW, BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, legend, save, styled
-
-__all__ = ["VALUES", "draw", "main", "tabulate"]
+from ffimpact.__main__ import start
+from ffimpact.failure import Failure, Unreadable
+from ffimpact.freefem import freefem
+from ffimpact.input import parameters
+from ffimpact.output.folder import result_folder
+from ffimpact.places import RESULTS, shown
+from ffimpact.report.figures import (
+    BELOW,
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    PURPLE,
+    legend,
+    save,
+    styled,
+)
 
 # The values of section 3.1 and figure 3 of the paper.
 VALUES = {"friction_static": 0.7, "friction_dynamic": 0.5, "slip_velocity": 0.1}
@@ -30,7 +41,7 @@ LABELS = {
 
 def main(argv: list[str]) -> int:
     """Tabulates the laws into DIR/laws.csv and draws DIR/friction-laws.png."""
-    parser = argparse.ArgumentParser(prog="ffimpact friction-laws", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m examples.paper.friction_laws", description=__doc__)
     parser.add_argument(
         "--out",
         metavar="DIR",
@@ -160,3 +171,7 @@ def _curve(
                 linestyle=":",
                 linewidth=0.8,
             )
+
+
+if __name__ == "__main__":
+    sys.exit(start(main))
