@@ -80,13 +80,14 @@ plt.show()
 # The spin misses by half of itself, far beyond all error bars. A golf ball has a stiff core in a
 # soft cover, and this ball is homogeneous.
 cross, errors = "Cross 2010, Phys. Teach. 48", result.errors
-layered = "misses: likely the layers, a stiff core in a soft cover; this ball is homogeneous"
+layered = "likely the layers, a stiff core in a soft cover; this ball is homogeneous"
 rows = [
     ("restitution e_n", "1", result["restitution"], errors["restitution"], 0.87, 0.01, cross,
      "fitted: loss factor"),
     ("spin over speed S", "rad/m", spin / speed, errors["rebound_spin"] / speed, 14.8,
-     0.1 + by_angle, cross, layered),
-    ("tangential restitution e_t", "1", e_t, e_t_error, 0.03, 0.01, cross, layered),
+     0.1 + by_angle, cross, f"misses by 51 %: {layered}"),
+    ("tangential restitution e_t", "1", e_t, e_t_error, 0.03, 0.01, cross,
+     f"misses by 0.56: {layered}"),
 ]  # fmt: skip
 columns = "quantity unit computed error reference uncertainty source note".split()
 numbers = pd.DataFrame(rows, columns=columns)

@@ -98,7 +98,7 @@ rows = [
     ("spread of the restitution, 20 to 60 degrees", "1", spread, 2 * flat.errors["restitution"],
      0, 0.04, cross, ""),
     ("angle of most spin", "degrees", best_angle, 5, 40, 5, cross,
-     "misses: likely the layers; this ball gives back shear where it grips, and spins more"),
+     "misses by 27 %: likely the layers; this ball gives back shear where it grips, and spins more"),
     ("tangential over normal impulse at 20 degrees", "1", impulses, impulse_error, friction, 0,
      "exact: slides throughout", ""),
 ]  # fmt: skip

@@ -112,7 +112,7 @@ rows = [
     ("beta at 3.3", "1", beta[0], errors[0], grip, 0.05 * (1 + grip), "Maw, Barber, Fawcett 1976",
      "uncertainty: 5 % of the slip lost, a sphere is no half-space"),
     ("beta at 5.5", "1", beta[1], errors[1], exact[1], 0, slides,
-     "misses: likely the onset of grip at 5.1 is close, part of the load slides backwards"),
+     "misses by 44 %: likely the onset of grip at 5.1 is close, part of the load slides backwards"),
     *((f"beta at {psi[k]:g}", "1", beta[k], errors[k], exact[k], 0, slides, "") for k in (2, 3)),
 ]  # fmt: skip
 columns = "quantity unit computed error reference uncertainty source note".split()

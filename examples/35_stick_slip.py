@@ -38,7 +38,7 @@ scene = ff.Scene(
     obstacles=[floor],
     contact=contact,
     end_time=0.08,
-    accuracy=0.1,
+    accuracy=0.005,
 )
 result = ff.run(scene, estimate=False)
 history = result.history

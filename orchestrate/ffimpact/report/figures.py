@@ -175,9 +175,7 @@ def save(figure: Figure, path: Path) -> None:
     with catch_warnings():
         # A letter that the font lacks is drawn as an empty box, without a warning.
         filterwarnings("ignore", "Glyph .* missing from", UserWarning)
-        arranged(figure).savefig(
-            path, pil_kwargs={"compress_level": 1}
-        )  # half the time, a sixth larger
+        arranged(figure).savefig(path)
     plt.close(figure)
 
 
