@@ -21,7 +21,7 @@ def test_histories_are_equal_to_the_byte_with_and_without_it(tmp_path):
         before = os.times()
         freefem.find().call(*flags, env=environment, check=True)
         after = os.times()
-        summary = json.loads((tmp_path / name / "record.json").read_text())
+        summary = json.loads((tmp_path / name / "record.json").read_text())["diagnostics"]
         used = after.children_user + after.children_system - before.children_user - before.children_system
         assert summary["quick_clock"] == (name == "quick") and summary["cpu_seconds"] == pytest.approx(used, abs=0.1)
         histories.append((tmp_path / name / "history.csv").read_bytes())
@@ -39,4 +39,4 @@ def test_it_serves_on_a_path_that_cannot_be_preloaded_by_its_name(monkeypatch, t
     program = replace(program, environment=environment | freefem.quick_clock(environment))
     assert len(program.preloaded) == 1
     program.call(*case({"accuracy": 0.2, "out": tmp_path / "out"}), check=True)
-    assert json.loads((tmp_path / "out/record.json").read_text())["quick_clock"] == 1
+    assert json.loads((tmp_path / "out/record.json").read_text())["diagnostics"]["quick_clock"] == 1

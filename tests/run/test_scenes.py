@@ -17,6 +17,7 @@ from ffimpact.input import parameters
 from ffimpact.input.toml_text import to_toml
 from ffimpact.mesh import mesh
 from ffimpact.output import estimate, vtu
+from ffimpact.output.evaluate import evaluate
 from ffimpact.report import bodies, drawing, figures, impacts, report
 from ffimpact.running import run
 from ffimpact.scene import read as read_scene
@@ -115,7 +116,8 @@ def test_entries_are_set_on_the_command_line(mine, capsys):
     assert other["impulse"] > result.summary["impulse"] and run.read_scene(out)["body"][1]["young"] == 8e6
     direct = freefem_run("-scene", str(out / "scene.bin"), "-out", str(path.parent / "direct"))
     assert direct.returncode == 0, direct.stderr
-    assert json.loads((path.parent / "direct/record.json").read_text())["impulse"] == pytest.approx(other["impulse"], rel=1e-9)
+    evaluate(path.parent / "direct")
+    assert json.loads((path.parent / "direct/summary.json").read_text())["impulse"] == pytest.approx(other["impulse"], rel=1e-9)
 
 
 @pytest.mark.robustness

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from ffimpact import scene
-from ffimpact.output.columns import ENTRIES, FILES, NEEDS, RUN_NUMBERS, units
+from ffimpact.output.columns import ENTRIES, FILES, NEEDS, units
 from ffimpact.places import ROOT
 
 SCRIPTS = ROOT / "edp/program/run"
@@ -67,21 +67,6 @@ def test_scripts_write_the_columns_of_the_table(table, kind, name):
     listed = re.search(rf"macro {name}\(act\)(.*?)//\n", text, re.S)[1]
     expected = [(row.name, row.needs) for row in FILES["history.csv"][table] if getattr(row, kind) and row.needs != "directed"]
     assert names_of(listed, "act") == [row for row in expected if row[0] != "t"]
-
-
-def test_scripts_write_the_numbers_of_the_table():
-    """numbers.idp writes the names of the table, those of all bodies together and those of each in
-    the order of the table, apart from what Python evaluates."""
-    text = (SCRIPTS / "numbers.idp").read_text()
-    text = re.sub(r'writeExtreme\(out, "(\w+)", \w+\);', lambda match: " ".join(
-        f'entry("{match[1]}{end}")' for end in ("", "_time", "_x", "_y", "_z")), text)
-    tables = FILES["summary.json"][:3]
-    evaluated = {row.name for row in RUN_NUMBERS} | {"corner_share"}
-    rows = [row for table in tables for row in table
-            if row.name not in evaluated and not row.name.startswith("final_")]
-    for kind, call in (("whole", "entry"), ("part", "entryOf")):
-        expected = [row.name for row in rows if getattr(row, kind)]
-        assert re.findall(rf'\b{call}\("(\w+)"', text) == expected
 
 
 @pytest.mark.parametrize("script", ["edp/paper/record.idp", "edp/disc-block.edp"])

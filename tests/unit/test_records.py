@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from ffimpact import scene
 from ffimpact.output import contacts, modes, warnings
 from ffimpact.output.evaluate import evaluate
 from ffimpact.output.results import read_answers, read_history, read_json, read_summary, read_table
@@ -29,6 +30,19 @@ def evaluated(folder: Path, **facts: float) -> Path:
 @pytest.fixture
 def run(tmp_path):
     return evaluated(tmp_path / "run")
+
+
+def test_numbers_are_those_of_the_table(run):
+    """Names and order are those of the scene. What the record or the history has is under its name: a
+    number of the record, a last and a largest value of a column, the place of an extreme."""
+    summary, history, facts = read_summary(run), read_history(run), read_json(RECORD / "record.json")["diagnostics"]
+    names = scene.load(RECORD / "scene.toml").numbers
+    assert [name for name in summary if name in names] == names
+    assert summary["steps"] == facts["steps"] == len(history["t"]) - 1 and summary["final_vx"] == history["vx"][-1]
+    assert summary["friction_work"] == history["friction_work"][-1] == summary["creep_work"] + summary["slip_work"]
+    assert summary["peak_force"] == max(history["normal_force"]) and summary["min_jacobian"] == min(history["min_jacobian"])
+    assert [summary[f"max_shear{end}"] for end in ("", "_time", "_x", "_y")] == facts["max_shear"][:4] and summary["max_shear_z"] is None
+    assert summary["energy_drift"] == max(abs(history["balance"])) / facts["supplied_energy"] and summary["breakdown_time"] is None
 
 
 def test_numbers_of_an_impact(run):

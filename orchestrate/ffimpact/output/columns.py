@@ -2,9 +2,9 @@
 scenes that have it.
 
 Pages, units and the lists of names are made from it. The order of a table is that of its file:
-edp/program/run/columns.idp and numbers.idp write the same names with their values
-(tests/unit/test_columns.py). Units are those of plane strain, per metre of thickness; of balls and
-bodies of revolution the last "/m" is left out.
+edp/program/run/columns.idp writes the columns of history.csv in it (tests/unit/test_columns.py),
+and numbers.py has the values of the numbers. Units are those of plane strain, per metre of
+thickness; of balls and bodies of revolution the last "/m" is left out.
 """
 
 import re

@@ -37,7 +37,6 @@ __all__ = [
     "Interval",
     "Motion",
     "along",
-    "at_both_ends",
     "impulse_ratio",
     "intervals_of",
     "is_impact",
@@ -271,31 +270,24 @@ def write_contacts(path: Path, intervals: list[Interval], damped: bool) -> None:
 
 
 def with_self_contact(record: dict[str, Any], intervals: list[Interval]) -> dict[str, Any]:
-    """The record of a run. If bodies are in contact with themselves only, its contact numbers are
-    those of self-contact. Otherwise it is unchanged, and self-contact does not count.
+    """The record of a run. If bodies are in contact with themselves only, its contacts are those of
+    self-contact. Otherwise it is unchanged, and self-contact does not count.
     """
     own = sorted((i.start, i.end, i.over) for i in intervals if i.own)
-    if record["contact_intervals"] or not own:
+    if record["diagnostics"]["contact_intervals"] or not own:
         return record
     joined = 1
     until = own[0][1]
     for start, end, _ in own[1:]:
         joined += int(start > until)
         until = max(until, end)
-    facts = {"in_contact": int(not all(over for *_, over in own)), "contact_end": until}
-    return record | {
-        "contact_time": until - own[0][0],
+    facts = {
         "contact_start": own[0][0],
+        "contact_end": until,
         "contact_intervals": joined,
-        "diagnostics": record["diagnostics"] | facts,
+        "in_contact": int(not all(over for *_, over in own)),
     }
-
-
-def at_both_ends(name: str) -> list[str]:
-    """The names in the summary of a number of the record. A velocity or spin has two: `rebound_...`
-    at the end of contact and `final_...` at the end of the run.
-    """
-    return [name, name.replace("rebound", "final")] if name.startswith("rebound_") else [name]
+    return record | {"diagnostics": record["diagnostics"] | facts}
 
 
 def of_run(intervals: list[Interval]) -> dict[str, Any]:

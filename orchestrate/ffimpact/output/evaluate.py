@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from . import contacts, warnings
-from .columns import RUN_NUMBERS
 from .fields import write_fields
 from .modes import write_modes
+from .numbers import in_order
 from .paper_script import ANSWERS, evaluate_script
 from .results import read_history, read_json, reading, write_json
 
@@ -65,40 +65,43 @@ def _summary(evidence: warnings.Evidence) -> dict[str, Any]:
     """The numbers and sentences of a run; without sentences if it failed, as its message says what
     to know.
     """
+    record, facts = evidence.record, evidence.facts
     crossings = evidence.thresholds()
     lasted = crossings[1] - crossings[0] if crossings else None
-    ok = evidence.record["status"] == "ok"
+    numbers = evidence.numbers | contacts.of_run(list(evidence.intervals)) | {
+        "thresholded_contact_time": lasted,
+        "peak_uncertainty": warnings.peak_uncertainty(evidence),
+        "rest_time": facts["rest_since"] if record["ended"] == "rest" else None,
+        "corner_share": evidence.corner_share,
+    }  # fmt: skip
+    for name, value in evidence.numbers.items():
+        if name.startswith("rebound_"):
+            numbers |= _at_both_ends(evidence, name, value)
+    ok = record["status"] == "ok"
     sentences = warnings.sentences(evidence) if ok else {"warnings": [], "notes": []}
-    numbers = {"thresholded_contact_time": lasted} | contacts.of_run(list(evidence.intervals))
-    numbers["peak_uncertainty"] = warnings.peak_uncertainty(evidence)
-    numbers["rest_time"] = (
-        evidence.facts["rest_since"] if evidence.record["ended"] == "rest" else None
-    )
     summary: dict[str, Any] = {}
-    for name, value in evidence.record.items():
-        summary |= sentences if name == "diagnostics" else _at_both_ends(evidence, name, value)
-        if name == "contact_time":
-            summary |= {column.name: numbers[column.name] for column in RUN_NUMBERS}
-        if name == "max_penetration":
-            summary["corner_share"] = evidence.corner_share
+    for name, value in record.items():
+        if name == "diagnostics":
+            summary |= sentences | in_order(facts, numbers)
+        else:
+            summary[name] = value
         if name == "ended":
             summary["later_contact_possible"] = evidence.later_contact_possible
     return summary
 
 
-def _at_both_ends(evidence: warnings.Evidence, name: str, value: Any) -> dict[str, Any]:
-    """The entries of the summary that follow from an entry of the record.
-
-    The record has a velocity or spin at the end of the run: it is `final_...` if the run goes on
-    after the contact until its end_time. The value at the end of contact t_e is then extrapolated
-    from the following step, in which no contact force acts: v(t_e) = v(t_1) + (t_e - t_1) dv/dt.
+def _at_both_ends(evidence: warnings.Evidence, name: str, value: float) -> dict[str, Any]:
+    """A velocity or spin `rebound_...` at the end of the run, as two numbers: `final_...` if the run
+    goes on after the contact until its end_time, and the value at the end of contact t_e. This is
+    extrapolated from the following step, in which no contact force acts: v(t_e) = v(t_1) +
+    (t_e - t_1) dv/dt.
     """
-    rebound, *final = contacts.at_both_ends(name)
+    final = name.replace("rebound", "final")
     t, end = evidence.history["t"], evidence.facts["contact_end"]
     k = int(np.searchsorted(t, end))
-    touched = evidence.record["contact_intervals"] and not evidence.facts["in_contact"]
-    if not (final and evidence.facts["end_time"] > 0 and touched and k + 1 < len(t)):
-        return {rebound: value} | dict.fromkeys(final)
+    touched = evidence.facts["contact_intervals"] and not evidence.facts["in_contact"]
+    if not (evidence.facts["end_time"] > 0 and touched and k + 1 < len(t)):
+        return {name: value, final: None}
     v = evidence.history[name.removeprefix("rebound_")]
     slope = (v[k + 1] - v[k]) / (t[k + 1] - t[k])
-    return {rebound: float(v[k] + (end - t[k]) * slope), final[0]: value}
+    return {name: float(v[k] + (end - t[k]) * slope), final: value}

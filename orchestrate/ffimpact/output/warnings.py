@@ -18,6 +18,7 @@ import numpy as np
 from ..input.parameters import Table
 from . import points
 from .contacts import THRESHOLD, Interval, thresholds
+from .numbers import numbers_of
 
 __all__ = [
     "Evidence",
@@ -109,6 +110,16 @@ class Evidence:
         step = self.history["dt"][solved]
         return self.history["t"][solved] - step / 2, step, normal[solved]
 
+    @cached_property
+    def numbers(self) -> Table:
+        """The numbers of the run (numbers.numbers_of)."""
+        return numbers_of(self.facts, self.history, self.forces)
+
+    @property
+    def pull(self) -> float:
+        """The size of the acceleration by gravity and body forces [m/s2]."""
+        return float(np.linalg.norm(self.facts["acceleration"]))
+
     @property
     def largest_force(self) -> float:
         """The largest mean normal force of a step [N/m]."""
@@ -143,7 +154,7 @@ class Evidence:
             middle[part],
             step[part],
             force[part],
-            self.record["contact_start"],
+            self.numbers["contact_start"],
             end,
             not open_ended,
             threshold,
@@ -155,7 +166,7 @@ class Evidence:
         alone may cause within twice the duration of the impact."""
         again, until = self.facts["contact_again_at"], self.facts["impact_until"]
         near = (
-            self.facts["vibrates_again"] and again - until <= until - self.record["contact_start"]
+            self.facts["vibrates_again"] and again - until <= until - self.numbers["contact_start"]
         )
         return bool(again >= 0 and (again <= until or near))
 
@@ -301,7 +312,7 @@ def _law(e: Evidence) -> Iterator[Sentence]:
         yield warn(
             f"ellipticity: lost from t = {lost[1]:g} s on, the solution then depends on the mesh: "
             f"first{e.near(lost)}, smallest eigenvalue of the "
-            f"acoustic tensor {rounded(e.record['min_ellipticity'])} mu: take a lower speed, or "
+            f"acoustic tensor {rounded(e.numbers['min_ellipticity'])} mu: take a lower speed, or "
             "law=neohookean"
         )
     if broken[1] >= 0:
@@ -379,7 +390,7 @@ def _balances(e: Evidence) -> Iterator[Sentence]:
         f": take {e.conserving}",
     )
     drift, momentum, angular = (
-        e.record[name] for name in ("energy_drift", "momentum_drift", "angular_momentum_drift")
+        e.numbers[name] for name in ("energy_drift", "momentum_drift", "angular_momentum_drift")
     )
     if drift > accuracy:
         yield warn(
@@ -410,8 +421,8 @@ def _chatter(e: Evidence) -> Iterator[Sentence]:
 
 
 def _contact(e: Evidence) -> Iterator[Sentence]:
-    facts, record = e.facts, e.record
-    if not record["contact_intervals"]:
+    facts, numbers = e.facts, e.numbers
+    if not numbers["contact_intervals"]:
         touches = len(e.bodies) > 1 or facts["obstacles"]
         if touches and not facts["supports_move"] and not facts["loads"]:
             none = " and ".join(
@@ -430,7 +441,7 @@ def _contact(e: Evidence) -> Iterator[Sentence]:
         )
     # The share of the penetration is (m + 1)/2 times that of the energy. The estimate includes a
     # wave front that elements resolve.
-    front, rise = record["front_transit"] or 0, record["front_rise"] or 0
+    front, rise = numbers["front_transit"] or 0, numbers["front_rise"] or 0
     depth = e.penalty_share * (facts["exponent_used"] + 1) / 2
     if (
         (rise == 0 or rise > front)
@@ -459,7 +470,7 @@ def peak_uncertainty(e: Evidence) -> float | None:
     """The share of the largest force that penalty and mesh may change; None if its error estimate
     includes that change.
     """
-    if not e.record["contact_intervals"] or not e.largest_force > 0:
+    if not e.numbers["contact_intervals"] or not e.largest_force > 0:
         return None
     lasting, peak = _lasting(e)
     if _oscillates(e):
@@ -504,7 +515,7 @@ def _oscillates(e: Evidence) -> bool:
     """Whether the peak is a short one of a force that oscillates on the penalty."""
     lasting, peak = _lasting(e)
     return bool(
-        (e.record["front_transit"] or not _is_hard(e))
+        (e.numbers["front_transit"] or not _is_hard(e))
         and lasting < PEAK_SHARE * peak
         and not e.facts["in_contact"]
     )
@@ -528,14 +539,14 @@ def _mean_over(step: np.ndarray, force: np.ndarray, width: float) -> float:
 
 
 def _end_of_contact(e: Evidence) -> Iterator[Sentence]:
-    accuracy, lasting = e.facts["accuracy"], e.record["contact_time"]
+    accuracy, lasting = e.facts["accuracy"], e.numbers["contact_time"]
     crossings = e.thresholds()
     if crossings is None:
         crossings = (-1.0, -1.0)
     # A half sine spends 0.3 % of its time below 1 % of its peak at either end, Hertz' force on a
     # cylinder 0.7 %.
     grazes = e.facts["contact_end"] - crossings[1]
-    falls = e.facts["body_acceleration"] * grazes
+    falls = e.pull * grazes
     if grazes > max(0.01, accuracy) * lasting:
         yield note(
             f"contact time: the force is below {percent(THRESHOLD)} of its peak for the last "
@@ -692,7 +703,7 @@ def _sudden(e: Evidence) -> Iterator[Sentence]:
     the force of the front, which may be part of support_peak.
     """
     facts = e.facts
-    peak = e.record.get(f"support_peak_{facts['sudden_support'] + 1}", 0.0)
+    peak = e.numbers.get(f"support_peak_{facts['sudden_support'] + 1}", 0.0)
     jumps = facts["sudden_speed"] > 1e-6 * facts["fastest_motion"]
     if jumps and facts["sudden_front"] / 3 > facts["accuracy"] * peak:
         yield warn(
@@ -709,7 +720,7 @@ def _release(e: Evidence) -> Iterator[Sentence]:
     changes its sign at the release, not its size.
     """
     rises = [
-        (e.record[f"support_peak_{k}"] / before, before, k)
+        (e.numbers[f"support_peak_{k}"] / before, before, k)
         for k, before in enumerate(e.facts["peaks_before_release"], 1)
         if e.facts["first_release"] >= 0 and before > 0
     ]
@@ -728,16 +739,20 @@ def _release(e: Evidence) -> Iterator[Sentence]:
 
 
 def _ending(e: Evidence) -> Iterator[Sentence]:
-    facts, record = e.facts, e.record
+    facts, numbers = e.facts, e.numbers
     mass = sum(body["mass"] for body in e.bodies)
-    strikes = record["impulse"] > 2 * mass * facts["body_acceleration"] * (
-        record["contact_time"] or 0
+    strikes = numbers["impulse"] > 2 * mass * e.pull * (
+        numbers["contact_time"] or 0
     )  # more than twice the impulse of the weight: an impact, not a body at rest
     # Held, loaded or pressed until the end: no end of contact is expected.
     pushed = facts["supports_move"] or facts["pushing_loads"] > 0 or facts["pressed"]
     several = len(e.bodies) > 1
     in_contact = facts["in_contact"] and not pushed and (several or strikes)
-    if record["ended"] != "rest" and facts["rolling"] == 0 and (facts["until_rest"] or in_contact):
+    if (
+        e.record["ended"] != "rest"
+        and facts["rolling"] == 0
+        and (facts["until_rest"] or in_contact)
+    ):
         yield warn(
             f"not over: at the end_time {e.body} "
             f"{'does not rest yet' if facts['until_rest'] else 'is still in contact'}: contact "
@@ -868,7 +883,7 @@ def _friction(e: Evidence) -> Iterator[Sentence]:
             f"times under the weight, faster than {facts['slip_velocity']:g} m/s: they may slide "
             "where friction_static would hold them: take a larger slip_velocity, or a smaller dt"
         )
-    unsolved = e.record["unsolved_jumps"]
+    unsolved = e.numbers["unsolved_jumps"]
     if unsolved > JUMPS * facts["loaded_jumps"]:
         instead = (
             "regularization=linear"
@@ -884,9 +899,9 @@ def _friction(e: Evidence) -> Iterator[Sentence]:
 
 def _bounces(e: Evidence) -> Iterator[Sentence]:
     """A rigid body rests on a penalty without damping: its flights are shorter than its contacts."""
-    if not e.facts["friction"] or e.facts["body_acceleration"] == 0:
+    if not e.facts["friction"] or e.pull == 0:
         return
-    if e.record.get("penalty_damping_work"):
+    if e.numbers.get("penalty_damping_work"):
         return
     stays: dict[tuple[int, int], list[Interval]] = {}
     for interval in sorted(e.intervals, key=lambda interval: interval.start):
@@ -910,7 +925,7 @@ def _bounces(e: Evidence) -> Iterator[Sentence]:
 
 def _penalty_damping(e: Evidence) -> Iterator[Sentence]:
     """The energy that the damping of the penalty has taken. It is not a property of a material."""
-    taken = e.record.get("penalty_damping_work", 0.0)
+    taken = e.numbers.get("penalty_damping_work", 0.0)
     if taken > 0:
         yield note(
             f"penalty damping: it has taken {percent(taken / e.facts['supplied_energy'])} of the "
