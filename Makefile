@@ -6,7 +6,7 @@ SWEEPS := oblique friction-jump friction-steps slip-limit contact-time-svk law-c
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws $(SWEEPS) stick-slip verify paper-scripts paper movie docs pictures check unit coverage mutants test robustness bench bench-quick scaling equal-errors promise disc-block-errors oblique-angles viscoelastic rubber users clean
+.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws $(SWEEPS) stick-slip verify paper-scripts paper movie docs pictures check unit quick coverage mutants test robustness bench bench-quick scaling equal-errors promise disc-block-errors oblique-angles viscoelastic rubber users clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
@@ -98,6 +98,10 @@ check: $(READY) unit ## style, types, spelling and the tests without FreeFEM, in
 
 unit: $(READY) ## the tests that need no FreeFEM, some twenty seconds
 	@$(PYTHON) -m pytest -q -n 2 --dist worksteal tests/unit $(ARGS)
+
+QUICK := $(addsuffix .py,$(addprefix tests/run/test_,end_to_end contacts bodies supports gases reported_numbers scenes rigid) $(addprefix verification/test_,patch conservation))
+quick: $(READY) ## these and runs of each kind of scene, some two minutes
+	@$(PYTHON) -m pytest -q -n 2 --dist worksteal tests/unit $(QUICK) $(ARGS)
 
 coverage: $(READY) ## the lines of the package that the tests without FreeFEM run
 	@$(PYTHON) -m pytest -q -n 2 --dist worksteal --cov=ffimpact --cov-report=term:skip-covered tests/unit $(ARGS)

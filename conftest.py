@@ -13,6 +13,12 @@ pytest.register_assert_rewrite("tests.support", "verification.stress", "verifica
 HOSTILE = Path(__file__).parent / "tests/hostile"
 
 
+def pytest_ignore_collect(collection_path, config):
+    """Leaves out tests/hostile, all of whose tests a run without robustness would drop."""
+    left_out = collection_path == HOSTILE and config.option.markexpr == "not robustness"
+    return left_out or None
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
     cases = defaultdict(list)

@@ -57,7 +57,7 @@ def test_a_file_is_sought_beside_its_scene(tmp_path, monkeypatch):
     write_step(folder / "part.step")
     (folder / "part.geo").write_text(BOX.replace("100, 60, 40", "0.1, 0.06, 0.04"))
     for name, working, path in (("part.step", tmp_path, "scenes/part.toml"), ("part.geo", folder, "part.toml")):
-        (folder / "part.toml").write_text(assembly.to_toml(solid(name, mesh_size=0.03, contact_mesh_size=0.02)))
+        (folder / "part.toml").write_text(assembly.to_toml(solid(name, mesh_size=0.02, contact_mesh_size=0.02)))
         monkeypatch.chdir(working)
         loaded = scene.load(path)
         monkeypatch.chdir(tmp_path.parent)

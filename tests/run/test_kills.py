@@ -57,7 +57,8 @@ def command(route: str, out: Path, speed: str = "8", **changed: str) -> list[str
         return [sys.executable, "-m", "ffimpact", "sweep", str(file), "--out", str(out)]
     if route.startswith("direct"):   # fine enough that it does not end while it is being stopped
         return impact_words(values | {"accuracy": "0.005", "out": out})
-    return [sys.executable, "-m", "ffimpact", "run", "disc-normal", "--quiet", "--no-figures", "--set", *(f"{name}={value}" for name, value in values.items()), "--out", str(out)]
+    more = ["--no-estimate"] if "checkpoints" in route else []
+    return [sys.executable, "-m", "ffimpact", "run", "disc-normal", "--quiet", "--no-figures", *more, "--set", *(f"{name}={value}" for name, value in values.items()), "--out", str(out)]
 
 
 def start(words: list[str]) -> subprocess.Popen:

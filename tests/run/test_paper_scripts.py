@@ -83,6 +83,15 @@ def reads_as_a_result(folder: Path, history: pd.DataFrame, result: ffimpact.Resu
     assert {"contact_time", "impulse", "rebound_vy", "peak_force", "energy_drift"} <= set(table.index)
 
 
+def test_a_ball_in_space_keeps_its_energy(tmp_path):
+    """Its first steps in contact push it upwards, without a loss."""
+    _, history = answers("ball-plane", tmp_path, law="neohookean", dt=4e-4, mesh_size=0.04, contact_mesh_size=0.025, penalty=1e9, end_time=1.2e-3)
+    assert history.balance.abs().max() < 1e-8 * history.kinetic[0]
+    momentum = (history.vy.iloc[-1] - history.vy[0]) * history.kinetic[0] * 2 / history.vy[0] ** 2
+    assert 0 < momentum == pytest.approx((history.dt * history.normal_force)[1:].sum(), rel=1e-6)
+
+
+@pytest.mark.robustness
 def test_a_ball_in_space_as_the_program_has_it(tmp_path):
     """With elements of the same sizes impulse and rebound agree with those of the program's ball."""
     sizes = {"mesh_size": 0.03, "contact_mesh_size": 0.015, "penalty": 1e9}

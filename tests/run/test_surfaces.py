@@ -7,6 +7,7 @@ import pytest
 
 from ffimpact.__main__ import main
 from ffimpact.mesh import surface_file
+from ffimpact.report import drawing
 from tests.support.surfaces import SCENE, run, slab, sphere
 
 
@@ -20,7 +21,7 @@ def test_a_slab_is_a_plane(tmp_path):
         assert summary[name] == pytest.approx(plane[name], rel=1e-6), name
     assert summary["energy_drift"] < 1e-9
     assert list((tmp_path / "scene" / "body-files").glob("*.stl"))
-    assert (tmp_path / "scene" / "figures" / "energies.png").exists()   # the last of all figures
+    assert drawing.pictures(tmp_path / "scene")["shapes"]()
 
 
 def test_a_fine_surface_is_read_whole(tmp_path):

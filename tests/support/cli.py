@@ -27,7 +27,7 @@ def call(*arguments: str) -> tuple[int, str, str]:
     return process.returncode, out, err
 
 
-def wait_for(condition, seconds: float = 10.0) -> None:
+def wait_for(condition, seconds: float = 60.0) -> None:
     end = time.monotonic() + seconds
     while not condition():
         assert time.monotonic() < end, "waited too long"
