@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tests.support.checkpoint import assert_same, direct, kill_at
+from tests.support.checkpoint import assert_same, direct, killed_at
 from tests.support.loads import PUSHED, RADIUS, SOFT, THIN, WALL, assert_exact, thin
 from verification.measure import bodies, outcome, prepared
 
@@ -57,8 +57,8 @@ def test_half_a_run_with_a_gas_and_the_rest_are_the_whole(tmp_path):
     assert straight.communicate(timeout=120) and straight.returncode == 0
     rows = len(outcome(tmp_path / "straight").history["t"])
     out = tmp_path / "out"
-    kill_at(direct(flags, out, "bodies"), out / "checkpoint", rows // 4)
-    kill_at(direct(flags | {"restart": out / "checkpoint"}, out, "bodies"), out / "checkpoint", 2 * rows // 3)
+    for number, more in ((rows // 40, {}), (rows // 24, {"restart": out / "checkpoint"})):
+        killed_at(number, flags | more, out, "bodies")
     last = direct(flags | {"restart": out / "checkpoint"}, out, "bodies")
     assert last.communicate(timeout=120) and last.returncode == 0
     assert_same(out, tmp_path / "straight")

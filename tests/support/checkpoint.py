@@ -2,7 +2,8 @@
 
 import signal
 import subprocess
-import time
+import tempfile
+from functools import cache
 from pathlib import Path
 
 import meshio
@@ -19,10 +20,49 @@ from tests.support.direct import words as impact_words
 EFFORT = ("start_seconds", "wall_seconds", "total_seconds", "cpu_seconds", "estimate_cpu_seconds", "peak_memory", "phase_seconds", "resumed_at", "provenance")
 
 
-def direct(flags: dict, out: Path, script: str = "disc") -> subprocess.Popen:
+# FreeFEM removes checkpoint.new after each checkpoint. At the N-th one the process gets the signal.
+AT_CHECKPOINT = r"""
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+int unlink(const char *path)
+{
+  static int seen;
+  const char *name = strrchr(path, '/');
+  if (name && !strcmp(name, "/checkpoint.new") && ++seen == atoi(getenv("AT_CHECKPOINT")))
+    raise(atoi(getenv("SIGNAL")));
+  return ((int (*)(const char *))dlsym(RTLD_NEXT, "unlink"))(path);
+}
+"""
+
+
+@cache
+def _library() -> Path:
+    path = Path(tempfile.mkdtemp()) / "at-checkpoint.so"
+    subprocess.run(["cc", "-shared", "-fPIC", "-x", "c", "-o", path, "-", "-ldl"], input=AT_CHECKPOINT, text=True, check=True)
+    return path
+
+
+def at_checkpoint(number: int, what: signal.Signals) -> dict[str, str]:
+    """The environment in which FreeFem++ gets a signal after so many checkpoints."""
+    before = freefem.find().environment
+    names = f"{_library()}:{before.get('LD_PRELOAD', '')}".rstrip(":")
+    return before | {"LD_PRELOAD": names, "AT_CHECKPOINT": str(number), "SIGNAL": str(int(what))}
+
+
+def direct(flags: dict, out: Path, script: str = "disc", environment: dict | None = None) -> subprocess.Popen:
     """Starts FreeFem++ on an impact with these entries, or a script of bodies with these flags."""
-    return subprocess.Popen(impact_words(flags | {"out": out}, script), cwd=parameters.ROOT, text=True,
-                            env=freefem.find().environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    return subprocess.Popen(impact_words(flags | {"out": out}, script), cwd=parameters.ROOT, text=True, env=environment or freefem.find().environment,
+                            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+
+
+def killed_at(number: int, flags: dict, out: Path, script: str = "disc") -> None:
+    """Runs it until kill -9 after so many checkpoints."""
+    process = direct(flags, out, script, at_checkpoint(number, signal.SIGKILL))
+    process.communicate(timeout=120)
+    assert process.returncode == -signal.SIGKILL and (out / "checkpoint").exists()
 
 
 def rows_known(checkpoint: Path) -> int:
@@ -31,18 +71,6 @@ def rows_known(checkpoint: Path) -> int:
         return int(checkpoint.read_bytes().split(b"\n", 1)[0] or 0)
     except FileNotFoundError:
         return 0
-
-
-def kill_at(process: subprocess.Popen, checkpoint: Path, rows: int) -> None:
-    """Sends kill -9 when the checkpoint has this number of rows."""
-    end = time.monotonic() + 60
-    while rows_known(checkpoint) < rows:
-        assert process.poll() is None, "it ended before it could be killed"
-        assert time.monotonic() < end, "waited too long"
-        time.sleep(1e-3)
-    process.kill()
-    process.communicate()
-    assert process.returncode == -signal.SIGKILL
 
 
 def assert_same(folder: Path, straight: Path) -> None:
