@@ -190,3 +190,21 @@ def test_a_front_is_resolved_until_it_has_dispersed(tmp_path):
     fine = bodies(tmp_path / "fine", {**content, "dt": front})
     for answer, error in (("peak_force", 0.02), ("impulse", 0.002)):
         assert run.summary[answer] == pytest.approx(fine.summary[answer], rel=error)
+
+
+@pytest.mark.parametrize("mass", [1e-3, 1e8])
+def test_a_light_strike_is_resolved_beside_a_heavy_body(tmp_path, mass):
+    """A feather of 0.3 g/m falls on a held pad. Its steps in contact are the same beside a body of
+    any weight, which falls elsewhere."""
+    pad = {"name": "pad", "shape": "rectangle", "width": 0.1, "height": 0.02, "position": [0, -0.01], "young": 2e6, "nu": 0.3,
+           "density": 1000, "support": [{"where": "bottom"}]}
+    feather = {"name": "feather", "shape": "disc", "radius": 0.01, "young": 1e5, "nu": 0.3, "density": 1.0,
+               "position": [0, 0.0101], "velocity": [0, -1]}
+    other = {"name": "other", "shape": "disc", "radius": 0.01, "rigid": True, "mass": mass, "position": [0.3, 1.0]}
+    content = {**LAW, "gravity": 9.81, "accuracy": 0.1, "end_time": 0.003,
+               "obstacle": [{"kind": "plane", "point": [0, -0.03], "normal": [0, 1]}]}
+    longest = []
+    for bodies_of_scene in ([feather, pad], [feather, pad, other]):
+        history = bodies(tmp_path / f"{len(bodies_of_scene)}", {**content, "body": bodies_of_scene}).history
+        longest.append(history["dt"][history["normal_force"] > 0].max())
+    assert longest[1] == pytest.approx(longest[0], rel=1e-6)
