@@ -81,17 +81,6 @@ def test_friction_law_has_its_closed_form(extended):
         assert creep == pytest.approx(exact, rel=2e-3)
 
 
-def test_figure_is_drawn_and_encloses_what_translation_lost(extended):
-    """Every run on the plane has the figure. The area of its loop is the loss of translational
-    energy."""
-    folder = extended("A figure")
-    summary = run(folder, "disc-normal", "--set", "accuracy=0.05")
-    assert (folder / "out/figures/loop.png").stat().st_size > 10_000
-    call = "from ffimpact.report.loop import lost; from ffimpact.output.results import read_history; from pathlib import Path; print(lost(read_history(Path('out'))))"
-    lost = summary["energy_initial"] - summary["translation_energy"]
-    assert lost > 10 and float(go(folder, sys.executable, "-c", call)) == pytest.approx(lost, rel=1e-9)
-
-
 @pytest.mark.robustness
 def test_law_has_its_stress_its_tangent_and_its_energy(extended):
     """Homogeneous stress in closed form, tangent by differences, and an energy balance closed to

@@ -9,6 +9,7 @@ import pytest
 import ffimpact as ff
 from ffimpact.output.results import mechanical_energy
 from ffimpact.report import contact, drawing, report
+from tests.support import loop
 from tests.support.records import evaluated
 
 PICTURES = {
@@ -109,6 +110,18 @@ def test_pictures_of_a_run(result, name):
     assert {key for key, figure in figures.items() if figure} == PICTURES[name]
     for figure in filter(None, figures.values()):
         assert figure.get_suptitle() and any(axes.has_data() for axes in figure.findobj(plt.Axes))
+
+
+def test_a_picture_of_ones_own(result, monkeypatch):
+    """It is drawn with a title where it has something to show. Its loop encloses the energy that
+    translation has lost."""
+    monkeypatch.setitem(drawing.MORE, "loop", loop.draw)
+    run = result("axisymmetric")
+    lost = run["energy_initial"] - run["translation_energy"]
+    assert lost > 1 and loop.lost({name: run.history[name].to_numpy() for name in run.history}) == pytest.approx(lost, rel=1e-9)
+    figure = drawing.pictures(run.folder)["loop"]()
+    assert figure.get_suptitle() and f"{lost:.4g} J" in figure.axes[0].get_legend().get_texts()[0].get_text()
+    assert drawing.pictures(result("discs").folder)["loop"]() is None
 
 
 def test_energies_add_up(result):

@@ -18,9 +18,11 @@ from . import bodies, contact as contacts, impacts, solid
 from .figures import BODY, as_written, is_half, material, per_metre, save, styled, touched
 from .impact import impact_of
 
-__all__ = ["LETTERS", "MOST_LINES", "draw", "pictures", "title", "wrapped"]
+__all__ = ["LETTERS", "MORE", "MOST_LINES", "draw", "pictures", "title", "wrapped"]
 
-LETTERS, MOST_LINES = 14, 4       # letters per inch of a title; lines of each of its parts
+LETTERS, MOST_LINES = 14, 4  # letters per inch of a title; lines of each of its parts
+# Pictures of one's own, by name: draw(history from the onset of contact on, scene) -> Figure, or None without one.
+MORE: dict[str, Callable[[dict[str, np.ndarray], Table], Figure | None]] = {}
 
 
 def draw(folder: Path) -> list[Path]:
@@ -49,33 +51,55 @@ def pictures(folder: Path) -> dict[str, Callable[[], Figure | None]]:
     history, scene = impacts.with_flights(read_history(folder)), read_scene(folder)
     scene["touched"] = touched(read_json(folder / "summary.json"))
     if "body" not in scene:
-        raise Unreadable(f"{folder}: of a run without Python, which keeps neither names of bodies nor obstacles (accepted: a folder of "
-                         "ffimpact run)")
-    snapshots, touches, names = vtu.series(folder / "fields.pvd"), history["normal_force"] > 0, body_names(scene)
+        raise Unreadable(
+            f"{folder}: of a run without Python, which keeps neither names of bodies nor obstacles (accepted: a folder of "
+            "ffimpact run)"
+        )
+    snapshots, touches, names = (
+        vtu.series(folder / "fields.pvd"),
+        history["normal_force"] > 0,
+        body_names(scene),
+    )
     # without free flight
-    contact = Contents[np.ndarray]({name: column[max(0, int(np.argmax(touches)) - 1):] for name, column in history.items()}, history.path)
-    made: dict[str, Callable[[], Figure | None]] = {**bodies.pictures(history, contact, scene, snapshots)}
+    contact = Contents[np.ndarray](
+        {name: column[max(0, int(np.argmax(touches)) - 1) :] for name, column in history.items()},
+        history.path,
+    )
+    made: dict[str, Callable[[], Figure | None]] = {
+        **bodies.pictures(history, contact, scene, snapshots)
+    }
     if (folder / "fields/contact.csv").exists():
         made |= _of_the_contact(contacts.read(folder), history, scene, snapshots)
     if (folder / "contacts.csv").exists():
-        bounces, rigid = impacts.read(folder), [as_written(obstacle["name"]) for obstacle in scene.get("obstacle", [])] or ["plane"]
+        bounces, rigid = (
+            impacts.read(folder),
+            [as_written(obstacle["name"]) for obstacle in scene.get("obstacle", [])] or ["plane"],
+        )
         made["bounces"] = lambda: impacts.draw(bounces, names, rigid)
         if scene.get("until") == "rest":
             made["height"] = lambda: impacts.heights(history, bounces, names)
     if (folder / "modes.csv").exists():
         modes = impacts.read_modes(folder)
         made["vibration"] = lambda: impacts.vibration(modes, history, per_metre(scene))
+    made |= {name: partial(own, contact, scene) for name, own in MORE.items()}
     return {name: partial(_titled, picture, scene) for name, picture in made.items()}
 
 
-def _of_the_contact(table: np.recarray, history: Contents[np.ndarray], scene: Table,
-                    snapshots: list[tuple[float, Path]]) -> dict[str, Callable[[], Figure | None]]:
+def _of_the_contact(
+    table: np.recarray,
+    history: Contents[np.ndarray],
+    scene: Table,
+    snapshots: list[tuple[float, Path]],
+) -> dict[str, Callable[[], Figure | None]]:
     """Returns the functions that draw the pictures of the contact points in `table`."""
     impact = impact_of(scene)
     ball = impact if impact and impact["kind"] in BODY and is_half(scene) else None
     free, symmetry = history["t"][history["normal_force"] == 0], scene.get("symmetry", "full")
     made: dict[str, Callable[[], Figure | None]] = {
-        "contact": lambda: contacts.draw(table, body_names(scene), is_half(scene), free, ball, symmetry, history)}
+        "contact": lambda: contacts.draw(
+            table, body_names(scene), is_half(scene), free, ball, symmetry, history
+        )
+    }
     if snapshots and hasattr(table, "Z"):
         made["solid"] = lambda: solid.draw(snapshots, table, scene)
     return made
@@ -102,8 +126,10 @@ def title(scene: Table) -> str:
     if scene.get("degree") == 1:
         text += ", linear elements"
     if impact.get("friction_static", 0) > 0:
-        text += (f"\nfriction {impact['friction_static']:g} static, {impact['friction_dynamic']:g} dynamic, "
-                 f"{impact['regularization']}, ε = {impact['slip_velocity']:g} m/s")
+        text += (
+            f"\nfriction {impact['friction_static']:g} static, {impact['friction_dynamic']:g} dynamic, "
+            f"{impact['regularization']}, ε = {impact['slip_velocity']:g} m/s"
+        )
     return text
 
 
@@ -112,4 +138,6 @@ def wrapped(text: str, width: float) -> str:
     MOST_LINES; a number stays beside its unit.
     """
     text = re.sub(r"(?<=\d) (?=(?:m|MPa|Pa|kg)\b)", "\N{NO-BREAK SPACE}", text)
-    return "\n".join("\n".join(wrap(line, int(LETTERS * width))[:MOST_LINES]) for line in text.split("\n"))
+    return "\n".join(
+        "\n".join(wrap(line, int(LETTERS * width))[:MOST_LINES]) for line in text.split("\n")
+    )
