@@ -7,7 +7,7 @@ figure, ax = diagram(2.6)
 rows = (("obstacle", "input/models.py\nthe entry", "scenes/obstacles.py\nentry → numbers", "kernels/shapes.cpp\ngap and normal"),
         ("friction law", "input/table.py\nthe word", "", "kernels/contact-law.cpp\nφ and its derivative"),
         ("law", "input/table.py\nthe word", "", "kernels/laws.cpp\nS, tangent, energy"),
-        ("figure", "", "report/NAME.py\nhistory → axes", ""))
+        ("figure", "", "drawing.MORE\nhistory → figure", ""))
 for x, title in ((3.0, "what users write"), (5.75, "Python"), (8.55, "kernels (C++)")):
     ax.text(x, 3.95, title, ha="center", fontsize=9.5, weight="bold")
 for k, (name, *cells) in enumerate(rows):
