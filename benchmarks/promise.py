@@ -147,7 +147,7 @@ def compare(drawn: list[Drawn], out: Path, limit: float = LIMIT, minutes: float 
     """
     acts = {k: partial(_row, out, *entry, limit, time.monotonic() + 60 * minutes) for k, entry in enumerate(drawn)}
     rows = {k: {"message": str(outcome)} if isinstance(outcome, Failure) else outcome
-            for k, outcome in study.side_by_side(acts, study.CORES, out.name)}
+            for k, outcome in study.run_parallel(acts, study.CORES, out.name)}
     rows = [{"scene": f"{name}: {draws.words(point)}", "accuracy": point.get("accuracy"), "warnings": ""} | rows[k]
             for k, (name, point) in enumerate(drawn) if rows[k] != LATER]
     columns = [column for name in ANSWERS for column in (name, f"{name} stated")]

@@ -242,7 +242,7 @@ def measure(cases: dict[str, Case], out: Path, limit: float) -> pd.DataFrame:
     acts = {(name, setting): partial(_rows, name, case, setting, out, limit)
             for name, case in cases.items() for setting in (AUTOMATIC, BY_HAND)}
     # One run at a time, in a thread of its own: those that estimate its error follow it.
-    outcomes = dict(study.side_by_side(acts, 1, "users"))
+    outcomes = dict(study.run_parallel(acts, 1, "users"))
     rows = []
     for (name, setting), outcome in ((key, outcomes[key]) for key in acts):
         rows += [{"scene": name, "setting": setting, "message": str(outcome)}] if isinstance(outcome, Failure) else outcome
@@ -313,7 +313,7 @@ def refer(cases: dict[str, Case], out: Path) -> int:
     the exit code: 1 if a run failed."""
     acts = {name: partial(_reference, name, case, out / "references") for name, case in cases.items()}
     failed = []
-    for name, outcome in study.side_by_side(acts, 1, "users"):
+    for name, outcome in study.run_parallel(acts, 1, "users"):
         if isinstance(outcome, Failure):
             failed.append(f"{name}: {outcome}")
             continue

@@ -49,7 +49,7 @@ def main(argv: list[str]) -> int:
     if options.cores < 1:
         raise BadInput(f"--cores: {options.cores} (accepted: from 1)")
     out = options.out
-    reused = there(out) and not options.force
+    reused = is_finished(out) and not options.force
     frame = read_frame(out / "verify.csv", COLUMNS, keep_default_na=False, na_values=[""]) if reused else run_all(out, options.cores)
     passed = bool(judged(frame)["pass"].all())
     print(study.table(overview(frame), FORMATS))
@@ -60,7 +60,7 @@ def main(argv: list[str]) -> int:
     return 0 if passed else 1
 
 
-def there(out: Path) -> bool:
+def is_finished(out: Path) -> bool:
     """Whether `out` holds a finished verification of the present code."""
     try:
         made = json.loads((out / "summary.json").read_text())["provenance"]["code"]
@@ -91,7 +91,7 @@ def run_all(out: Path, cores: int = study.CORES) -> pd.DataFrame:
     for case in CASES:
         (out / "runs" / slug(case)).mkdir(parents=True)
     acts = {(c, p): partial(perform, part, out / "runs" / slug(case)) for c, case in enumerate(CASES) for p, part in enumerate(case.parts)}
-    for key, outcome in study.side_by_side(acts, cores, "verify"):
+    for key, outcome in study.run_parallel(acts, cores, "verify"):
         results[key] = ([], str(outcome)) if isinstance(outcome, Failure) else outcome
     for c, case in enumerate(CASES):
         outcomes = [results[c, p] for p in range(len(case.parts))]

@@ -99,7 +99,7 @@ def _needed(results: judging.Results) -> Iterator[tuple[str, list[Path], Callabl
     yield "friction-laws", drawn, lambda: all(made.stat().st_mtime >= law.stat().st_mtime for made in drawn for law in laws)
     own = results.folder / scripts.FOLDER
     yield "paper-scripts", [own / scripts.FIGURE], lambda: all(scripts.is_finished(own / name, script) for name, (script, _) in scripts.runs().items())
-    yield "verify", [], lambda: verify.there(results.folder / "verify")
+    yield "verify", [], lambda: verify.is_finished(results.folder / "verify")
 
 
 def _runs(folder: Path, problem: scene.Scene, base: study.Point, points: list[study.Point]) -> Iterator[tuple[Path, scene.Scene]]:
@@ -109,7 +109,7 @@ def _runs(folder: Path, problem: scene.Scene, base: study.Point, points: list[st
 
 def _hold(runs: Iterable[tuple[Path, scene.Scene]]) -> bool:
     """Whether every folder holds the result of its scene, computed with the present code."""
-    return all(study.there(folder, problem) for folder, problem in runs)
+    return all(study.find_finished(folder, problem) for folder, problem in runs)
 
 
 # ---- running the cases

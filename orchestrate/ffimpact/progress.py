@@ -4,7 +4,7 @@ time.
 
 Work that consists of parts has one line for all of them. The progress lines of its parts are merged
 into that line, both for parts in the same thread (Line.part, in_turn) and for parts in other
-threads (forward, in study.side_by_side). Work that has no fraction is announced if it takes long
+threads (forward, in study.run_parallel). Work that has no fraction is announced if it takes long
 (work).
 """
 

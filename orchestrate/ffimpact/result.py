@@ -168,12 +168,12 @@ class Result:
         warnings = report.warning_lines(self.summary)
         origin = ", by a script of the paper" if "made_by" in self.summary else ""
         more = (
-            [f"  and {len(rows) - report.MOST} more: result.table"]
-            if len(rows) > report.MOST
+            [f"  and {len(rows) - report.MAIN_ROWS} more: result.table"]
+            if len(rows) > report.MAIN_ROWS
             else []
         )
         return "\n".join(
-            [f"Result in {shown(self.folder)}{origin}", *rows[: report.MOST], *more, *warnings]
+            [f"Result in {shown(self.folder)}{origin}", *rows[: report.MAIN_ROWS], *more, *warnings]
         )
 
     def _repr_html_(self) -> str:

@@ -105,7 +105,7 @@ def test_flight_is_rigid_motion(oblique):
     h = oblique.history
     pose = figures.pose_at(*vtu.series(oblique.folder / "fields.pvd")[-1], h)
     wait, pull = 0.01, 9.81
-    moved = figures.fly(pose, wait, -1, h, {"gravity": pull})
+    moved = figures.flown(pose, wait, -1, h, {"gravity": pull})
     centre = np.array([h["x"][-1], h["y"][-1]])
     place = centre + wait * np.array([h["vx"][-1], h["vy"][-1]]) - [0, pull * wait**2 / 2]
     before, after = pose.outline - centre, moved.outline - place

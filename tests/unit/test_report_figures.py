@@ -68,8 +68,8 @@ def test_no_contact_is_in_the_legend_of_rolling():
 def test_a_normal_impact_has_no_flight():
     """The path of a body that neither moves along the plane nor rotates is a vertical line and is
     not drawn."""
-    assert not figures.goes_along(history(), impact_of(SCENE))
-    assert figures.goes_along(history(spin=np.full(100, 5.0)), impact_of(SCENE)) and figures.goes_along(history(vx=np.full(100, 1.0)), impact_of(SCENE))
+    assert not figures.is_oblique(history(), impact_of(SCENE))
+    assert figures.is_oblique(history(spin=np.full(100, 5.0)), impact_of(SCENE)) and figures.is_oblique(history(vx=np.full(100, 1.0)), impact_of(SCENE))
 
 
 @pytest.mark.parametrize("width, words", [(0.12, "20 mm"), (11.0, "2 m"), (4e-4, "100 μm"), (0.4, "100 mm")])

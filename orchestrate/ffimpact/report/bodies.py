@@ -33,23 +33,23 @@ from .figures import (
     STRESS,
     VISCOUS,
     Body,
-    amid,
     as_written,
     balance_error,
     deformed,
     end_of_contact,
     evenly,
     flight,
+    force_times,
     friction_force,
-    goes_along,
     is_half,
-    least,
+    is_oblique,
     legend,
     material,
     over_time,
+    peak_suffix,
     per_metre,
     rolling,
-    side_by_side,
+    rows_of_bodies,
 )
 from .impact import impact_of
 
@@ -140,7 +140,7 @@ def pictures(
         drawn["shapes"] = lambda: shapes(snapshots, scene, "von_mises", STRESS)
         if "hydrostatic_pressure" in history:
             drawn["pressure"] = lambda: shapes(snapshots, scene, "pressure", MEAN_PRESSURE)
-    if len(snapshots) > 2 and impact and not is_half(scene) and goes_along(history, impact):
+    if len(snapshots) > 2 and impact and not is_half(scene) and is_oblique(history, impact):
         drawn["flight"] = lambda: flight(history, impact, snapshots)
     return drawn
 
@@ -237,7 +237,7 @@ def draw_energies(
         axes.plot(t, mechanical_energy(history), color=BAND, linewidth=4.5, zorder=1, label="total")
     # The line width decreases, so that overlapping lines remain visible.
     for k, (name, (values, colour)) in enumerate(lines.items(), 2 if bodies else 0):
-        label = name + least(values, largest)
+        label = name + peak_suffix(values, largest)
         axes.plot(t, values, color=colour, linewidth=2.6 - 0.4 * k, label=label)
     axes.plot(t, total, color=BLACK, linestyle="--", linewidth=1.0, label=words)
     return largest
@@ -282,7 +282,11 @@ def forces(history: dict[str, np.ndarray], scene: Table) -> Figure:
     """Draws contact forces [kN/m] over time: the normal and friction forces of all contacts, and
     the components of the force on each of several bodies.
     """
-    t, unit, bodies = amid(history, scene), f"[kN{per_metre(scene)}]", columns_of(history, scene)
+    t, unit, bodies = (
+        force_times(history, scene),
+        f"[kN{per_metre(scene)}]",
+        columns_of(history, scene),
+    )
     lines = {f"normal force {unit}": {"": "normal_force"}}
     if history["friction_force"].any():
         lines[f"friction force {unit}"] = {"": "friction_force"}
@@ -334,7 +338,7 @@ def shapes(series: list[tuple[float, Path]], scene: Table, field: str, label: st
         for t, at in zip(times, [[shift] for shift in places]) if moves else [(0.0, places)]:
             draw_obstacles(axes, rigid, view, t, at)
 
-    return side_by_side(
+    return rows_of_bodies(
         bodies, [t for t, _ in picked], view, min(columns, len(bodies)), behind, label
     )
 

@@ -29,10 +29,10 @@ from .figures import (
     LAWS,
     ORANGE,
     PURPLE,
+    contact_bounds,
     per_metre,
     save,
     styled,
-    touched,
 )
 
 __all__ = ["contact_force", "draw", "main", "mass_of"]
@@ -124,7 +124,7 @@ def draw(results: dict[str, Record], path: Path) -> None:
                 color=colour,
                 label=f"{name}: {_material(used)}{result.summary['dofs']} dofs",
             )
-            if when := touched(result.summary):
+            if when := contact_bounds(result.summary):
                 force.axvline(1e3 * when[1], color=colour, linestyle=":", linewidth=0.9)
             drag.plot(
                 t,

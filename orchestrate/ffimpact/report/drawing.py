@@ -15,7 +15,7 @@ from ..output import vtu
 from ..output.folder import FIGURES
 from ..output.results import Contents, body_names, check_files, read_history, read_json, read_scene
 from . import bodies, contact as contacts, impacts, solid
-from .figures import BODY, as_written, is_half, material, per_metre, save, styled, touched
+from .figures import BODY, as_written, contact_bounds, is_half, material, per_metre, save, styled
 from .impact import impact_of
 
 __all__ = ["LETTERS", "MORE", "MOST_LINES", "draw", "pictures", "title", "wrapped"]
@@ -49,7 +49,7 @@ def pictures(folder: Path) -> dict[str, Callable[[], Figure | None]]:
     """
     check_files(folder)
     history, scene = impacts.with_flights(read_history(folder)), read_scene(folder)
-    scene["touched"] = touched(read_json(folder / "summary.json"))
+    scene["touched"] = contact_bounds(read_json(folder / "summary.json"))
     if "body" not in scene:
         raise Unreadable(
             f"{folder}: of a run without Python, which keeps neither names of bodies nor obstacles (accepted: a folder of "

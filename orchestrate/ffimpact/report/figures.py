@@ -50,7 +50,7 @@ __all__ = [
     "STYLE",
     "UNITS",
     "VISCOUS",
-    "amid",
+    "force_times",
     "arranged",
     "as_written",
     "balance_error",
@@ -61,11 +61,11 @@ __all__ = [
     "end_of_contact",
     "evenly",
     "flight",
-    "fly",
+    "flown",
     "friction_force",
-    "goes_along",
+    "is_oblique",
     "is_half",
-    "least",
+    "peak_suffix",
     "legend",
     "material",
     "numbers_of_the_paper",
@@ -76,9 +76,9 @@ __all__ = [
     "rolling",
     "save",
     "scale_bar",
-    "side_by_side",
+    "rows_of_bodies",
     "styled",
-    "touched",
+    "contact_bounds",
 ]
 
 T = TypeVar("T")
@@ -213,7 +213,7 @@ def per_metre(scene: Table) -> str:
     return dimension.per_metre(scene.get("script", ""))
 
 
-def amid(history: dict[str, np.ndarray], scene: Table) -> np.ndarray:
+def force_times(history: dict[str, np.ndarray], scene: Table) -> np.ndarray:
     """Returns the times [ms] at which forces of a history are drawn. Forces are means over a step
     and are drawn in its middle, except for the integrators of END_FORCES.
     """
@@ -222,7 +222,7 @@ def amid(history: dict[str, np.ndarray], scene: Table) -> np.ndarray:
     )
 
 
-def touched(summary: Table) -> tuple[float, float] | None:
+def contact_bounds(summary: Table) -> tuple[float, float] | None:
     """Returns the begin and the end of the contact [s], both interpolated within their steps.
     Returns None without contact or if the contact has not ended.
     """
@@ -284,7 +284,7 @@ def balance_error(axes: Axes, history: dict[str, np.ndarray], energy: float) -> 
     axes.yaxis.set_minor_locator(NullLocator())
 
 
-def least(values: np.ndarray, largest: float) -> str:
+def peak_suffix(values: np.ndarray, largest: float) -> str:
     """Returns a suffix for the name of a curve that is hardly distinguishable from 0: its largest
     absolute value. Otherwise it is empty.
     """
@@ -305,7 +305,7 @@ def friction_force(history: dict[str, np.ndarray], scene: Table) -> Figure:
     The broken lines are the friction coefficients times the normal force. If all points of a body
     slide in the same direction, the friction force lies on the line of the dynamic coefficient.
     """
-    t, per = amid(history, scene), per_metre(scene)
+    t, per = force_times(history, scene), per_metre(scene)
     normal, friction = 1e-3 * history["normal_force"], 1e-3 * history["friction_force"]
     window = _liveliest(history)
     figure, grid = plt.subplots(
@@ -354,7 +354,7 @@ def _enlarge(
     """Draws the right panels of figure 5 in the interval `window` of rows, which is marked in the
     left panels: the fraction of the load that slides, and the friction force [kN/m].
     """
-    t, friction = amid(history, scene), 1e-3 * history["friction_force"]
+    t, friction = force_times(history, scene), 1e-3 * history["friction_force"]
     first, last = window
     inside, (share, zoom) = slice(first, last + 1), grid[:, 1]
     for axes in grid[:, 0]:
@@ -497,7 +497,7 @@ class Pose:
     diameter: np.ndarray
 
 
-def goes_along(history: dict[str, np.ndarray], scene: Table) -> bool:
+def is_oblique(history: dict[str, np.ndarray], scene: Table) -> bool:
     """Returns whether the body moves along the plane or rotates, so that its path is more
     informative than its shapes.
     """
@@ -599,7 +599,7 @@ def _draw_flight(
     if sign < 0 and scene.get("height", 0) > 0:
         pause = min(pause, pose.t / 2)  # avoids times before the start
     for k in (1, 2):
-        moved = fly(pose, sign * k * pause, row, history, scene)
+        moved = flown(pose, sign * k * pause, row, history, scene)
         _draw_pose(axes, moved, colour, DASHED, None)
         axes.annotate(
             f"{1e3 * moved.t:.1f} ms".replace("-", "−"),
@@ -611,7 +611,7 @@ def _draw_flight(
             va="center",
         )
     waits = np.linspace(0, 2 * sign * pause, 50)
-    centres = np.array([fly(pose, wait, row, history, scene).centre for wait in waits])
+    centres = np.array([flown(pose, wait, row, history, scene).centre for wait in waits])
     axes.plot(*centres.T, color=BLACK, linewidth=0.8, linestyle=":")
 
 
@@ -643,7 +643,7 @@ def diameter(snapshot: vtu.Snapshot) -> np.ndarray:
     return np.stack(columns, axis=1)
 
 
-def fly(pose: Pose, wait: float, row: int, history: dict[str, np.ndarray], scene: Table) -> Pose:
+def flown(pose: Pose, wait: float, row: int, history: dict[str, np.ndarray], scene: Table) -> Pose:
     """Returns the pose after another `wait` seconds (before, if negative) of rigid flight with the
     velocities in `row` of the history.
     """
@@ -670,7 +670,7 @@ def evenly(items: Sequence[T], limit: int) -> list[T]:
     return [items[k] for k in np.unique(np.linspace(0, len(items) - 1, limit).round().astype(int))]
 
 
-def side_by_side(
+def rows_of_bodies(
     bodies: list["Body"],
     times: list[float],
     view: tuple[float, float, float, float],

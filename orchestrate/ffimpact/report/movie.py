@@ -45,7 +45,7 @@ __all__ = ["Motion", "PlaneStage", "SolidStage", "Stage", "main", "stage_of", "w
 
 SECONDS = 8.0  # duration of the film [s]
 # Largest number of frames, 50 per second. Players show a GIF with a higher frame rate more slowly.
-MOST = 400
+MOST_FRAMES = 400
 DPI = 110
 # A failure of ffmpeg is reported in one line, see write().
 logging.getLogger("matplotlib.animation").setLevel(logging.ERROR)
@@ -74,8 +74,8 @@ def main(argv: list[str]) -> int:
         "--out", metavar="DIR", type=Path, help="the result folder (default: results/movies/SCENE)"
     )
     options = parser.parse_args(argv)
-    if not 2 <= options.frames <= MOST:
-        raise BadInput(f"--frames: {options.frames} is out of range (accepted: 2 to {MOST})")
+    if not 2 <= options.frames <= MOST_FRAMES:
+        raise BadInput(f"--frames: {options.frames} is out of range (accepted: 2 to {MOST_FRAMES})")
     if options.format == "mp4" and not FFMpegWriter.isAvailable():
         raise NotInstalled(
             "ffmpeg not found, which writes mp4; run: sudo apt-get install ffmpeg; or take --format gif"

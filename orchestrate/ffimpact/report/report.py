@@ -16,11 +16,20 @@ from ..output.results import Record, body_names, suffixes
 from ..places import shown
 from . import literature
 
-__all__ = ["MOST", "Quantity", "draw", "report", "rows", "rows_of", "stiffness", "warning_lines"]
+__all__ = [
+    "MAIN_ROWS",
+    "Quantity",
+    "draw",
+    "report",
+    "rows",
+    "rows_of",
+    "stiffness",
+    "warning_lines",
+]
 
 log = logging.getLogger("ffimpact")
 
-MOST = 12  # largest number of rows of a report that is not verbose
+MAIN_ROWS = 12  # largest number of rows of a report that is not verbose
 EXACT_ZERO = 1e-9  # largest size of a number that is zero to round-off
 
 # A number of the summary, or several that share a row.
@@ -290,7 +299,7 @@ def report(result: Record, verbose: bool = False) -> str:
     and full sentences.
     """
     summary, scene, folder = result.summary, result.scene, shown(result.folder)
-    printed = rows_of(result, verbose)[: None if verbose else MOST]
+    printed = rows_of(result, verbose)[: None if verbose else MAIN_ROWS]
     footnotes = notes.footnotes(summary.get("notes", []), [row.key for row in printed], verbose)
     marks = {key: f"[{k}]" for k, key in enumerate(footnotes, 1)}
     lines = [

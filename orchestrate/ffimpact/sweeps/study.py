@@ -39,10 +39,10 @@ __all__ = [
     "outcomes",
     "place",
     "save",
-    "side_by_side",
+    "run_parallel",
     "study",
     "table",
-    "there",
+    "find_finished",
     "warned",
 ]
 
@@ -89,7 +89,7 @@ def study(
         where: partial(outcome_of, where, requested, limit, estimate, force)
         for where, requested in tasks.items()
     }
-    for where, outcome in side_by_side(acts, cores, "/".join(folder.parts[-2:]), len(rows)):
+    for where, outcome in run_parallel(acts, cores, "/".join(folder.parts[-2:]), len(rows)):
         rows[where] = _row(1, str(outcome), False, {}) if isinstance(outcome, Failure) else outcome
     return pd.DataFrame([point | rows[where] for where, point in zip(places, points)])
 
@@ -110,7 +110,7 @@ def outcomes(
         where = place(folder, point)
         try:
             requested = loaded.override(base | point)
-            outcome = None if force else there(where, requested, estimate)
+            outcome = None if force else find_finished(where, requested, estimate)
         except BadInput as error:
             outcome = _row(error.code, str(error), False, {})
         rows |= {where: outcome} if outcome else {}
@@ -127,7 +127,7 @@ def place(folder: Path, point: Point) -> Path:
     return folder / "runs" / name
 
 
-def side_by_side(
+def run_parallel(
     acts: Mapping[Key, Callable[[], Any]], cores: int, name: str, before: int = 0
 ) -> Iterator[tuple[Key, Any]]:
     """Calls the functions `acts`, `cores` at a time, each in a thread, which mostly waits for its
@@ -188,7 +188,7 @@ def _outcome_of(future: Future[Any]) -> Any:
     return Failure(f"{type(error).__name__}: {error}")
 
 
-def there(folder: Path, requested: Scene, estimate: bool = False) -> Table | None:
+def find_finished(folder: Path, requested: Scene, estimate: bool = False) -> Table | None:
     """Returns the outcome that is in `folder` already, None if there is none: a finished run, with
     `estimate` one that has its error estimate, or a failure of the same scene and code, which would
     be repeated.
@@ -216,7 +216,7 @@ def outcome_of(
     table: exit code, message, warnings, reused, and the numbers of the summary, as far as the run
     came in `limit` seconds. None if another process is computing this run.
     """
-    if row := None if force else there(folder, requested, estimate):
+    if row := None if force else find_finished(folder, requested, estimate):
         return row
     try:
         with freefem.limited(limit):
