@@ -343,15 +343,16 @@ Status Inertia::addForces(const Step &step, const Vector &d, Vector &residual) {
 double Inertia::work(const Step &step, const Vector &d) const {
   // (v1 M v1 - v0 M v0)/2 with v0 = dt/2 inertiaKnown, v1 = 2 d/dt - v0
   const Vector v0 = step.dt / 2 * known.numbers(), v1 = 2 / step.dt * d - v0;
-  const auto energy = [&](const Vector &v) {
-    std::vector<double> x, Mx(elements.unknown.size(), 0.);
-    elements.gather(v.data(), x);
-    if (elements.D == 3) multiply<3>(x, Mx); else multiply<2>(x, Mx);
-    double sum = 0;
-    for (size_t i = 0; i < x.size(); i++) sum += x[i] * Mx[i] / 2;
-    return sum;
-  };
-  return energy(v1) - energy(v0);
+  return (v1.dot(momentum(v1)) - v0.dot(momentum(v0))) / 2;
+}
+
+Term::Vector Inertia::momentum(const Vector &v) const {
+  std::vector<double> x, Mx(elements.unknown.size(), 0.);
+  elements.gather(v.data(), x);
+  if (elements.D == 3) multiply<3>(x, Mx); else multiply<2>(x, Mx);
+  Vector all = Vector::Zero(v.size());
+  elements.scatter(Mx, all.data());
+  return all;
 }
 
 void Inertia::addTangent(const Step &step) {

@@ -80,6 +80,7 @@ class Inertia : public Term {
   Status addForces(const Step &step, const Vector &d, Vector &residual) override;
   double work(const Step &step, const Vector &d) const override;   // of energy-momentum steps
   void addTangent(const Step &step) override;
+  Vector momentum(const Vector &v) const;   // M v
 
  private:
   Elements &elements;

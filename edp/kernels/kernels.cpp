@@ -1,49 +1,31 @@
 // kernels.cpp: the FreeFEM plugin that kernels.idp loads. It registers all kernels under their
-// names in the scripts. A process computes one scene, so its bodies and the factorisation of their
-// tangent are static objects.
-#include <cholmod.h>   // first: without SuiteSparse's headers the build ends at once
-#include "call.hpp"
-#include "bodies.hpp"
-#include "contact.hpp"
-#include "depths.hpp"
+// names in the scripts, those of contact by contact-kernels.cpp.
+#include "scene.hpp"
 #include "explicit.hpp"
 #include "factor.hpp"
 #include "input.hpp"
-#include "loads.hpp"
-#include "outline.hpp"
 #include "step.hpp"
-#include "turning.hpp"
 
-static bodies::Elements elements;
-static bodies::Bodies body(elements);
-static bodies::Inertia inertia(elements);
-static bodies::Loads loads;
-static bodies::Supports supports(elements, body);
-static Step stepNow;                                 // set by kernelIntegrator
-static std::vector<TimeFunction> functions;
 static std::vector<const laws::Law *> law;           // of the bodies
 static Factor factor;
-static contact::Gaps gaps;
-static contact::Contact touching(gaps, factor, elements.ndof, elements.free);
+namespace scene {
+bodies::Elements elements;
+bodies::Bodies body(elements);
+bodies::Inertia inertia(elements);
+bodies::Loads loads;
+bodies::Supports supports(elements, body, inertia);
+Step stepNow;
+std::vector<TimeFunction> functions;
+contact::Gaps gaps;
+contact::Contact touching(gaps, factor, elements.ndof, elements.free);
+outline::Outline outlines;
+facets::Surface surface;
+depths::Depths between(surface, gaps.obstacles);
+}
 static const Terms terms = {&body, &inertia, &loads, &touching, &supports};   // of (2)
 static const Terms besideContact = {&body, &inertia, &loads, &supports};   // of explicit steps
 static ImplicitStep step(elements, body, terms, factor, touching);
 static ExplicitContact substep(touching);
-static outline::Outline outlines;
-static facets::Surface surface;
-static depths::Depths between(surface, gaps.obstacles);   // contact points
-
-static Triplets entries(Sparse A) {
-  // The entries of a sparse matrix. The kernels take no half (symmetric) or 1-based storage.
-  HashMatrix<int, double> *H = A.pHM();
-  ffassert(H && !H->half && !H->fortran);
-  return {H->n, H->m, H->nnz, H->i, H->j, H->aij};
-}
-
-static void fill(Reals array, const std::vector<double> &values) {
-  array.resize(long(values.size()));
-  std::copy(values.begin(), values.end(), static_cast<double *>(array));
-}
 
 static void addBodies() {
   // Kernels of bodies.hpp: materials, discretisation, forces, energy and stresses.
@@ -133,11 +115,6 @@ static void addBodies() {
   });
 }
 
-static const TimeFunction &functionOf(long f) {      // -1: the function 0
-  static const TimeFunction none = {};
-  return f < 0 ? none : functions[f];
-}
-
 static void addFunctions() {
   // Kernels of time-function.hpp: functions of time by their numbers.
   add("kernelFunctions", +[](Ints first, Reals time, Reals value, Reals slope, Reals soFar,
@@ -155,34 +132,18 @@ static void addFunctions() {
     for (const TimeFunction &f : functions) most = std::max(most, f.bend(t, dt, untilThen));
     return most;
   });
-  add("kernelMoveSupports", +[](Ints motion, double t, double dt, Reals increment, Reals speed) {
-    // Increments of the unknowns from t to t + dt, and velocities at the end; motion (ndof): their
-    // functions.
-    for (long i = 0; i < motion.N(); i++) {
-      const TimeFunction &f = functionOf(motion[i]);
-      increment[i] = f.at(t + dt) - f.at(t);
-      speed[i] = f.rate(t + dt);
-    }
-  });
-}
-
-static Eigen::SparseMatrix<double, Eigen::RowMajor> byRows(Sparse A) {
-  const Triplets all = entries(A);
-  std::vector<Eigen::Triplet<double>> list;
-  for (size_t e = 0; e < all.size; e++) list.emplace_back(all.row[e], all.column[e], all.value[e]);
-  Eigen::SparseMatrix<double, Eigen::RowMajor> B(all.n, all.m);
-  B.setFromTriplets(list.begin(), list.end());
-  return B;
 }
 
 static void addLoads() {
   // Kernels of loads.hpp. The first six are called at the start.
   add("kernelConditions", +[](Reals u, Reals bodyForce, Reals loadForce, Reals heldResidual,
-                             Reals gasVolume, Table gas, Reals inflation) {
+                             Reals gasVolume, Table gas, Reals inflation, Reals v, Reals increment,
+                             Reals speed) {
     loads.u = {&u};  loads.bodyForce = {&bodyForce};  loads.force = {&loadForce};
     loads.volume = {&gasVolume};  loads.gas = &gas;
     loads.inflation = {&inflation};
     supports.reaction = {&heldResidual};
+    supports.v = {&v};  supports.increment = {&increment};  supports.speed = {&speed};
   });
   add("kernelLoad", +[](long kind, bool ofRigidBody, Ints f) {   // appends a load
     loads.load.push_back({int(kind), ofRigidBody,
@@ -216,6 +177,28 @@ static void addLoads() {
     at.staticShare = staticShare;
     Eigen::VectorXd residual = Eigen::VectorXd::Zero(d.N());
     loads.addForces(at, Kept<double>{&d}.numbers(), residual);
+  });
+}
+
+static void addSupports() {
+  // Kernels of the supports of loads.hpp.
+  add("kernelHeld", +[](Ints support, Ints component, Ints motion) {
+    // Arrays over the unknowns; support -1: not held.
+    supports.held.clear();
+    for (long i = 0; i < support.N(); i++) if (support[i] >= 0)
+      supports.held.push_back({int(i), int(support[i]), int(component[i]),
+                               &functionOf(motion[i])});
+  });
+  add("kernelMoveSupports", +[](double t) { supports.move(t, 0); });
+  add("kernelHold", +[]() { supports.hold(stepNow); });
+  add("kernelTrackSupports", +[](Reals d, Table resultant, Reals work, Reals force, Reals missed) {
+    // Resultants (3, supports), forces and M s (ndof) of the step by d; adds to the work (supports).
+    const bodies::Supports::Tracked step =
+      supports.track(stepNow, Kept<double>{&d}.numbers(), int(work.N()));
+    Kept<double>{&work}.numbers() += step.work;
+    Kept<double>{&force}.numbers() = step.force;
+    Kept<double>{&missed}.numbers() = step.missed;
+    Eigen::Map<Eigen::Matrix3Xd>(&resultant(0, 0), 3, work.N()) = step.resultant;
   });
 }
 
@@ -344,202 +327,6 @@ static void addStep() {
   });
 }
 
-static void addGaps() {
-  // Kernels of gaps.hpp and pairs.hpp. The first three are called at the start.
-  add("kernelGaps", +[](bool fixed, long gapRows, double staticReach, Reals nodalPosition, Reals u,
-                       Reals q0, Reals frameMotion, Reals rest, Reals rates) {
-    gaps.fixed = fixed;
-    gaps.gapRows = int(gapRows);
-    gaps.staticReach = staticReach;
-    gaps.nodalPosition = Kept<double>{&nodalPosition}.numbers();
-    gaps.u = {&u};  gaps.q0 = {&q0};  gaps.frameMotion = {&frameMotion};
-    gaps.rest = {&rest};  gaps.rates = {&rates};
-    gaps.makeFixed();
-  });
-  add("kernelSpread", +[](Sparse spread) { gaps.spread = byRows(spread); });
-  add("kernelSurface", +[](Table shape, long points, long obstacles, long bodies, Ints unknown,
-                          Ints body, Reals side, Reals pointShape, Ints selfContact,
-                          Reals reference, Ints deformable, bool meet) {
-    // meet: bodies may come into contact with each other or themselves
-    const int facets = int(body.N()), nodes = int(shape.N());
-    surface = {facets, nodes, int(points), facets * int(points), int(obstacles),
-      int(bodies), copied<int>(unknown), copied<int>(body), copied<double>(side),
-      copied<double>(pointShape), copied<int>(selfContact), copied<double>(reference),
-      copied<int>(deformable), facets::ShapeCoefficients(nodes, shape.M())};
-    for (int a = 0; a < nodes; a++) for (int j = 0; j < shape.M(); j++)
-      surface.shape(a, j) = shape(a, j);
-    if (meet) gaps.pairs = pairs::make(surface);
-  });
-  add("kernelGapsNow", +[](Reals u, double t, double distance, Reals q) {
-    Kept<double>{&q}.numbers() = gaps.now(Kept<double>{&u}.numbers(), t, distance);
-  });
-  add("kernelGapMotion", +[](Reals w, double share, Reals moved) {
-    // B w, and a share of the motion of the obstacles in the step
-    Kept<double>{&moved}.numbers() = gaps.move(Kept<double>{&w}.numbers());
-    Kept<double>{&moved}.numbers() += share * gaps.motion.head(moved.N());
-  });
-  add("kernelGapIncrement", +[](Reals d, double dt) {
-    return gaps.increment(Kept<double>{&d}.numbers(), dt);
-  });
-  add("kernelMovesTooFar", +[](Reals d) {
-    return long(gaps.movesTooFar(stepNow, Kept<double>{&d}.numbers()));
-  });
-  add("kernelObstacleWork", +[]() { return touching.obstacleWork(); });
-  add("kernelCrossed", +[](Ints crossed) {   // points that passed through each obstacle
-    gaps.obstacles.crossed.resize(crossed.N());
-    std::copy(gaps.obstacles.crossed.begin(), gaps.obstacles.crossed.end(), (long *)crossed);
-  });
-}
-
-static void fillRows(const JacobianRows &rows, Ints row, Ints unknown, Reals normal, Reals slip) {
-  const long n = long(rows.row.size());
-  row.resize(n);  unknown.resize(n);
-  for (long e = 0; e < n; e++) { row[e] = rows.row[e];  unknown[e] = rows.unknown[e]; }
-  fill(normal, rows.normal);
-  fill(slip, rows.slip);
-}
-
-static void addRows() {
-  // For verification: the search of a step, and the rows of pairs and obstacles as triplets.
-  add("kernelSearchPairs", +[](Reals x, double searchDistance) {
-    return gaps.pairs->search(x, searchDistance);
-  });
-  add("kernelPairStart", +[](Reals x) { return gaps.pairs->start(x, x.N()); });
-  add("kernelPairGaps", +[](Reals d, Reals q0, Reals q1, Ints row, Ints unknown, Reals normal,
-                           Reals slip) {
-    JacobianRows rows;
-    gaps.pairs->gaps(d, q0, q1, rows);
-    fillRows(rows, row, unknown, normal, slip);
-  });
-  add("kernelSearch", +[](Reals d) { gaps.search(stepNow, Kept<double>{&d}.numbers()); });
-  add("kernelObstacleStart", +[](Reals u0, double t, double searchDistance) {
-    return gaps.obstacles.start(u0, t, searchDistance);
-  });
-  add("kernelObstacleRows", +[](Reals d, double dt, Reals q0, Reals q1, Reals motion, Ints row,
-                               Ints unknown, Reals normal, Reals slip) {
-    JacobianRows rows;
-    Eigen::VectorXd start = Kept<double>{&q0}.numbers(), end = start,
-      moved = Kept<double>{&motion}.numbers();
-    gaps.obstacles.rows(d, dt, start, end, moved, rows);
-    Kept<double>{&q0}.numbers() = start;
-    Kept<double>{&q1}.numbers() = end;
-    Kept<double>{&motion}.numbers() = moved;
-    fillRows(rows, row, unknown, normal, slip);
-  });
-}
-
-static obstacles::Point spatial(Reals x) {           // with z = 0 in the plane
-  return shapes::pointOf(x, int(x.N()));
-}
-
-static void addObstacles() {
-  // Kernels of obstacles.hpp. The first four are called at the start.
-  add("kernelObstacle", +[](std::string &kind, long axes, Reals numbers, Reals velocity) {
-    // Appends an obstacle.
-    obstacles::Obstacle added;
-    added.shape = shapes::make(long(gaps.obstacles.obstacle.size()), kind, int(axes), numbers,
-                               numbers.N());
-    added.velocity = spatial(velocity);
-    gaps.obstacles.obstacle.push_back(std::move(added));
-  });
-  add("kernelDrive", +[](long k, Reals pivot, Reals axis, Ints f) {
-    // f: functions of the displacement (3) and of the angle
-    obstacles::Obstacle &driven = gaps.obstacles.obstacle[k];
-    driven.driven = true;
-    driven.pivot = spatial(pivot);
-    driven.axis = spatial(axis);
-    for (int c = 0; c < 3; c++) driven.displacement[c] = functionOf(f[c]);
-    driven.angle = functionOf(f[3]);
-  });
-  add("kernelContactPoints", +[](long axes, Reals places, Sparse traces) {
-    gaps.obstacles.axes = int(axes);
-    gaps.obstacles.setPoints(places, entries(traces));
-  });
-  add("kernelObstacleGaps", +[](long k, Reals x, double t, Reals gap, Reals normal) {
-    // Gaps (m) [m] and normals (axes m) of obstacle k at time t, for m positions x (axes m).
-    const obstacles::Pose pose = gaps.obstacles.obstacle[k].pose(t);
-    const long m = gap.N(), axes = gaps.obstacles.axes;
-    for (long i = 0; i < m; i++) {
-      obstacles::Point place = obstacles::Point::Zero();
-      for (long c = 0; c < axes; c++) place[c] = x[c * m + i];
-      const shapes::Nearest closest = gaps.obstacles.obstacle[k].shape->nearest(pose.frame(place));
-      const obstacles::Point n = pose.R * closest.normal;
-      gap[i] = closest.gap;
-      for (long c = 0; c < axes; c++) normal[c * m + i] = n[c];
-    }
-  });
-  add("kernelTurn", +[](Table J, double t, Reals spin, Table R) {   // of turning.hpp
-    turning::Vector w(spin[0], spin[1], spin[2]);
-    turning::Matrix turned = Eigen::Map<turning::Matrix>(&R(0, 0));
-    const long tumbles = turning::turnFreely(Eigen::Map<turning::Matrix>(&J(0, 0)), t, w, turned);
-    for (int c = 0; c < 3; c++) spin[c] = w[c];
-    Eigen::Map<turning::Matrix>(&R(0, 0)) = turned;
-    return tumbles;
-  });
-  add("kernelObstaclePoint", +[](long k, double t, Reals X, Reals x) {
-    // Position x (3) in the scene at time t of the point X of the frame of obstacle k.
-    const obstacles::Point place = gaps.obstacles.obstacle[k].pose(t).scene(spatial(X));
-    for (int c = 0; c < 3; c++) x[c] = place[c];
-  });
-  add("kernelObstacleVelocity", +[](long k, double t, Reals x, Reals v, Reals spin) {
-    // Velocity v (3) of obstacle k at the position x in the scene, and its spin (3), at time t.
-    const obstacles::Obstacle &moving = gaps.obstacles.obstacle[k];
-    const obstacles::Point velocity = moving.velocityAt(t, spatial(x)), turning = moving.spin(t);
-    for (int c = 0; c < 3; c++) { v[c] = velocity[c];  spin[c] = turning[c]; }
-  });
-}
-
-static void addOutline() {
-  // Kernels of facets.hpp, depths.hpp and outline.hpp. The first four are called at the start.
-  add("kernelPieces", +[](Ints from, Ints to, Ints piece, Ints hasCorner, IntTable ridge) {
-    const facets::Pieces pieces =
-      facets::piecesOf(surface, copied<int>(from), copied<int>(to));
-    std::copy(pieces.piece.begin(), pieces.piece.end(), (long *)piece);
-    std::copy(pieces.hasCorner.begin(), pieces.hasCorner.end(), (long *)hasCorner);
-    for (size_t k = 0; k < pieces.ridge.size(); k++) {
-      ridge(0L, long(k)) = pieces.ridge[k].first;
-      ridge(1L, long(k)) = pieces.ridge[k].second;
-    }
-  });
-  add("kernelRidges", +[](Ints from, Ints to) {
-    between.make(copied<int>(from), copied<int>(to), surface.reference.data());
-  });
-  add("kernelOutline", +[](Table places, Ints nodeBody, Ints selfContact, Reals radius,
-                          double leastMotion, bool mirroredX, bool mirroredZ) {
-    outlines.reference = Eigen::Map<outline::Places>(&places(0, 0), places.N(), 3);
-    outlines.nodeBody = copied<int>(nodeBody);
-    outlines.selfContact = copied<int>(selfContact);
-    outlines.radius = copied<double>(radius);
-    outlines.leastMotion = leastMotion;
-    outlines.mirrored = {mirroredX, false, mirroredZ};
-  });
-  add("kernelOutlineSide", +[](Ints node, long axes, long kind, long turned) {
-    outlines.add(copied<int>(node), int(axes), outline::Kind(kind), int(turned));
-  });
-  add("kernelOutlineChanges", +[](double motion, bool holds) {
-    return long(outlines.mayChange(motion, holds));
-  });
-  add("kernelWatchOutline", +[](Table places, double t, double penetration, Ints heldNode,
-                               Ints support, bool seeksOverlap) {
-    outlines.watch(Eigen::Map<outline::Places>(&places(0, 0), places.N(), 3), t, penetration,
-                   copied<int>(heldNode), copied<int>(support), gaps.obstacles, seeksOverlap);
-  });
-  add("kernelDepth", +[](Reals x, double t) { return between.measure(x, t); });
-  add("kernelMayCross", +[](Reals d, double dt) {
-    return long(between.mayCross(gaps.obstacles.largestIncrement(d, dt)));
-  });
-  add("kernelDepthOf", +[](long body, long counterBody, Reals numbers) {
-    const depths::Depths::Pair &of = between.of(int(body), int(counterBody));
-    fill(numbers, {of.deepest, of.radius, of.length, of.blunt});
-  });
-  add("kernelOutlineSeen", +[](long k, Reals seen) {
-    // Value, time, place, and what it belongs to, of the overlap (0), a sunk or a held part.
-    const outline::Seen &of = k == 0 ? outlines.overlap : k == 1 ? outlines.sunk : outlines.held;
-    const auto X = outlines.reference.row(of.node);
-    fill(seen, {of.value, of.time, X[0], X[1], X[2], double(of.first), double(of.second)});
-  });
-}
-
 extern "C" void openblas_set_num_threads(int) __attribute__((weak));
 
 static void limitThreads() {
@@ -566,12 +353,10 @@ static void addKernels() {
   addBodies();
   addFunctions();
   addLoads();
+  addSupports();
   addFactor();
   addStep();
-  addGaps();
-  addRows();
-  addObstacles();
-  addOutline();
+  addContact();
 }
 
 LOADFUNC(addKernels)

@@ -165,4 +165,36 @@ double Supports::work(const Step &, const Vector &d) const {
   return sum;
 }
 
+void Supports::move(double t, double dt) {
+  increment.numbers().setZero();
+  speed.numbers().setZero();
+  for (const Held &h : held) {
+    increment[h.unknown] = h.motion->at(t + dt) - h.motion->at(t);
+    speed[h.unknown] = h.motion->rate(t + dt);
+  }
+}
+
+void Supports::hold(const Step &step) {
+  if (!step.isStatic()) move(step.t, step.dt);   // in static steps supports rest
+  for (const Held &h : held)
+    inertia.known[h.unknown] = step.massScale * increment[h.unknown]
+      - (speed[h.unknown] - v[h.unknown]) / step.dt;
+}
+
+Supports::Tracked Supports::track(const Step &step, const Vector &d, int supports) const {
+  const Vector change = step.dt * (step.massScale * d - inertia.known.numbers()),   // v1 - v0
+    gained = inertia.momentum(change);
+  Vector s = Vector::Zero(d.size());
+  Tracked all = {s, s, Vector::Zero(supports), Eigen::Matrix3Xd::Zero(3, supports)};
+  for (const Held &h : held) {
+    const int i = h.unknown;
+    s[i] = v[i] + 0.5 * change[i] - d[i] / step.dt;
+    all.force[i] = reaction[i];
+    all.resultant(h.component, h.support) += reaction[i];
+    all.work[h.support] += reaction[i] * d[i] + gained[i] * s[i];
+  }
+  all.missed = inertia.momentum(s);
+  return all;
+}
+
 }

@@ -63,18 +63,34 @@ class Loads : public Term {
 };
 
 // Held unknowns have no equation: their forces are those of the supports, and of the planes of
-// symmetry, which balance all other terms. It is the last term of a sum.
+// symmetry, which balance all other terms. It is the last term of a sum. Unknowns that supports hold
+// move by d; the support has the velocities v0, v1 at the ends of the step, whose mean differs from
+// d/dt by s. With the force R the work of the support on the bodies is exactly
+//   R.d + M (v1 - v0).s.
 class Supports : public Term {
  public:
-  Kept<double> reaction;                   // script array (ndof), empty without supports [N/m; N]
+  struct Held { int unknown, support, component;  const TimeFunction *motion; };
+  std::vector<Held> held;
+  // Script arrays (ndof): forces, empty without supports [N/m; N]; velocity at the start of the step
+  // [m/s]; of held unknowns, else 0: increment of the step [m], velocity at its end [m/s].
+  Kept<double> reaction, v, increment, speed;
 
-  Supports(const Elements &all, Bodies &allBodies) : elements(all), body(allBodies) {}
+  Supports(const Elements &all, Bodies &allBodies, Inertia &ofBodies)
+    : elements(all), body(allBodies), inertia(ofBodies) {}
   Status addForces(const Step &step, const Vector &d, Vector &residual) override;
   double work(const Step &step, const Vector &d) const override;
+
+  void move(double t, double dt);          // sets increment and speed
+  // Sets the inertia of held unknowns: their mean acceleration in the step is (v1 - v0)/dt.
+  void hold(const Step &step);
+  // The step by d: R (ndof), else 0; M s; work and resultant of each support.
+  struct Tracked { Vector force, missed, work;  Eigen::Matrix3Xd resultant; };
+  Tracked track(const Step &step, const Vector &d, int supports) const;
 
  private:
   const Elements &elements;
   Bodies &body;
+  Inertia &inertia;
 };
 
 }
