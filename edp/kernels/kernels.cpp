@@ -28,7 +28,7 @@ static ImplicitStep step(elements, body, terms, factor, touching);
 static ExplicitContact substep(touching);
 
 static void addBodies() {
-  // Kernels of bodies.hpp: materials, discretisation, forces, energy and stresses.
+  // Kernels of bodies.hpp: materials, discretisation, forces of the terms.
   add("kernelComponent", +[](long i, long dimensions, Sparse pick) {
     elements.component(int(i), int(dimensions), entries(pick));
   });
@@ -92,6 +92,10 @@ static void addBodies() {
     for (Term *term : terms) term->accept(stepNow, Kept<double>{&d}.numbers());
   });
   add("kernelRelax", +[]() { body.relax(); });
+}
+
+static void addStresses() {
+  // Kernels of bodies.hpp: deformation, energies and stresses.
   // F, C, det F at the start of a step; det F at its end; pressures of the elements; energy
   // dissipated so far (nq) [J/m3]
   add("kernelDeformation", +[](Reals F, Reals C, Reals jacobian) {
@@ -192,7 +196,7 @@ static void addSupports() {
   add("kernelMoveSupports", +[](double t) { supports.move(t, 0); });
   add("kernelHold", +[]() { supports.hold(stepNow); });
   add("kernelTrackSupports", +[](Reals d, Table resultant, Reals work, Reals force, Reals missed) {
-    // Resultants (3, supports), forces and M s (ndof) of the step by d; adds to the work (supports).
+    // Resultants (3, supports), forces and M s (ndof) of the step by d; adds to the work.
     const bodies::Supports::Tracked step =
       supports.track(stepNow, Kept<double>{&d}.numbers(), int(work.N()));
     Kept<double>{&work}.numbers() += step.work;
@@ -231,6 +235,45 @@ static void addFactor() {
   });
 }
 
+static void addContactLaw() {
+  // Kernels of contact-law.hpp.
+  add("kernelLaw", +[](double exponent, double retardation, double slipVelocity, double bridge,
+                      double sticksBelow, std::string &regularization, bool jumps, long slips,
+                      long mostStatusChanges) {
+    // Parameters of (10)-(13) that all contact points share; see Law and Problem.
+    contact::Law &law = touching.law;
+    law.exponent = exponent;
+    law.retardation = retardation;
+    law.slipVelocity = slipVelocity;
+    law.bridge = bridge;
+    law.regularization = regularization == "sqrt" ? contact::sqrtOf
+      : regularization == "tanh" ? contact::tanhOf
+      : regularization == "linear" ? contact::linear : contact::linearPrinted;
+    law.jumps = jumps;
+    law.slips = int(slips);
+    touching.problem.sticksBelow = sticksBelow;
+    touching.problem.mostStatusChanges = int(mostStatusChanges);
+  });
+  add("kernelTractions", +[](Reals vN0, Reals gapSlip, Reals k, Reals muStatic, Reals muDynamic,
+                            Ints sticks, double dt, long lawInstant, Reals t, Reals slope) {
+    // Forces t on n points and their slopes by kernelLaw, for verification. vN0 (n): penetrations
+    // at the start; gapSlip (m n): those at the end and the slips. slope: row i, column j at (3 i +
+    // j) n.
+    const long n = vN0.N(), m = gapSlip.N() / n;
+    contact::Law law = touching.law;
+    law.dt = dt;
+    law.lawInstant = int(lawInstant);
+    for (long i = 0; i < n; i++) {
+      contact::Forces forces = {};
+      double x[3] = {};
+      for (long c = 0; c < m; c++) x[c] = gapSlip[c * n + i];
+      law.at({vN0[i], k[i], muStatic[i], muDynamic[i], sticks[i] == 1}, x, nullptr, forces);
+      for (long c = 0; c < m; c++) t[c * n + i] = forces.t[c];
+      for (long c = 0; c < 9; c++) slope[c * n + i] = forces.slope[c / 3][c % 3];
+    }
+  });
+}
+
 static void archiveAll(Archive &archive) {
   step.archive(archive);
   outlines.archive(archive);
@@ -264,24 +307,6 @@ static void addStep() {
     residualWorkRatio = step.residualWorkRatio;
     return ended;
   });
-  add("kernelTractions", +[](Reals vN0, Reals gapSlip, Reals k, Reals muStatic, Reals muDynamic,
-                            Ints sticks, double dt, long lawInstant, Reals t, Reals slope) {
-    // Forces t on n points and their slopes by kernelLaw, for verification. vN0 (n): penetrations
-    // at the start; gapSlip (m n): those at the end and the slips. slope: row i, column j at (3 i +
-    // j) n.
-    const long n = vN0.N(), m = gapSlip.N() / n;
-    contact::Law law = touching.law;
-    law.dt = dt;
-    law.lawInstant = int(lawInstant);
-    for (long i = 0; i < n; i++) {
-      contact::Forces forces = {};
-      double x[3] = {};
-      for (long c = 0; c < m; c++) x[c] = gapSlip[c * n + i];
-      law.at({vN0[i], k[i], muStatic[i], muDynamic[i], sticks[i] == 1}, x, nullptr, forces);
-      for (long c = 0; c < m; c++) t[c * n + i] = forces.t[c];
-      for (long c = 0; c < 9; c++) slope[c * n + i] = forces.slope[c / 3][c % 3];
-    }
-  });
   add("kernelForget", +[]() { step.forget(); });
   add("kernelState", +[](Reals state) {
     // Stores in an array what the step remembers from earlier steps.
@@ -308,23 +333,6 @@ static void addStep() {
                              Kept<double>{&halfStepVelocity}.numbers(), h));
   });
   add("kernelDampingWork", +[]() { return touching.dampingWork(); });
-  add("kernelLaw", +[](double exponent, double retardation, double slipVelocity, double bridge,
-                      double sticksBelow, std::string &regularization, bool jumps, long slips,
-                      long mostStatusChanges) {
-    // Parameters of (10)-(13) that all contact points share; see Law and Problem.
-    contact::Law &law = touching.law;
-    law.exponent = exponent;
-    law.retardation = retardation;
-    law.slipVelocity = slipVelocity;
-    law.bridge = bridge;
-    law.regularization = regularization == "sqrt" ? contact::sqrtOf
-      : regularization == "tanh" ? contact::tanhOf
-      : regularization == "linear" ? contact::linear : contact::linearPrinted;
-    law.jumps = jumps;
-    law.slips = int(slips);
-    touching.problem.sticksBelow = sticksBelow;
-    touching.problem.mostStatusChanges = int(mostStatusChanges);
-  });
 }
 
 extern "C" void openblas_set_num_threads(int) __attribute__((weak));
@@ -351,10 +359,12 @@ static void addKernels() {
   addStatuses();
   addInput();
   addBodies();
+  addStresses();
   addFunctions();
   addLoads();
   addSupports();
   addFactor();
+  addContactLaw();
   addStep();
   addContact();
 }

@@ -63,16 +63,16 @@ class Loads : public Term {
 };
 
 // Held unknowns have no equation: their forces are those of the supports, and of the planes of
-// symmetry, which balance all other terms. It is the last term of a sum. Unknowns that supports hold
-// move by d; the support has the velocities v0, v1 at the ends of the step, whose mean differs from
-// d/dt by s. With the force R the work of the support on the bodies is exactly
+// symmetry, which balance all other terms. It is the last term of a sum. Unknowns that supports
+// hold move by d; the support has the velocities v0, v1 at the ends of the step, whose mean differs
+// from d/dt by s. With the force R the work of the support on the bodies is exactly
 //   R.d + M (v1 - v0).s.
 class Supports : public Term {
  public:
   struct Held { int unknown, support, component;  const TimeFunction *motion; };
   std::vector<Held> held;
-  // Script arrays (ndof): forces, empty without supports [N/m; N]; velocity at the start of the step
-  // [m/s]; of held unknowns, else 0: increment of the step [m], velocity at its end [m/s].
+  // Script arrays (ndof): forces, empty without supports [N/m; N]; velocity at the start of the
+  // step [m/s]; of held unknowns, else 0: increment of the step [m], velocity at its end [m/s].
   Kept<double> reaction, v, increment, speed;
 
   Supports(const Elements &all, Bodies &allBodies, Inertia &ofBodies)
