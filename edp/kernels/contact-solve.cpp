@@ -259,15 +259,15 @@ Status Problem::solve(long mostContactMatrices, long &contactMatrices) {
     if (!done) {
       if (!std::isfinite(error)) return diverged;
       const bool searches = !hasFriction || matrices >= lineSearchFrom;
+      const bool direct = !hasFriction && correctForces();
       if (!hasFriction || error > (it == 0 ? 0.1 : 1e-3) * scale || error > 0.3 * errorBefore) {
         matrices++;
         if (hasFriction) contactMatrices++;
         if (!searches) linearise();
-        stiffen();
-        newton.make(B, slopes, S);
+        if (!direct) { stiffen();  newton.make(B, slopes, S); }
       }
       errorBefore = error;
-      correct(searches ? 1e-6 : 1e-3);         // a line search needs an accurate direction
+      if (!direct) correct(searches ? 1e-6 : 1e-3);   // a line search needs an accurate direction
       if (!advance(searches)) { if (error <= 1e-9 * scale) done = true;  else return diverged; }
     }
     if (done) {
@@ -351,6 +351,40 @@ void Problem::linearise() {
     for (int i = 0; i < slips; i++) at[slips * b + i] = factor * blend[i];
   }
   evaluate(&at);
+}
+
+bool Problem::correctForces() {
+  // The same increments as correct(), without friction, by a Cholesky factorisation for the loaded
+  // points a, D > 0: (D^-1 + G)_aa step_a = (D^-1 (t - tau) - G r)_a, G = B C B^T; r = t - tau at
+  // the other points, where step = r. Returns false for a diagonal C, many points, or if it fails.
+  if (isDiagonal(C, B.n)) return false;
+  Indices loaded;
+  step = unbalance;
+  for (int b = 0; b < B.blocks(); b++) if (slopes[b] > 0) { loaded.push_back(b);  step[b] = 0; }
+  const int m = loaded.size();
+  if (m > mostLoaded) return false;
+  displace(step, move);
+  const Eigen::Map<const Eigen::MatrixXd> compliance(C.data(), B.n, B.n);
+  Eigen::MatrixXd yielded = Eigen::MatrixXd::Zero(B.n, m), A(m, m);   // C B_a^T
+  Vector right(m);
+  for (int j = 0; j < m; j++)
+    for (int b = loaded[j], e = B.first[b]; e < B.first[b + 1]; e++)
+      yielded.col(j) += B.value[e] * compliance.col(B.column[e]);
+  for (int i = 0; i < m; i++) {
+    const int b = loaded[i];
+    A.row(i).setZero();
+    for (int e = B.first[b]; e < B.first[b + 1]; e++)
+      A.row(i) += B.value[e] * yielded.row(B.column[e]);
+    A(i, i) += 1 / slopes[b];
+    right[i] = unbalance[b] / slopes[b] - move[b];
+  }
+  const Eigen::LLT<Eigen::MatrixXd> factor(A);
+  if (factor.info() != Eigen::Success) return false;
+  right = factor.solve(right);
+  for (int i = 0; i < m; i++) step[loaded[i]] = right[i];
+  displace(step, move);
+  move = -move;
+  return true;
 }
 
 void Problem::correct(double share) {

@@ -100,6 +100,7 @@ class Problem {
   double sticksBelow = 0;                        // speed below which a slipping point sticks [m/s]
   int mostStatusChanges = 0;                     // of a point
   int matrices = 0, lineSearchFrom = 20;           // matrices of this solve; before the line search
+  int mostLoaded = 400;                          // points that correctForces() accepts
 
   void comply(const Vector &compliance);   // C: n x n values, or n if C is diagonal
 
@@ -119,6 +120,7 @@ class Problem {
   void evaluate(const Vector *at);
   void linearise();
   void correct(double share);
+  bool correctForces();
   bool advance(bool searches);
   int updateStatuses();
 };
