@@ -148,6 +148,7 @@ def test_a_stiff_beam_swings_back_to_a_fast_disc(tmp_path):
     assert result.summary["impulse"] == pytest.approx(225.5, rel=0.01)  # with dt = 0.5 us
 
 
+@pytest.mark.robustness
 def test_a_slender_free_body_swings_back_into_the_impact(tmp_path):
     """A light disc leaves the middle of a free bar slowly. The bar bends back and strikes it again
     after 38 ms, within its slowest period of 63 ms. The impulse is that of a run until 45 ms, to

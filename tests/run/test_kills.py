@@ -37,9 +37,7 @@ speed = [4, 8, 11]
 EARLY, LATE = "unfinished", "checkpoint"   # are in the folder of a run that goes on; LATE where it makes checkpoints
 # route, signal, receiver, what the folder holds by then, whether a finished run of another scene is there already
 KILLS = [
-    ("run", signal.SIGINT, "python", EARLY, False),
     ("run", signal.SIGKILL, "python", EARLY, True),
-    ("checkpoints", signal.SIGTERM, "python", LATE, False),
     ("checkpoints", signal.SIGKILL, "freefem", LATE, True),
     ("sweep", signal.SIGKILL, "python", EARLY, False),
     ("direct-checkpoints", signal.SIGKILL, "freefem", LATE, False),
