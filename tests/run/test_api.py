@@ -14,7 +14,7 @@ import ffimpact as ff
 from ffimpact import scene as files, schema
 from ffimpact.__main__ import main
 from ffimpact.output.results import read_history
-from tests.support.api import RUBBER, drop
+from tests.support.api import drop
 
 
 @pytest.fixture(scope="module")
@@ -96,22 +96,6 @@ def test_tables(result):
     assert 5 < len(lines) <= 14 and any(
         "impulse" in line and "±" in line and "N s/m" in line for line in lines
     )
-
-
-def test_figures_are_drawn_into_axes(result):
-    """Force and energies are those of the history. A given panel is used and returned."""
-    plt = pytest.importorskip("matplotlib.pyplot")
-    figure, panels = plt.subplots(2)
-    assert (
-        result.plot.force(ax=panels[0]) is panels[0]
-        and result.plot.energies(ax=panels[1]) is panels[1]
-    )
-    assert panels[0].lines[0].get_ydata().max() == pytest.approx(1e-3 * result["peak_force"])
-    for ax in (result.plot.velocities(), result.plot.shapes()):
-        assert ax.has_data()
-    with pytest.raises(ff.BadInput, match="von_mises"):
-        result.plot.shapes(field="stress")
-    plt.close("all")
 
 
 def test_a_force_is_filtered(result):
@@ -208,23 +192,6 @@ def test_states_are_as_many_as_the_scene_says(tmp_path):
     )
     some = ff.run(drop(), accuracy=0.3, estimate=False, figures=False, out=tmp_path / "some")
     assert len(none.fields) == 0 < len(some.fields) <= 41
-
-
-def test_friction_is_drawn_and_bodies_have_their_names(tmp_path):
-    """Two discs collide off centre."""
-    disc = {"radius": 0.03, "material": RUBBER}
-    pair = [
-        ff.Disc(name="a", position=(-0.031, 0.01), velocity=(2, 0), **disc),
-        ff.Disc(name="b", position=(0.031, -0.01), velocity=(-2, 0), **disc),
-    ]
-    scene = ff.Scene(bodies=pair, contact=ff.Contact(friction_static=0.5), accuracy=0.2)
-    record = ff.run(scene, estimate=False, figures=False, out=tmp_path / "run")
-    assert [line.get_label() for line in record.plot.force().lines] == ["normal", "friction"]
-    labels = {line.get_label() for line in record.plot.velocities().lines}
-    assert labels == {"vx a", "vx b", "vy a", "vy b"}
-    assert "rebound_vx" not in record.table.index and "rebound_vx_2" in record.table.index
-    compared = ff.compare(record, str(record.folder), names="impulse")
-    assert compared.agree.isna().all() and list(compared.index) == ["impulse"]
 
 
 def test_a_sweep(tmp_path):

@@ -6,8 +6,7 @@ import pandas as pd
 import pytest
 
 from ffimpact import scene
-from ffimpact.failure import Unreadable
-from ffimpact.report import compare, impacts
+from ffimpact.report import compare
 from ffimpact.running import run
 from verification.measure import bodies
 
@@ -123,20 +122,6 @@ def test_in_contact_at_the_end(tmp_path):
     assert rows.over.tolist() == [0] and rows.end.tolist() == [1e-3]
     rows, result = go(tmp_path, "disc-normal", COARSE | {"end_time": 1e-3, "body.1.position.2": 1.05})
     assert rows.empty and result.summary["restitution"] is None
-
-
-def test_bounces_are_drawn(tmp_path):
-    """A contact pair with several impacts has a figure of restitution without grazing intervals. A
-    damaged table is reported."""
-    rows, result = go(tmp_path, "disc-normal", COARSE | {"speed": 0, "body.1.position.2": 0.07, "gravity": 9.81, "end_time": 0.25, "accuracy": 0.3})
-    impacts.plt.close(figure := impacts.draw(rows.to_records(), ["body"], ["plane"]))
-    assert figure.axes[0].get_ylabel() == "restitution" and len(figure.axes[0].lines[0].get_xdata()) == len(rows)
-    light = rows.assign(impulse=[1.0] + [1e-3] * (len(rows) - 1)).to_records()
-    assert impacts.draw(light, ["body"], ["plane"]) is None and impacts.draw(rows[:1].to_records(), ["body"], ["plane"]) is None
-    (result.folder / "contacts.csv").write_text("body\n1\n")
-    (result.folder / "summary.json").unlink()
-    with pytest.raises(Unreadable, match="contacts.csv cannot be read: it lacks the columns partner, start"):
-        impacts.read(result.folder)
 
 
 def test_a_circle_that_turns_about_its_centre(tmp_path):

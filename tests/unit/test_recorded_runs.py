@@ -8,7 +8,7 @@ import pytest
 
 import ffimpact as ff
 from ffimpact.output.results import mechanical_energy
-from ffimpact.report import contact, drawing, report
+from ffimpact.report import contact, drawing, impacts, report
 from tests.support import loop
 from tests.support.records import evaluated
 
@@ -158,7 +158,25 @@ def test_pictures_by_method(result):
         result("discs").plot.modes()
 
 
+def test_light_impacts_are_not_drawn(result, tmp_path):
+    """Restitution is drawn over several impacts without grazing ones. A damaged table is named."""
+    rows = result("rest").contacts
+    figure = impacts.draw(rows.to_records(), ["disc"], ["plane"])
+    drawn = figure.axes[0].lines[0].get_xdata()
+    assert drawn == pytest.approx(1e3 * rows.start[rows.restitution.notna()]) and len(drawn) == 2
+    light = rows.assign(impulse=[1.0] + [1e-3] * (len(rows) - 1)).to_records()
+    assert impacts.draw(light, ["disc"], ["plane"]) is None and impacts.draw(rows[:1].to_records(), ["disc"], ["plane"]) is None
+    (tmp_path / "contacts.csv").write_text("body\n1\n")
+    with pytest.raises(ff.Unreadable, match="contacts.csv cannot be read: it lacks the columns partner, start"):
+        impacts.read(tmp_path)
+
+
 def test_forces_and_velocities_by_body(result):
+    """Lines have the names of bodies; a given panel is used and returned."""
+    figure, panels = plt.subplots(2)
+    assert result("discs").plot.force(ax=panels[0]) is panels[0] and result("discs").plot.energies(ax=panels[1]) is panels[1]
+    assert [line.get_label() for line in panels[0].lines] == ["normal", "friction"]
+    assert panels[0].lines[0].get_ydata().max() == pytest.approx(1e-3 * result("discs")["peak_force"])
     axes = result("discs").plot.velocities()
     assert {line.get_label() for line in axes.lines} == {"vx left", "vx right", "vy left", "vy right"}
     force = result("ball").plot.force(filter="CFC 1000")
@@ -175,5 +193,6 @@ def test_reports(result, name):
     assert "peak force" in text and "not estimated" in text and ("N s/m" in text) == (name in ("discs", "rest"))
     assert ("bounces" in report.report(run.record)) == (name == "rest") and str(run["steps"]) in text
     assert "<caption>" in run._repr_html_() and all(word in repr(run) for word in ("peak_force", "impulse"))
+    assert name != "discs" or ("rebound_vx" not in run.table.index and "rebound_vx_2" in run.table.index)
     table = ff.compare(run, run.folder)
     assert (table["run 1"] == table["run 2"]).all() and table.agree.isna().all()
