@@ -12,7 +12,7 @@ help: ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
 
 setup: $(READY) ## install what is missing: FreeFem++, system libraries, .venv with the packages of requirements.lock
-$(READY): requirements.lock orchestrate/setup.sh edp/program/describe.edp
+$(READY): requirements.lock orchestrate/setup.sh edp/program/version.edp
 	@orchestrate/setup.sh
 	@touch $@
 

@@ -10,7 +10,7 @@ PATH=$PATH:/sbin:/usr/sbin
 libraries=$(ldconfig -p)
 has_library() { [[ $libraries == *"$1"* ]]; }
 freefem=${FREEFEM:-FreeFem++}
-probe() { answer=$("$freefem" -nw -ne -v 0 edp/program/describe.edp </dev/null 2>&1) && [[ $answer == *version* ]]; }
+probe() { answer=$("$freefem" -nw -ne -v 0 edp/program/version.edp </dev/null 2>&1) && [[ $answer == *version* ]]; }
 
 find_python() {   # the first python that is new enough and can make a venv
   local candidate
@@ -69,7 +69,7 @@ if [ ${#tools[@]} -gt 0 ]; then install "${tools[@]}" || stop "cannot install ${
 # Debian's FreeFem++ looks for its plugins in a folder that does not exist.
 if ! probe; then
   plugins=/usr/lib/freefem++
-  FF_LOADPATH=$plugins probe || stop "FreeFem++ does not run edp/program/describe.edp: ${answer//$'\n'/ | }"
+  FF_LOADPATH=$plugins probe || stop "FreeFem++ does not run edp/program/version.edp: ${answer//$'\n'/ | }"
   line="loadpath += \"$plugins\""
   file=${HOME:-}/.freefem++.pref
   if [ -n "${HOME:-}" ] && { grep -qsF "$line" "$file" || echo "$line" >> "$file"; } 2>/dev/null && probe; then

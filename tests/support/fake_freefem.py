@@ -17,7 +17,7 @@ from ffimpact.freefem.arrays import unpacked
 
 COLUMNS = ("t dt normal_force friction_force kinetic elastic contact friction_work external_work balance momentum_x momentum_y "
            "angular_momentum vx vy spin max_penetration contact_size sliding_fraction min_jacobian min_stretch newton_iterations min_ellipticity")
-# The real FreeFem++ answers describe.edp, which needs no physics.
+# The real FreeFem++ answers version.edp, which needs no physics.
 REAL = os.environ.get("FAKE_REAL") or shutil.which("FreeFem++")
 BANNERS = {"old": '{"version": "4.6"}', "ten": '-- FreeFem++ v4.10 (date - git no git)\n{"version": "4.1"}'}
 ENERGY, MASS, SPEED, CONTACT = 432.8, 13.525, 8.0, 4.67e-3
@@ -151,7 +151,7 @@ def summary(status: str = "ok", message: str = "") -> dict:
 
 def main(arguments: list[str]) -> int:
     mode = os.environ.get("FAKE", "ok")
-    if any("/describe" in word for word in arguments):
+    if any("/version.edp" in word for word in arguments):
         if mode == "noplugin":
             print("Load error: Element_QF")
             return 2

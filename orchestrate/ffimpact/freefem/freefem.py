@@ -29,11 +29,11 @@ from .compiled import QUIET, compiled
 __all__ = [
     "At",
     "CORES",
-    "DESCRIBE",
     "FreeFem",
     "HOW",
     "LAUNCHER",
     "Process",
+    "VERSION",
     "find",
     "limited",
     "quick_clock",
@@ -48,7 +48,7 @@ CORES: int = len(os.sched_getaffinity(0))
 OLDEST = (4, 9)
 # Debian installs the plugins in this folder, in which its FreeFem++ does not search for them.
 DEBIAN_PLUGINS = "/usr/lib/freefem++"
-DESCRIBE = "edp/program/describe.edp"
+VERSION = "edp/program/version.edp"
 CLOCK = ROOT / "edp/program/clock.c"
 OPEN_FILES = "/proc/self/fd/"
 BANNER = re.compile(r"FreeFem\+\+ v(\d+\.\d\d?)\b")
@@ -93,14 +93,13 @@ Progress = Callable[[At], None]
 
 @dataclass(frozen=True)
 class FreeFem:
-    """A FreeFem++ that can run the scripts of this program: its path, its version, the environment
-    that it needs and the answer of describe.edp.
+    """A FreeFem++ that can run the scripts of this program: its path, its version and the environment
+    that it needs.
     """
 
     command: str
     version: str
     environment: dict[str, str]
-    description: dict[str, Any]
     plugin: str = ""  # the command-line word that loads the compiled kernels
 
     def words(self, script: str | Path, *flags: str) -> list[str]:
@@ -183,15 +182,14 @@ def _find(variables: tuple[tuple[str, str], ...]) -> FreeFem:
         f";{include_path}" if include_path else ""
     )
     environment = _blas_kernels() | environment | quick_clock(environment)
-    description = _probe(command, environment)
-    if not description and "FF_LOADPATH" not in environment:
+    version = _version(command, environment)
+    if not version and "FF_LOADPATH" not in environment:
         environment["FF_LOADPATH"] = DEBIAN_PLUGINS
-        description = _probe(command, environment)
-    if not description:
+        version = _version(command, environment)
+    if not version:
         raise NotInstalled(
             f"{command} lacks its plugin Element_QF, is older than 4.9 or does not start; {HOW}"
         )
-    version = description["version"]
     if tuple(map(int, version.split(".")[:2])) < OLDEST:
         raise NotInstalled(
             f"{command} is version {version}, needed is {OLDEST[0]}.{OLDEST[1]} or newer; {HOW}"
@@ -199,7 +197,7 @@ def _find(variables: tuple[tuple[str, str], ...]) -> FreeFem:
     plugin = kernels.build(command, version, environment)
     if not plugin:
         raise NotInstalled(f"the compiled kernels cannot be built; {kernels.HOW}")
-    return FreeFem(command, version, environment, description, plugin)
+    return FreeFem(command, version, environment, plugin)
 
 
 def _threads(threads: str) -> dict[str, str]:
@@ -269,18 +267,18 @@ def quick_clock(environment: Mapping[str, str]) -> dict[str, str]:
     return {"LD_PRELOAD": ":".join([name, *environment.get("LD_PRELOAD", "").split()])}
 
 
-def _probe(command: str, environment: dict[str, str]) -> dict[str, Any] | None:
-    """Returns the answer of edp/program/describe.edp, or None if FreeFem++ does not start or lacks a
-    plugin that the scenes load. The version is taken from the banner: scripts see it as
-    a number, in which 4.10 equals 4.1.
+def _version(command: str, environment: dict[str, str]) -> str:
+    """Returns the version by edp/program/version.edp, or "" if FreeFem++ does not start or lacks a
+    plugin that the scenes load. It is taken from the banner: scripts see it as a number, in which
+    4.10 equals 4.1.
     """
     try:
-        output = FreeFem(command, "", environment, {}).call(DESCRIBE, "-v", "1", timeout=60).stdout
+        output = FreeFem(command, "", environment).call(VERSION, "-v", "1", timeout=60).stdout
+        answer = json.loads(output[output.index("{") :])
         banner = BANNER.search(output)
-        answer: dict[str, Any] = json.loads(output[output.index("{") :])
-        return answer | ({"version": banner[1]} if banner else {})
+        return banner[1] if banner else str(answer["version"])
     except (OSError, subprocess.TimeoutExpired, ValueError):
-        return None
+        return ""
 
 
 # ---- running processes
