@@ -4,7 +4,6 @@ use.
 
 from .api import (
     Plan as Plan,
-    Progress as Progress,
     Study as Study,
     plan as plan,
     run as run,
@@ -59,6 +58,7 @@ from .model import (
     Scene as Scene,
 )
 from .result import (
+    Progress as Progress,
     Result as Result,
     compare as compare,
     load as load,

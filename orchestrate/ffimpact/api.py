@@ -5,13 +5,11 @@ foretell what a run will take.
 from __future__ import annotations
 
 import hashlib
-import io
 import itertools
 import json
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -25,8 +23,7 @@ from .input.parameter import plain
 from .model import Scene
 from .places import RESULTS
 from .progress import muted
-from .report import report
-from .result import Result
+from .result import Progress, Result, of_run
 from .running import run as running
 from .running.plan import Plan
 from .sweeps.study import place, study
@@ -65,39 +62,19 @@ def run(
     """
     if not isinstance(out or "", str | Path):
         raise BadInput(f"out: '{out}' is no path (accepted: that of a folder)")
+    overrides = _overrides(entries, more)
     with muted(progress is False):
-        overrides = _overrides(entries, more)
         loaded, default_folder = _loaded(scene, overrides)
-        record = running.run(
+        return of_run(
             loaded,
             overrides,
             out or default_folder,
             force=force,
-            progress=progress,
             estimate=estimate,
-            watch=watch and (lambda at, where: watch(Progress(at.t, at.steps, at.share, where))),
+            figures=figures,
+            progress=progress,
+            watch=watch,
         )
-        if figures:
-            report.draw(record)
-    return Result(record)
-
-
-@dataclass(frozen=True)
-class Progress:
-    """A run that is under way: its time t [s], the number of its steps, the share of its steps that
-    is done (estimated, 0 to 1), and the folder of its files.
-    """
-
-    t: float
-    steps: int
-    share: float
-    folder: Path
-
-    @property
-    def history(self) -> pd.DataFrame:
-        """The time history up to now, as Result.history."""
-        text = (self.folder / "history.csv").read_text()
-        return pd.read_csv(io.StringIO(text[: text.rindex("\n") + 1]))
 
 
 def plan(

@@ -20,7 +20,8 @@ from typing import Annotated, Any, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from . import scene as files
-from .failure import BadInput
+from .failure import BadInput, brief
+from .geometry import place_functions
 from .geometry.time_functions import tabulated
 from .input import models
 from .input.dimension import AXISYMMETRIC, DIMENSIONS, PLANE_STRAIN, SOLID, Dimension
@@ -28,6 +29,7 @@ from .input.models import Body, Contact, Obstacle
 from .input.parameter import plain
 from .input.toml_text import to_toml
 from .scenes import conditions, scene as reading
+from .scenes.bodies import FIELDS
 
 __all__ = ["Scene"]
 
@@ -83,8 +85,10 @@ class Scene(models.Top):
         """
         if self.dimension:
             return DIMENSIONS[self.dimension]
-        if any(isinstance(body.position, list) and len(body.position) == 3 for body in self.bodies):
-            return SOLID
+        points = [(getattr(body, "points", None) or [None])[0] for body in self.bodies]
+        for place in (*points, *(body.position for body in self.bodies)):
+            if isinstance(place, list) and len(place) == 3:
+                return SOLID
         plane = all(PLANE_STRAIN in body.dimensions for body in self.bodies)
         return PLANE_STRAIN if plane else AXISYMMETRIC
 
@@ -113,12 +117,32 @@ class Scene(models.Top):
             for key in ("support", "load")
             for k, table in enumerate(holder.get(key, []), 1)
         ]
+        self._tabulate_fields(tables)
         letters = dict.fromkeys(("motion", "traction"), "xyz"[: self.kind.axes])
         for entry, table in places:
             for name, own in (letters | {"pressure": "p", "rotation": "r"}).items():
                 if name in table:
                     at = f"{entry}.{name}"
                     table[name] = tabulated(at, table[name], own, self.end_time or 0.0)
+
+    def _tabulate_fields(self, tables: dict[str, Any]) -> None:
+        """Puts tables in place of Python functions of place at the start."""
+        places = [(k, name) for k, body in enumerate(tables["body"]) for name in FIELDS
+                  if callable(body.get(name))]  # fmt: skip
+        if not places:
+            return
+        # without the functions, to see where the bodies are
+        others = [
+            {key: value for key, value in body.items() if key not in FIELDS}
+            for body in tables["body"]
+        ]
+        for k, body in enumerate(
+            reading.read(tables | {"body": others}, self.folder, "scene").bodies
+        ):
+            for name in [name for other, name in places if other == k]:
+                low, high = body.box(self.kind)
+                entry, table = f"body.{k + 1}.{name}", tables["body"][k]
+                table[name] = place_functions.tabulated(entry, table[name], low, high)
 
     def checked(self, name: str = "scene") -> reading.Scene:
         """Returns the scene as the program reads it. Raises BadInput if the program does not accept
@@ -188,7 +212,7 @@ class Scene(models.Top):
             parts |= {f"{key} {k}": entries for k, entries in enumerate(table.pop(key, []), 1)}
         parts |= {"contact": table.pop("contact", {}), "run": table}
         return [
-            (name, ", ".join(f"{entry} = {value}" for entry, value in entries.items()))
+            (name, ", ".join(f"{entry} = {brief(value)}" for entry, value in entries.items()))
             for name, entries in parts.items()
             if entries
         ]

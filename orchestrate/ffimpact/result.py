@@ -7,7 +7,9 @@ and states.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import io
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from html import escape
 from pathlib import Path
@@ -16,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 import pandas as pd
 
 from .failure import BadInput, Unreadable, unknown
+from .freefem.freefem import At
 from .input.dimension import AXISYMMETRIC, per_metre
 from .output.columns import units
 from .output.errors import errors
@@ -24,15 +27,35 @@ from .output.filters import channel_class, filtered
 from .output.results import Record, numbers, read_record, read_summary, reading
 from .output.states import Fields
 from .places import shown
+from .progress import muted
 from .report import report
+from .running import run as running
 
 if TYPE_CHECKING:
     from .plot import Plots
 
-__all__ = ["Result", "compare", "load"]
+__all__ = ["Progress", "Result", "compare", "load", "of_run"]
 
 # Numbers that `Result.table` lists after those of the report.
 ALSO = ("thresholded_contact_time", "energy_initial", "energy_final")
+
+
+@dataclass(frozen=True)
+class Progress:
+    """A run that is under way: its time t [s], the number of its steps, the share of its steps that
+    is done (estimated, 0 to 1), and the folder of its files.
+    """
+
+    t: float
+    steps: int
+    share: float
+    folder: Path
+
+    @property
+    def history(self) -> pd.DataFrame:
+        """The time history up to now, as Result.history."""
+        text = (self.folder / "history.csv").read_text()
+        return pd.read_csv(io.StringIO(text[: text.rindex("\n") + 1]))
 
 
 class Result:
@@ -201,6 +224,42 @@ class Result:
         revolution = self.summary["provenance"]["script"] == AXISYMMETRIC.script
         return Fields(self.folder, revolution, self.summary.get("symmetric_along", ()))
 
+    def extend(
+        self,
+        end_time: float,
+        *,
+        out: str | Path | None = None,
+        force: bool = False,
+        estimate: bool = True,
+        figures: bool = True,
+        progress: bool | None = None,
+        watch: Callable[[Progress], object] | None = None,
+    ) -> Result:
+        """Goes on from the end of the run to a later `end_time` [s]; returns the result of the whole.
+
+        The mesh stays, the records are those of the whole run, the coarser runs of the estimate begin
+        anew. The default of `out` is a folder beside that of the result, which stays as it is. The
+        other arguments are those of run(). A Python function of time was tabulated up to the former
+        end; after it, it is constant. Raises BadInput if `end_time` is not after the end, Unreadable if
+        the run is one of another version.
+        """
+        if not isinstance(out or "", str | Path):
+            raise BadInput(f"out: '{out}' is no path (accepted: that of a folder)")
+        with muted(progress is False):
+            longer, earlier = running.extended(self.folder, self.summary, end_time)
+            beside = f"{self.folder.name}-until-{longer.number('end_time'):g}"
+            return of_run(
+                longer,
+                {},
+                out or self.folder.with_name(beside),
+                force=force,
+                estimate=estimate,
+                figures=figures,
+                progress=progress,
+                watch=watch,
+                earlier=earlier,
+            )
+
     def probe(self, *point: float, body: int = 1) -> pd.DataFrame:
         """The motion of a material point of a body, from its centre of mass on [m]: a row for each kept
         state with position, velocity and stresses. See Fields.probe.
@@ -219,6 +278,26 @@ class Result:
         from .view import view
 
         return view(self, path, field, revolved)
+
+
+def of_run(
+    scene: Any,
+    overrides: dict[str, Any],
+    out: str | Path,
+    *,
+    figures: bool,
+    watch: Callable[[Progress], object] | None,
+    **options: Any,
+) -> Result:
+    """Runs a scene as it was read and returns its result; `options` are those of running.run.run()."""
+
+    def seen(at: At, where: Path) -> object:
+        return watch and watch(Progress(at.t, at.steps, at.share, where))
+
+    record = running.run(scene, overrides, out, watch=seen if watch else None, **options)
+    if figures:
+        report.draw(record)
+    return Result(record)
 
 
 def _bar(error: float | None) -> str:

@@ -354,6 +354,9 @@ def test_a_run_is_watched_and_stopped(tmp_path):
     assert not (result.folder / "stop").exists()
     again = ff.run(drop(**given), figures=False, out=tmp_path / "run", watch=lambda progress: True)
     assert not again.reused and again["ended"] == "stopped"
+    end = again.history.t.iloc[-1] + 2e-5
+    longer = again.extend(end, estimate=False, figures=False)
+    assert longer["ended"] == "end_time" and longer.history.t.iloc[-1] == pytest.approx(end)
 
 
 def test_an_error_of_the_function_that_watches_ends_the_run(tmp_path):

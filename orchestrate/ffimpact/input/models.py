@@ -17,6 +17,7 @@ from pydantic import (
     BaseModel,
     BeforeValidator,
     ConfigDict,
+    Field,
     PrivateAttr,
     ValidationError,
     model_serializer,
@@ -34,10 +35,13 @@ from .rules import (
     InSpace,
     Name,
     Numbers,
+    OfPlace,
     Partners,
+    Parts,
     Place,
     Points,
     Polygons,
+    Rows,
     Text,
     Vector,
     Where,
@@ -626,6 +630,12 @@ class Body(OfMaterial):
     spin: Annotated[Any, InSpace(shared("spin"), "angular velocity [rad/s]; in space a vector")] = (
         None
     )
+    initial_velocity: Annotated[
+        Any, OfPlace("of the points of the body [m/s], on top of velocity and spin")
+    ] = None
+    initial_displacement: Annotated[
+        Any, OfPlace("of the points of the body [m], which deforms it")
+    ] = None
 
     @model_validator(mode="before")
     @classmethod
@@ -795,13 +805,34 @@ class Box(Body):
 
 
 class Mesh(Drawn):
-    """A body from a mesh or a CAD file."""
+    """A body from a mesh or a CAD file, or from arrays: `points`, `cells` and `labels`.
+
+    The arrays may be those of numpy or meshio. Messages about them count vertices from 1.
+    """
 
     shape = "mesh"
     dimensions = (PLANE_STRAIN, AXISYMMETRIC, SOLID)
     file: Annotated[str | None, Text("path, from the folder of the scene on")] = None
+    points: Annotated[
+        Any, Rows((2, 3), "points of a mesh, in place of a file"), Field(repr=False)
+    ] = None
+    cells: Annotated[
+        Any,
+        Rows((3, 4), "corners of its triangles or tetrahedra, as numbers of points", True),
+        Field(repr=False),
+    ] = None
+    labels: Annotated[
+        Any,
+        Parts(
+            Rows((2, 3), whole=True),
+            "parts of its boundary, for `where`; 'contact' may come into contact (without it all), "
+            "'symmetry' is on the axis of revolution",
+        ),
+        Field(repr=False),
+    ] = None
     scale: Annotated[
-        float | None, number(1e-9, 1e9, "m", "a unit of length of the file; STEP declares its own")
+        float | None,
+        number(1e-9, 1e9, "m", "a unit of length of the file or points; STEP declares its own"),
     ] = None
 
 

@@ -10,6 +10,8 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from ..failure import BadInput, brief, suggestion
 from .dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
 from .parameter import Parameter, Rule
@@ -22,11 +24,14 @@ __all__ = [
     "LONGEST",
     "Name",
     "Numbers",
+    "OfPlace",
     "Partners",
+    "Parts",
     "Place",
     "Points",
     "Polygons",
     "REGIONS",
+    "Rows",
     "SHORTEST",
     "Text",
     "Vector",
@@ -40,6 +45,7 @@ __all__ = [
 LONGEST = 1e9  # largest accepted length [m] and velocity [m/s]
 # Largest number of points of a polygon or a chain, whose sides are compared with each other.
 MOST = 2000
+LARGEST = 2_000_000  # largest number of points, cells or sides of a mesh
 SHORTEST = 1e-9  # smallest accepted length [m]
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_.-]*")
 # The two entries of each kind of region. Points and directions have a component for each axis; a
@@ -228,6 +234,76 @@ class Points(Rule):
 
 
 @dataclass(frozen=True)
+class Rows(Rule):
+    """A list of rows of numbers, of one of these `widths`; `whole` ones are numbers of points."""
+
+    widths: tuple[int, ...]
+    meaning: str = ""
+    whole: bool = False
+
+    @property
+    def accepted(self) -> str:
+        kind = (
+            "numbers of points, from 0"
+            if self.whole
+            else f"numbers, each {-LONGEST:g} to {LONGEST:g}"
+        )
+        return f"1 to {LARGEST} rows of {' or '.join(map(str, self.widths))} {kind}"
+
+    def checked(self, value: Any, dimension: Dimension | None) -> Any:
+        try:
+            rows = np.array(value, dtype=float)
+        except (TypeError, ValueError):  # text, or rows of different lengths
+            rows = np.empty(0)
+        if rows.ndim != 2 or rows.shape[1] not in self.widths or not 1 <= len(rows) <= LARGEST:
+            raise BadInput(f": '{brief(value)}' are no such rows (accepted: {self.accepted})")
+        wrong = ~(abs(rows) <= LONGEST)
+        if self.whole:
+            wrong |= (rows < 0) | (rows % 1 != 0)
+        if wrong.any():
+            k = int(wrong.any(axis=1).argmax())
+            raise BadInput(f": row {k} is {brief(value[k])} (accepted: {self.accepted})")
+        return (rows.astype(int) if self.whole else rows).tolist()
+
+    def schema(self) -> dict[str, Any]:
+        number = {"type": "integer", "minimum": 0} if self.whole else {"type": "number"}
+        row = {
+            "type": "array",
+            "items": number,
+            "minItems": min(self.widths),
+            "maxItems": max(self.widths),
+        }
+        return {"type": "array", "items": row, "minItems": 1, "maxItems": LARGEST}
+
+
+@dataclass(frozen=True)
+class Parts(Rule):
+    """Parts of the boundary of a mesh by name, each with rows of numbers of points."""
+
+    sides: Rows
+    meaning: str = ""
+
+    @property
+    def accepted(self) -> str:
+        return f"a table of names, each with {self.sides.accepted}"
+
+    def checked(self, value: Any, dimension: Dimension | None) -> Any:
+        if not isinstance(value, dict):
+            raise BadInput(f": '{brief(value)}' is no table (accepted: {self.accepted})")
+        parts = {}
+        for name, rows in value.items():
+            Name().checked(name, dimension)
+            try:
+                parts[name] = self.sides.checked(rows, dimension)
+            except BadInput as error:
+                raise BadInput(f".{name}{error}") from None
+        return parts
+
+    def schema(self) -> dict[str, Any]:
+        return {"type": "object", "additionalProperties": self.sides.schema()}
+
+
+@dataclass(frozen=True)
 class Polygons(Rule):
     """A list of polygons."""
 
@@ -324,6 +400,16 @@ class Function(Rule):
     def schema(self) -> dict[str, Any]:
         kinds = ["string", "object", "number"] if self.single else ["string", "object", "array"]
         return {"type": kinds}
+
+
+@dataclass(frozen=True)
+class OfPlace(Function):
+    """A vector at each place at the start; geometry/place_functions.py checks it."""
+
+    accepted: str = "numbers, expressions of x, y (, z) [m] in quotes for each axis, or a table"
+
+    def schema(self) -> dict[str, Any]:
+        return {"type": ["array", "object"]}
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from ..geometry.outlines import (
 )
 from ..input.models import Body, Mesh, Polygon, Ring
 from ..input.parameters import Table
-from . import mesh, plane_file
+from . import given, mesh, plane_file
 
 __all__ = ["check_simple", "mesh_file", "mesh_outline", "motion", "shape", "velocity"]
 
@@ -155,6 +155,8 @@ def mesh_file(body: Mesh, folder: Path, of_revolution: bool = False) -> mesh.Mes
     section to the right of an axis that it does not reach. Raises BadInput if the mesh is not
     accepted.
     """
+    if given.is_given(body):
+        return _of_whole_body(body, given.plane(body), of_revolution)
     name = body.file or ""
     if "\0" in name or not _may_be_read(folder / name):
         raise BadInput(
@@ -164,10 +166,17 @@ def mesh_file(body: Mesh, folder: Path, of_revolution: bool = False) -> mesh.Mes
         body_mesh = plane_file.load(folder / name)
     except BadInput as error:
         raise BadInput(f"{body.at('file')}: {brief(name)}: {error}") from None
+    return _of_whole_body(body, body_mesh, of_revolution)
+
+
+def _of_whole_body(body: Mesh, body_mesh: mesh.Mesh, of_revolution: bool) -> mesh.Mesh:
+    """The mesh in m. Raises BadInput if it is half a body and not `of_revolution`."""
     if not of_revolution and (body_mesh.labels == mesh.AXIS).any():
         raise BadInput(
-            f"{body.at('file')}: '{brief(name)}' has edges with the label {mesh.AXIS} of a symmetry axis (accepted: whole bodies, "
+            f"{body.at('file')}: '{brief(body.file)}' has edges with the label {mesh.AXIS} of a symmetry axis (accepted: whole bodies, "
             f"labels {mesh.FREE}: contact boundary, 3 and more: free boundary without contact)"
+            if body.file
+            else f"{body.at('labels')}.symmetry: of a whole body (accepted: in a scene of revolution)"
         )
     return body_mesh.scaled(body.scale or 1.0)
 

@@ -17,7 +17,7 @@ import tempfile
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
@@ -93,7 +93,8 @@ class Mesh:
 
     `points` (n, 2) are in m, `triangles` (t, 3) are counter-clockwise, `edges` (e, 2) of the
     boundary have the `labels` (e,). `arc_centres` (e, 2) [m], of meshes of files, are the centres of the
-    circles on which edges lie, nan for straight edges.
+    circles on which edges lie, nan for straight edges. `groups` are the numbers of the edges of parts
+    of the boundary by name.
     """
 
     points: np.ndarray
@@ -101,6 +102,7 @@ class Mesh:
     edges: np.ndarray
     labels: np.ndarray
     arc_centres: np.ndarray | None = None
+    groups: dict[str, np.ndarray] = field(default_factory=dict)
     NEVER: ClassVar[int] = 3  # label of edges that never come into contact
 
     @property

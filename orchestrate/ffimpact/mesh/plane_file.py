@@ -15,7 +15,7 @@ from ..failure import BadInput
 from . import gmsh_file
 from .mesh import AXIS, FREE, SIDES, WIDEST, Mesh, pieces
 
-__all__ = ["load", "on_circle"]
+__all__ = ["checked", "load", "on_circle"]
 
 MOST = 2_000_000  # largest number of vertices, triangles or edges
 MOST_LABEL = 2_000_000_000
@@ -41,6 +41,13 @@ def load(path: Path) -> Mesh:
     except OSError as error:
         raise BadInput(f"cannot be read: {error.strerror}") from None
     made = gmsh_file.load(path) if of_gmsh else _read(text)
+    return checked(made)
+
+
+def checked(made: Mesh) -> Mesh:
+    """The mesh with the centres of the circles on which edges lie; raises BadInput if it cannot be
+    used.
+    """
     _check(made)
     return replace(made, arc_centres=_arc_centres(made))
 

@@ -20,7 +20,7 @@ from .mesh import FREE, Gmsh, Sizes, boundary, in_own_process, pieces
 from .solid_mesh import SolidMesh, cell_volumes, cells_of, generate
 
 __all__ = [
-    "GEOMETRIES", "Geometry", "MESHES", "declares_unit", "is_geometry", "meshed", "read",
+    "GEOMETRIES", "Geometry", "MESHES", "check", "declares_unit", "is_geometry", "meshed", "read",
     "takes_in_others",
 ]  # fmt: skip
 
@@ -158,22 +158,12 @@ def _meshed(path: Path, sizes: Sizes | None, cut: float) -> SolidMesh:
 def _labelled(model: Gmsh) -> SolidMesh:
     """The mesh of a gmsh model, with labels of boundary faces from its physical surfaces.
 
-    Raises BadInput if a tetrahedron is flat, if the mesh is not one connected piece, or if the
-    physical surface `contact` is not on the boundary.
+    Raises BadInput if the mesh cannot be used, or if the physical surface `contact` is not on the
+    boundary.
     """
     points, cells = cells_of(model)
-    volumes = cell_volumes(points, cells)
-    if not (volumes > 1e-12 * np.ptp(points, axis=0).max() ** 3 / len(cells)).all():
-        raise BadInput(
-            f"a tetrahedron is flat: its volume is {np.nanmin(volumes):.3g} m3, or it has a corner that is no number"
-        )
-    count = len(np.unique(pieces(len(points), cells)[cells[:, 0]]))
-    if count > 1:
-        raise BadInput(
-            f"its tetrahedra are {count} pieces that hang together nowhere (accepted: one, a [[body]] table and a file a piece)"
-        )
+    check(points, cells)
     faces = boundary(cells)
-    _check_surface(points, faces)
     named = _contact_triangles(model)
     if named is None:
         return SolidMesh(points, cells, faces, np.full(len(faces), FREE))
@@ -193,6 +183,23 @@ def _labelled(model: Gmsh) -> SolidMesh:
     if not (labels == FREE).any():
         raise BadInput(f"its physical surface '{CONTACT}' is not on its boundary")
     return SolidMesh(points, cells, faces, labels)
+
+
+def check(points: np.ndarray, cells: np.ndarray) -> None:
+    """Raises BadInput if a tetrahedron is flat or the mesh is not one piece that hangs together by
+    faces.
+    """
+    volumes = cell_volumes(points, cells)
+    if not (volumes > 1e-12 * np.ptp(points, axis=0).max() ** 3 / len(cells)).all():
+        raise BadInput(
+            f"a tetrahedron is flat: its volume is {np.nanmin(volumes):.3g} m3, or it has a corner that is no number"
+        )
+    count = len(np.unique(pieces(len(points), cells)[cells[:, 0]]))
+    if count > 1:
+        raise BadInput(
+            f"its tetrahedra are {count} pieces that hang together nowhere (accepted: one, a [[body]] table and a file a piece)"
+        )
+    _check_surface(points, boundary(cells))
 
 
 def _check_surface(points: np.ndarray, faces: np.ndarray) -> None:

@@ -6,7 +6,7 @@ z = 0, 4 never comes into contact.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import ClassVar
 
@@ -79,7 +79,8 @@ class SolidMesh:
 
     `points` (n, 3) are in m. `cells` (t, 4) are tetrahedra of positive volume. `faces` (f, 3) of
     the boundary are counter-clockwise seen from outside, with their `labels` (f,). `curved` are the
-    spheres and cylinders on which faces lie.
+    spheres and cylinders on which faces lie. `groups` are the numbers of the faces of parts of the
+    boundary by name.
     """
 
     points: np.ndarray
@@ -87,6 +88,7 @@ class SolidMesh:
     faces: np.ndarray
     labels: np.ndarray
     curved: tuple[Curved, ...] = ()
+    groups: dict[str, np.ndarray] = field(default_factory=dict)
     NEVER: ClassVar[int] = 4  # label of faces that never come into contact
 
     @property

@@ -19,7 +19,7 @@ from ..geometry import outlines, tumbling
 from ..geometry.outlines import Turn
 from ..input.models import Body, Mesh, Shell, Tube
 from ..input.parameters import Table
-from . import curved, flat, solid_file
+from . import curved, flat, given, solid_file
 from .mesh import Sizes
 from .revolution import check_radii
 from .solid_mesh import MOST_CELLS, SolidMesh, expected_cells, mesh_shape
@@ -521,6 +521,8 @@ def shape(body: Body, folder: Path) -> tuple[Solid, SolidMesh | None, np.ndarray
 
 def _of_file(body: Mesh, folder: Path) -> tuple[Solid, SolidMesh | None, np.ndarray]:
     name, scale = body.file, body.scale or 1.0
+    if given.is_given(body):
+        return _of_mesh(given.solid(body).scaled(scale))
     if not name:
         raise BadInput(
             f"{body.at('file')}: is missing (accepted: {', '.join(solid_file.MESHES + solid_file.GEOMETRIES)})"
@@ -535,20 +537,26 @@ def _of_file(body: Mesh, folder: Path) -> tuple[Solid, SolidMesh | None, np.ndar
             f"{body.at('scale')}: '{body.value_text('scale')}' for '{path.name}', which declares its unit of length "
             f"(accepted: without scale, or files that declare none)"
         )
+    solid, centred, centre = _of_mesh(file_mesh)
+    if solid_file.is_geometry(path):
+        geometry = solid_file.Geometry(path, scale, centre, centred)
+        return replace(solid, geometry=geometry), None, centre
+    return solid, centred, centre
+
+
+def _of_mesh(made: SolidMesh) -> tuple[Solid, SolidMesh, np.ndarray]:
+    """The solid of a mesh, a ball if all its faces lie on one sphere; the mesh about the centre."""
     sphere = next(
         (
             patch
-            for patch, own in curved.surfaces(file_mesh.points, file_mesh.faces)
-            if not len(patch.axis) and len(own) == len(file_mesh.faces)
+            for patch, own in curved.surfaces(made.points, made.faces)
+            if not len(patch.axis) and len(own) == len(made.faces)
         ),
         None,
     )
-    centre = sphere.centre if sphere else file_mesh.centre
-    centred = file_mesh.moved(-centre)
+    centre = sphere.centre if sphere else made.centre
+    centred = made.moved(-centre)
     shape = ball(sphere.radius) if sphere else surface(centred.points[centred.faces])
-    if solid_file.is_geometry(path):
-        geometry = solid_file.Geometry(path, scale, centre, centred)
-        return Solid(shape, np.zeros(3), np.eye(3), geometry), None, centre
     return Solid(shape, np.zeros(3), np.eye(3)), centred, centre
 
 

@@ -88,6 +88,7 @@ OWN = (
     "checkpoint",
     "checkpoint.new",
     "checkpoint.json",
+    "last-state",
     "body-files/*",
     "fields.pvd",
     *FIELDS,

@@ -40,6 +40,7 @@ from ..output.results import (
     digest,
     files_of,
     read_answers,
+    read_history,
     read_json,
     read_scene,
     read_summary,
@@ -47,18 +48,19 @@ from ..output.results import (
 )
 from ..places import INSTALLED, PACKAGE, RESULTS, ROOT, shown
 from ..progress import Line, work
-from ..scene import Scene
+from ..scene import Scene, load
 from ..scenes.mirror import symmetric_along
 from .forecast import cure, runs
 from .outcome import FAILURES
 from .plan import Plan, measure
-from .solver import Solver, Watch
+from .solver import LAST_STATE, Earlier, Solver, Watch
 
 __all__ = [
     "DECISIVE",
     "states",
     "code_hash",
     "commit",
+    "extended",
     "plan",
     "reusable",
     "run",
@@ -82,6 +84,7 @@ def run(
     progress: bool | None = None,
     estimate: bool = True,
     watch: Watch | None = None,
+    earlier: Earlier | None = None,
 ) -> Record:
     """Runs `scene`, with the parameters `overrides`, in the folder `out` (default:
     results/<scene>), or reuses the finished run in that folder. Returns the Record of the run.
@@ -90,7 +93,8 @@ def run(
     run continues from its last checkpoint. Progress is shown unless `progress` is False
     (progress.py). With `estimate` coarser runs estimate the error; finer runs follow until the
     error is below the requested accuracy (output/estimate.py). If `watch` ends the run, it has no
-    estimate and is never reused. Raises Failure with the exit code of the run contract.
+    estimate and is never reused. With `earlier` the run goes on from the end of an earlier one, of
+    the same scene up to end_time. Raises Failure with the exit code of the run contract.
     """
     started = time.monotonic()
     scene = scene.override(overrides or {})
@@ -115,14 +119,14 @@ def run(
         request_entries = {
             "asked": scene.decisive_entries,
             "estimate": estimate and _estimate_hash(),
-        }
+        } | ({"extends": read_summary(earlier.folder)["provenance"]["summary"]} if earlier else {})
         request = request_entries | provenance
         if force or unfinished(stage) != request:
             clear(stage)
             write_json(stage / "checkpoint.json", request)
 
         try:
-            with Solver(program, scene, stage, lock, line, estimate, watch) as solve:
+            with Solver(program, scene, stage, lock, line, estimate, watch, earlier) as solve:
                 solve({}, stage)
                 estimate = estimate and read_summary(stage).get("ended") != STOPPED
                 estimated = (
@@ -157,6 +161,24 @@ def run(
         _finish(stage, scene, estimated | {"total_seconds": time.monotonic() - started}, provenance)
         _put(stage, folder, scene)
     return Record(folder, read_summary(folder), reused=False)
+
+
+def extended(folder: Path, summary: Table, end_time: Value) -> tuple[Scene, Earlier]:
+    """Returns the scene of the finished run in `folder` with a later end_time, and the run from whose
+    end it goes on. Raises BadInput or Unreadable if it cannot go on.
+    """
+    if not (folder / LAST_STATE).exists() or summary["provenance"].get("code") != code_hash():
+        raise Unreadable(
+            f"{folder}: its end is not that of a run of this version, so it cannot go on (accepted: run it again)"
+        )
+    earlier = Earlier(folder, load(folder / "scene.toml"))
+    scene = earlier.scene.override({"end_time": end_time})
+    reached = float(read_history(folder)["t"][-1])
+    if (later := scene.number("end_time")) <= reached:
+        raise BadInput(
+            f"end_time: {later:g} is not after the end of the run (accepted: above {reached:.9g} s)"
+        )
+    return scene, earlier
 
 
 def plan(

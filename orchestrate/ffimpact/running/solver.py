@@ -1,9 +1,11 @@
 """The FreeFem++ runs of a scene: the main run and the runs that estimate its error."""
 
+import os
 import shutil
 import threading
 from collections.abc import Callable
 from contextlib import AbstractContextManager, ExitStack, suppress
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
@@ -20,13 +22,31 @@ from ..scenes.finer import scaled
 from .forecast import Display
 from .outcome import check
 
-__all__ = ["Solver", "Watch"]
+__all__ = ["LAST_STATE", "Earlier", "Solver", "Watch"]
 
 
 # A file in the folder of a run that ends it at its next report (edp/program/run/march.idp).
 STOP = "stop"
+LAST_STATE = "last-state"  # the checkpoint at the end of a run (edp/program/run/checkpoint.idp)
 # Sees the progress of the main run and its folder; True ends the run.
 Watch = Callable[[freefem.At, Path], object]
+
+
+@dataclass(frozen=True)
+class Earlier:
+    """A finished run in a folder, with its scene as it was used, from whose end a run goes on."""
+
+    folder: Path
+    scene: Scene
+
+    def hand_over(self, where: Path) -> None:
+        """Copies what the run that goes on needs to the folder `where`, unless it has a checkpoint."""
+        if (where / "checkpoint").exists():
+            return
+        for name in ("history.csv", "scene.bin.unstressed", LAST_STATE):
+            if (self.folder / name).exists():
+                shutil.copyfile(self.folder / name, where / name)
+        os.replace(where / LAST_STATE, where / "checkpoint")
 
 
 class Solver(AbstractContextManager["Solver", None]):
@@ -45,6 +65,7 @@ class Solver(AbstractContextManager["Solver", None]):
         line: Line,
         pair: bool,
         watch: Watch | None = None,
+        earlier: "Earlier | None" = None,
     ):
         self.program, self.scene = program, scene
         self.scaled = partial(scaled, scene)
@@ -56,7 +77,7 @@ class Solver(AbstractContextManager["Solver", None]):
             and scene.values["integrator"] != "auto"
             and threading.current_thread() is threading.main_thread()
         )
-        self.watch = watch
+        self.watch, self.earlier = watch, earlier
         self.own_mesh = not scene.of_files
         self.number = 0
         # The coarser runs that have started, by folder, with the entries that they override.
@@ -117,7 +138,10 @@ class Solver(AbstractContextManager["Solver", None]):
         """Starts the scene, with `overrides`, in the folder `where`. The process is ended when
         `leaving` is closed.
         """
-        scene, goes_on = self.scene.override(overrides), (where / "checkpoint").exists()
+        scene, earlier = self.scene.override(overrides), None
+        if where == self.stage and (earlier := self.earlier):
+            earlier.hand_over(where)
+        goes_on = (where / "checkpoint").exists()
         if not goes_on:
             if where != self.stage:
                 shutil.rmtree(where, ignore_errors=True)
@@ -126,7 +150,9 @@ class Solver(AbstractContextManager["Solver", None]):
                 write_json(where / "checkpoint.json", scene.decisive_entries)
         if display:
             display.at("mesh")
-        flags, used, scene_toml = prepare(scene, where)
+        flags, used, scene_toml = (
+            prepare(earlier.scene, where, scene) if earlier else prepare(scene, where)
+        )
         (where / "scene.toml").write_text(scene_toml, "utf-8")
         if display:
             display.at("set-up")

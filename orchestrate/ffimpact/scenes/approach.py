@@ -473,8 +473,9 @@ def refuse_sinking(scene: Scene, onsets: list[Onset]) -> None:
             partner = first.second if k == first.first else first.first
             name = (scene.bodies[partner] if partner >= 0 else scene.obstacles[-1 - partner]).name
             position = ", ".join(f"{x:.3g}" for x in placed[gaps.argmin()])
+            entry = "labels" if body.mesh and body.mesh.groups else "file"
             raise BadInput(
-                f"body.{k + 1}.file: '{body.name}' comes to '{name}' with ({position}) "
+                f"body.{k + 1}.{entry}: '{body.name}' comes to '{name}' with ({position}) "
                 f"m, which is no contact boundary and would pass through the obstacle (accepted: a file whose "
                 f"label {mesh.FREE}, or physical group 'contact', is there, too)"
             )

@@ -44,6 +44,15 @@ class Arc:
     axis: np.ndarray
     radius: float
 
+    def onto(self, points: np.ndarray) -> np.ndarray:
+        """The nearest points of the circle, sphere or cylinder to points (n, axes)."""
+        axes = points.shape[1]
+        arms = points - self.centre[:axes]
+        arms = arms - np.outer(arms @ self.axis[:axes], self.axis[:axes])
+        length = np.linalg.norm(arms, axis=1, keepdims=True)
+        onto: np.ndarray = points + arms * (self.radius / length - 1)
+        return onto
+
     def has_faces(self, corners: np.ndarray) -> np.ndarray:
         """Whether faces with these corners (n, 3, 3) lie on the sphere or cylinder: their corners
         do, and their normals are within STEEPEST of that of the surface at their middles. A flat
@@ -119,7 +128,7 @@ def _bodies(scene: Scene, centres: np.ndarray) -> list[Entries]:
             "velocity": padded(body.velocity),
             "spin": padded(body.spin) if solid else np.array([0.0, 0.0, body.spin]),
             "thickness": 2 * float(body.outline.half_thickness),
-            "of_file": (1 if body.mesh else 2) if "file" in content else 0,
+            "of_file": 1 if body.mesh else 2 if "file" in content else 0,
         }
         for content, body, centre in zip(scene.content["body"], scene.bodies, centres)
     ]

@@ -39,6 +39,7 @@ from .needs import IMPLICIT, implicit_for
 from .parts import conditions
 from .scene import Pair, Scene, refuse_rest
 from .sizes import Impact
+from .start_fields import start_fields
 from .unstressed import find_unstressed
 
 __all__ = [
@@ -58,6 +59,9 @@ __all__ = [
 ]
 
 SCENE_FILE = "scene.bin"
+# First words of the arrays in which a run up to a later end_time differs, and of those that the
+# integrator which `auto` has taken makes superfluous. A checkpoint does not depend on them.
+OF_END = ("end_time", "functions", "knots", "kinks", "integrator", "implicit_why")
 ROUND = 0.5  # largest element size on a circle or ellipse, over its smaller semi-axis
 # Width of an outline near contact, over that of a disc on a plane, below which elements are
 # smaller. Two equal discs have 0.71.
@@ -106,10 +110,13 @@ class Assembly:
         (folder / SCENE_FILE).write_bytes(self.data)
 
 
-def prepare(scene: Scene, where: Path) -> tuple[dict[str, Path], Table, str]:
+def prepare(
+    scene: Scene, where: Path, longer: Scene | None = None
+) -> tuple[dict[str, Path], Table, str]:
     """Prepares a run in the folder `where`: writes the mesh and the data file of a scene. Returns the
     flags of the run, the scene as used, and the text of its scene.toml. Raises BadInput for a scene
-    that cannot be run.
+    that cannot be run. `longer` is the scene with a later end_time, for a run that goes on from the
+    end of the one of `scene`, on its mesh.
     """
     if (
         len(scene.bodies) == 1
@@ -126,7 +133,7 @@ def prepare(scene: Scene, where: Path) -> tuple[dict[str, Path], Table, str]:
     refuse_rest(scene)
     refuse_nothing(scene, onsets)
     refuse_sinking(scene, onsets)
-    built = assemble(scene, onsets=onsets)
+    built = assemble(scene, onsets=onsets, longer=longer)
     built.write(where)
     text = to_toml(scene.with_files_in(where, built.used))
     flags = {"scene": where / SCENE_FILE}
@@ -135,9 +142,11 @@ def prepare(scene: Scene, where: Path) -> tuple[dict[str, Path], Table, str]:
     return flags, tomllib.loads(text), text
 
 
-def assemble(scene: Scene, onsets: list[Onset] | None = None) -> Assembly:
+def assemble(
+    scene: Scene, onsets: list[Onset] | None = None, longer: Scene | None = None
+) -> Assembly:
     """Meshes the bodies of a scene and collects the data of a run. `onsets` holds the onsets of
-    contact if they are known already.
+    contact if they are known already; `longer`: prepare().
     """
     ask = Asker(scene, onsets_of(scene) if onsets is None else onsets)
     why = implicit_for(scene) if scene.values["integrator"] == "auto" else ""
@@ -148,6 +157,8 @@ def assemble(scene: Scene, onsets: list[Onset] | None = None) -> Assembly:
     )
     ask = replace(ask, scene=scene)
     values = scene.values | contact_values(scene.bodies, scene.contact, ask, "contact")
+    moving = longer or scene  # whose functions of time last until end_time
+    values["end_time"] = moving.values["end_time"]
     scene = replace(scene, pairs=with_open_penalties(scene, ask))
     pairs = [pair_values(pair, ask, values) for pair in scene.pairs]
     with progress.work("choosing element sizes"):
@@ -157,7 +168,11 @@ def assemble(scene: Scene, onsets: list[Onset] | None = None) -> Assembly:
     with progress.work("meshing the bodies"):
         meshes, centres, arcs = (_solids if scene.dimension is SOLID else _sections)(scene, sizes)
     together, regions = stack(meshes, centres)
-    files = [k for k, table in enumerate(scene.content["body"]) if "file" in table]
+    files = [
+        k
+        for k, (table, body) in enumerate(zip(scene.content["body"], scene.bodies))
+        if body.mesh or "file" in table
+    ]
     penalties = {
         (pair.first, pair.second): float(own["penalty"]) for pair, own in zip(scene.pairs, pairs)
     }
@@ -166,6 +181,7 @@ def assemble(scene: Scene, onsets: list[Onset] | None = None) -> Assembly:
         strike.rise_on(penalties.get(both, penalty), scene.bodies, exponent)
         for both, strike in ask.fronts.items()
     ]
+    on_mesh = mesh_arrays(together, regions, arcs, files)
     arrays: Entries = (
         {
             "implicit_why": why,
@@ -174,10 +190,15 @@ def assemble(scene: Scene, onsets: list[Onset] | None = None) -> Assembly:
         }
         | parameter_arrays(values)
         | scene_arrays(scene, centres, pairs)
-        | mesh_arrays(together, regions, arcs, files)
-        | conditions(scene.bodies, meshes, scene.obstacles, scene.dimension, copies(scene))
+        | on_mesh
+        | start_fields(scene, together, regions, centres, arcs, on_mesh["mesh.arc_of"])
+        | conditions(moving.bodies, meshes, moving.obstacles, scene.dimension, copies(scene))
     )
-    decisive = {name: value for name, value in arrays.items() if name not in NOT_DECISIVE}
+    decisive = {
+        name: value
+        for name, value in arrays.items()
+        if name not in NOT_DECISIVE and not name.startswith(OF_END)
+    }
     arrays["identity"] = hashlib.sha256(packed(decisive)).hexdigest()
     return Assembly(
         together, regions, centres, arrays, values, used_tables(scene, sizes, values, pairs)

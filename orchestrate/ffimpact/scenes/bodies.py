@@ -14,8 +14,9 @@ from types import ModuleType
 import numpy as np
 
 from ..failure import BadInput, gathered
-from ..geometry import tumbling
+from ..geometry import place_functions, tumbling
 from ..geometry.outlines import Outline, Shape, Turn
+from ..geometry.place_functions import Field
 from ..input import models, parameters
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
 from ..input.models import MOST_STRETCH
@@ -29,14 +30,17 @@ from . import material
 from .conditions import Load, Support, read_loads, read_supports
 from .material import NOT_RIGID, Material
 
-__all__ = ["Body", "SIZES", "STIFF", "read", "stiffened"]
+__all__ = ["Body", "FIELDS", "SIZES", "STIFF", "read", "stiffened"]
 
 # Modules with the functions shape() and motion().
 GEOMETRY = {PLANE_STRAIN: flat, AXISYMMETRIC: revolution, SOLID: solids}
 # `young` of a rigid body over the largest of the others. Its strain is smaller by this factor.
 STIFF = 1e5
+MEAN = 24  # number of points along an axis from which the mean of a field follows
+BESIDE = 0.01  # distance of the box of a body from its sampled points, over its extents
 FINEST = 1 / 20000  # smallest element size over the half thickness of a body
 SIZES = ("mesh_size", "contact_mesh_size")
+FIELDS = ("initial_velocity", "initial_displacement")  # entries that are functions of place
 
 
 @dataclass(frozen=True)
@@ -61,6 +65,8 @@ class Body:
     mesh_stretch: float
     supports: tuple[Support, ...] = ()
     loads: tuple[Load, ...] = ()
+    initial_velocity: Field | None = None
+    initial_displacement: Field | None = None
     rigid: bool = False
     mass: float = 0.0  # entry of a rigid body [kg/m; kg]; 0: by density
     # Moments of a rigid body's entry `inertia`, ordered as in edp/program/input/conditions.idp; 0: by
@@ -100,6 +106,11 @@ class Body:
         return pressed and any(load.inflated for load in self.loads)
 
     @property
+    def has_fields(self) -> bool:
+        """Whether its points have velocities or displacements of their own at the start."""
+        return any(getattr(self, name) for name in FIELDS)
+
+    @property
     def carried_along(self) -> "Body":
         """The body with the mean velocity of its support on the way to the displacement farthest
         from the start. A body without supports is unchanged.
@@ -134,6 +145,17 @@ class Body:
     def placed(self) -> Shape:
         """The outline at its position at the start."""
         return self.at(0.0, self.position)
+
+    def box(self, dimension: Dimension) -> np.ndarray:
+        """Two corners (2, axes) [m] of a box that holds the body at the start, of revolution its half
+        x >= 0.
+        """
+        points = self.placed.points
+        corners = np.array([points.min(axis=0), points.max(axis=0)])
+        corners += np.outer([-1, 1], BESIDE * np.ptp(points, axis=0))
+        if dimension is AXISYMMETRIC:
+            corners[0, 0] = max(corners[0, 0], 0.0)
+        return corners
 
     def at(self, t: float, centre: np.ndarray) -> Shape:
         """Returns the outline with its centre at `centre`, turned as the body is at time t [s] in
@@ -184,7 +206,12 @@ def _body(table: models.Body, top: models.Top, folder: Path, dimension: Dimensio
     motion = geometry.motion(table)
     if isinstance(table, models.Drawn) and table.is_placed_as_drawn:
         motion["position"] = motion["position"] + drawn_centre
-    return Body(
+    motion |= {
+        name: place_functions.of_entry(table.at(name), getattr(table, name), dimension.axes)
+        for name in FIELDS
+        if name in table
+    }
+    body = Body(
         table.name or table.entry.replace(".", ""),
         outline,
         body_mesh,
@@ -196,11 +223,32 @@ def _body(table: models.Body, top: models.Top, folder: Path, dimension: Dimensio
         supports=read_supports(table.support or [], dimension, end_time, folder),
         loads=read_loads(table.load or [], dimension, end_time, folder),
     )
+    return _with_mean(body, dimension) if body.has_fields else body
+
+
+def _with_mean(body: Body, dimension: Dimension) -> Body:
+    """Returns the body with the mean of its field of velocity in its velocity, for the estimate of
+    when and how it comes into contact. Raises BadInput if one of its fields is not finite.
+    """
+    low, high = body.box(dimension)
+    grid = np.meshgrid(*(np.linspace(*ends, MEAN) for ends in zip(low, high)))
+    points = np.stack(grid, axis=-1).reshape(-1, len(low))
+    points = points[body.placed.gap(points) < 0]
+    if body.initial_displacement:
+        body.initial_displacement(points)
+    if not (field := body.initial_velocity):
+        return body
+    weight = points[:, 0] if dimension is AXISYMMETRIC else np.ones(len(points))
+    mean = np.average(field(points), axis=0, weights=weight)
+    if dimension is AXISYMMETRIC:
+        mean[0] = 0.0
+    rest = Field(field.entry, lambda places: field.at(places) - mean)
+    return replace(body, velocity=body.velocity + mean, initial_velocity=rest)
 
 
 def _rigid(table: models.Body, top: models.Top, dimension: Dimension, outline: Shape) -> Table:
     """Returns the material, mass and moments of a rigid body."""
-    for key in (*NOT_RIGID, "support"):
+    for key in (*NOT_RIGID, "support", *FIELDS):
         if key in table:
             raise BadInput(
                 f"{table.at(key)}: a rigid body has none (accepted: density, or mass; without rigid = true)"

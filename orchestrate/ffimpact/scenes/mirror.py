@@ -84,6 +84,7 @@ def _is_mirrored_in_plane(scene: "Scene", axis: int) -> bool:
         own = np.abs(body.placed.gap(mirrored(body.placed.points))).max() <= ALIKE * radius
         moves = body.position[axis] != at or body.velocity[axis] != 0 or body.spin != 0
         conditions = body.supports or body.loads
+        moves = moves or body.has_fields
         return (
             own and not moves and not (conditions and (at != 0 or _of_conditions(body, axis, "")))
         )
@@ -139,6 +140,8 @@ def _of_body(body: Body, axis: int, plane: str) -> str:
         return f"has its centre off {plane}"
     if body.velocity[axis] != 0:
         return f"moves along {AXES[axis]}"
+    if body.has_fields:
+        return "has a field at the start"
     if np.delete(body.spin, axis).any():  # a reflection keeps an axial vector along the normal
         return f"spins out of {plane}"
     if any(body.moments):

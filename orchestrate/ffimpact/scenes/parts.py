@@ -222,9 +222,9 @@ class _Surface:
         sides |= {"all": on, "outer": on & ~inner, "inner": on & inner}
         if self.dimension is AXISYMMETRIC:
             sides["axis"] = self.made.labels == mesh.AXIS
-        groups = getattr(self.made, "groups", None) or {}
         sides |= {
-            name: on & np.isin(np.arange(len(on)), numbers) for name, numbers in groups.items()
+            name: on & np.isin(np.arange(len(on)), numbers)
+            for name, numbers in self.made.groups.items()
         }
         return {name: np.flatnonzero(mask) for name, mask in sides.items() if mask.any()}
 

@@ -7,6 +7,7 @@ of the file.
 
 import hashlib
 import itertools
+import json
 import os
 import shutil
 from dataclasses import dataclass, replace
@@ -27,7 +28,7 @@ from ..mesh.solid_file import declares_unit, takes_in_others
 from ..output import former
 from ..output.columns import Features, recorded
 from . import bodies, conditions, laws, mirror, needs, obstacles
-from .bodies import SIZES, Body
+from .bodies import FIELDS, SIZES, Body
 from .entries import release, set_entry, toml_value
 from .material import STIFFEST
 from .obstacles import Obstacle
@@ -58,6 +59,7 @@ RUN = (
 # Bending strain (Outline.folding) up to which a body may come into contact with itself: that of a
 # ring as thick as its inner radius.
 FOLDING = 0.2
+LONG = 100  # number of items from which on a list is a table
 WIDE = 100.0  # width [m] of a body from a file above which its units are doubtful
 TOUCHING = 1e-9  # overlap at the start that is round-off, over half the thickness of the body
 # Overlap, likewise, that may be the depth at rest under weight or loads. The solver knows the penalty
@@ -153,7 +155,7 @@ class Scene:
     @property
     def decisive_entries(self) -> Table:
         """The entries that decide the results, apart from the script, and the sha256 of files. Two
-        scenes for which they are equal are the same run.
+        scenes for which they are equal are the same run. Long tables are given by their sha256.
         """
         files: list[str] = []
 
@@ -166,9 +168,8 @@ class Scene:
             name: hashlib.sha256((self.folder / name).read_bytes()).hexdigest() for name in files
         }
         harmless = ("title", "script", *parameters.NOT_DECISIVE)
-        return {name: value for name, value in self.content.items() if name not in harmless} | {
-            "files": meshes
-        }
+        own = {name: value for name, value in self.content.items() if name not in harmless}
+        return {name: _shortened(value) for name, value in own.items()} | {"files": meshes}
 
     def with_files_in(self, where: Path, tables: Table) -> Table:
         """Copies the files of bodies, obstacles, supports and loads to `where`/body-files and
@@ -250,6 +251,17 @@ class Scene:
     def sizes(self) -> dict[str, float]:
         """The largest element sizes [m] that bodies set, 0 where none does."""
         return {name: max(getattr(body, name) for body in self.bodies) for name in SIZES}
+
+
+def _shortened(value: Any) -> Any:
+    """Returns a value with a sha256 in place of each list of more than LONG items."""
+    if isinstance(value, dict):
+        return {name: _shortened(item) for name, item in value.items()}
+    if isinstance(value, list) and len(value) > LONG:
+        return (
+            f"{len(value)} items, sha256 {hashlib.sha256(json.dumps(value).encode()).hexdigest()}"
+        )
+    return [_shortened(item) for item in value] if isinstance(value, list) else value
 
 
 def read(content: Table, folder: Path, name: str) -> Scene:
@@ -376,7 +388,7 @@ def refuse_rest(scene: Scene) -> None:
     if (
         not any(np.any(motion) for motion in moving)
         and not any(surface.driven for surface in surfaces)
-        and not any(body.supports or body.loads for body in scene.bodies)
+        and not any(body.supports or body.loads or body.has_fields for body in scene.bodies)
     ):
         raise BadInput(
             "velocity: 0 of every body, without spin, gravity, body force, moved support or "
@@ -392,8 +404,8 @@ def _refuse_start(scene: Scene) -> None:
         *((f"body.{k}", body) for k, body in enumerate(scene.content["body"], 1)),
         *((f"obstacle.{k}", table) for k, table in enumerate(scene.content.get("obstacle", []), 1)),
     ]:
-        for name in ("velocity", "spin"):
-            if np.any(np.atleast_1d(table.get(name, 0.0))):
+        for name in ("velocity", "spin", *FIELDS):
+            if name in FIELDS and name in table or np.any(np.atleast_1d(table.get(name, 0.0))):
                 raise BadInput(
                     f"{key}.{name}: '{brief(table[name])}' beside start = 'equilibrium', where all is at "
                     "rest (accepted: 0, or start = 'given')"
