@@ -17,14 +17,13 @@ from ffimpact.failure import Failure, TooLong
 from ffimpact.freefem import freefem
 from ffimpact.freefem.arrays import Entries, joined, packed, unpacked
 from ffimpact.input import dimension, parameters
-from ffimpact.input.models import CONTACT
+from ffimpact.input.models import CONTACT, Material
 from ffimpact.input.parameters import ROOT, Value
 from ffimpact.output import results
 from ffimpact.output.evaluate import evaluate
 from ffimpact.scene import read as read_scene
 from ffimpact.scenes import assembly
 from ffimpact.scenes.arrays import parameter_arrays
-from ffimpact.scenes.laws import law_numbers
 
 from . import solids
 
@@ -57,7 +56,7 @@ def measure(script: str, **flags: Value | Path) -> dict[str, float]:
 
 
 # Entries of the scripts of one falling body (falling-flags.idp), with their defaults.
-FALLING = {"law": "svk", "young": 7e6, "nu": 0.45, "density": 1722, "law_parameters": "none", "viscosity": 0, "bulk_viscosity": 0,
+FALLING = {"law": "svk", "young": 7e6, "nu": 0.45, "density": 1722, "viscosity": 0, "bulk_viscosity": 0,
            "relaxation_modulus": 0, "relaxation_time": 0, "radius": 0.05, "speed": 8, "angle": 90, "spin": 0, "height": 0,
            "symmetry": "auto", "mesh_size": 0, "contact_mesh_size": 0, "penalty": 1e10, "slip_velocity": 0.1}
 OF_THE_RUN = ("scene", "out", "restart")  # flags of the scripts; all others are entries of their file
@@ -139,7 +138,9 @@ def entries(script: str, flags: dict[str, Value | Path]) -> Entries:
     else:
         own = {"friction_dynamic": own.get("friction_static", 0.0)} | own
         made = parameter_arrays({name: own[name] for name in parameters.names() if name in own})
-        made |= joined("law_numbers", [law_numbers(str(own.get("law_parameters", "none")))])
+        terms = {name: own.pop(name) for name in ("share", "alpha", "mu") if name in own}
+        numbers = Material.model_construct(law=own["law"], **terms).numbers
+        made |= joined("law_numbers", [np.array(numbers, dtype=float)])
     whole = [name for name, row in parameters.PARAMETERS.items() if row.kind == "int"]
     made |= {name: value if name in whole else str(value) if isinstance(value, str | Path) else float(value) for name, value in own.items()}
     return made | {"script": Path(script).stem, "identity": str(sorted(own.items()))}

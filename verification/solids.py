@@ -122,7 +122,7 @@ def _mesh(body: Body, copies: int) -> solid_mesh.SolidMesh:
 
 def entries(scene: Scene) -> Entries:
     """The entries of the scene file (edp/program/input/scene.idp)."""
-    bodies = [{"name": f"body{b}", "law": body.material[0], "law_parameters": "none", **dict(zip(("young", "nu", "density"), map(float, body.material[1:]))),
+    bodies = [{"name": f"body{b}", "law": body.material[0], **dict(zip(("young", "nu", "density"), map(float, body.material[1:]))),
                "damping": [0.0] * 4, "centre": padded(body.centre), "shift": padded(body.shift), "turn": 0.0, "velocity": padded(body.velocity),
                "spin": padded(body.spin), "thickness": 1e30, "of_file": 0} for b, body in enumerate(scene.bodies)]
     obstacles = [{"name": f"obstacle{k}", "kind": SHAPES.index(kind.replace("sphere", "circle")), "velocity": padded(velocity)}

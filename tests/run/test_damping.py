@@ -166,7 +166,7 @@ def test_integrators_that_would_not_count_it_are_refused(tmp_path):
 
 # ---- stiffness in an impact
 
-BRANCH = {"dimension": "axisymmetric", "law": "mooney-rivlin", "law_parameters": "0.2", "young": 4455100, "nu": 0.49, "density": 1150,
+BRANCH = {"dimension": "axisymmetric", "law": "mooney-rivlin", "share": 0.2, "young": 4455100, "nu": 0.49, "density": 1150,
           "relaxation_modulus": 1e7, "relaxation_time": 1.087e-3, "accuracy": 0.02,
           "body": [{"shape": "ball", "radius": 0.03, "position": [0, 0.03001], "velocity": [0, -3.8859]}],
           "obstacle": [{"kind": "plane", "point": [0, 0], "normal": [0, 1]}]}

@@ -7,7 +7,8 @@ The program chooses an entry that is None. Units are SI.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import math
+from collections.abc import Callable, Iterable
 from functools import partial
 from inspect import Parameter as Keyword, Signature
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
@@ -59,6 +60,7 @@ __all__ = [
     "Circle",
     "Contact",
     "Cylinder",
+    "DAMPING",
     "Disc",
     "Drawn",
     "Ellipse",
@@ -69,6 +71,7 @@ __all__ = [
     "Implicit",
     "Incompressible",
     "LAWS",
+    "LAW_ENTRIES",
     "Load",
     "MATERIAL",
     "MOST_PRESSURE",
@@ -89,6 +92,7 @@ __all__ = [
     "Polyline",
     "Rectangle",
     "Ring",
+    "STIFFEST",
     "SaintVenantKirchhoff",
     "Shell",
     "Sphere",
@@ -385,6 +389,12 @@ def _refusal(
 
 # ---- materials
 
+DAMPING = ("viscosity", "bulk_viscosity", "relaxation_modulus", "relaxation_time")
+# Largest nu in the speed of waves. The stiffness by a larger nu acts on the volume of elements.
+STIFFEST = 0.45
+# The entries of some laws beside young and nu. Those of ogden replace young.
+LAW_ENTRIES = {"mooney-rivlin": ("share",), "ogden": ("alpha", "mu")}
+
 
 class OfMaterial(Entries):
     """The entries of a material, which a body and the top of a scene may have, too."""
@@ -393,12 +403,27 @@ class OfMaterial(Entries):
     young: Annotated[float | None, shared("young")] = None
     nu: Annotated[float | None, shared("nu")] = None
     density: Annotated[float | None, shared("density")] = None
-    law_parameters: Annotated[str | None, shared("law_parameters")] = None
+    share: Annotated[
+        float | None, number(0.0, 1.0, "-", "mooney-rivlin: part of I2 in the shear modulus")
+    ] = None
+    alpha: Annotated[
+        list[float] | None, Numbers(-30.0, 30.0, 3, "ogden: exponents of one to three terms")
+    ] = None
+    mu: Annotated[
+        list[float] | None,
+        Numbers(-1e18, 1e18, 3, "ogden: moduli of the terms [Pa], in place of young"),
+    ] = None
     viscosity: Annotated[float | None, shared("viscosity")] = None
     bulk_viscosity: Annotated[float | None, shared("bulk_viscosity")] = None
     relaxation_modulus: Annotated[float | None, shared("relaxation_modulus")] = None
     relaxation_time: Annotated[float | None, shared("relaxation_time")] = None
     loss: Annotated[float | None, shared("loss")] = None
+
+    @classmethod
+    def refused(cls, name: str, value: Any, dimension: Dimension | None) -> str:
+        if name == "law_parameters":
+            return _no_more(name, value)
+        return super().refused(name, value, dimension)
 
 
 class Material(OfMaterial):
@@ -414,18 +439,118 @@ class Material(OfMaterial):
     nu: Annotated[float, shared("nu")]
     density: Annotated[float, shared("density")]
 
+    @classmethod
+    def names(cls, dimension: Dimension | None) -> list[str]:
+        """The names of the entries, without those of other laws."""
+        law = cls.model_fields["law"]
+        others = set() if law.is_required() else {"share", "alpha", "mu"}
+        others -= set(LAW_ENTRIES.get(law.default, ()))
+        return [name for name in super().names(dimension) if name not in others]
+
     @model_validator(mode="after")
-    def _is_its_law(self) -> Self:
-        own = type(self).model_fields["law"]
+    def _is_accepted(self) -> Self:
+        own, name = type(self).model_fields["law"], type(self).__name__
         if not own.is_required() and self.law != own.default:
-            name = type(self).__name__
             other = LAWS[self.law].__name__ if self.law in LAWS else "Material"
             raise BadInput(f"{name}: law: '{self.law}' is another law (accepted: {other})")
+        self.refuse(lambda entry: f"{name}: {entry}")
         return self
 
-    def table(self) -> dict[str, Any]:
-        """The entries of the material, the numbers of its law among them as `law_parameters`."""
-        return {name: value for name, value in super().table().items() if name in MATERIAL}
+    def refuse(self, at: Callable[[str], str]) -> None:
+        """Raises BadInput for entries that the law lacks, has not or does not accept. at() makes
+        names in messages.
+        """
+        taken = LAW_ENTRIES.get(self.law, ())
+        for entry in (entry for entries in LAW_ENTRIES.values() for entry in entries):
+            if entry in self and entry not in taken:
+                laws = "|".join(law for law, entries in LAW_ENTRIES.items() if entry in entries)
+                raise BadInput(
+                    f"{at(entry)}: of law = {laws}, not of {self.law} (accepted: without it)"
+                )
+            rule = rule_of(type(self), entry)
+            if entry in taken and entry not in self and rule:
+                raise BadInput(
+                    f"{at(entry)}: is missing, of law = {self.law} (accepted: {rule.accepted})"
+                )
+        if self.law == "incompressible" and self.nu != 0.5:
+            raise BadInput(f"{at('nu')}: {self.nu:g} of law = incompressible (accepted: 0.5)")
+        if 0.4999 < self.nu < 0.5:
+            raise BadInput(
+                f"{at('nu')}: {self.nu:g} is out of range (accepted: 0 to 0.4999, or 0.5: J = 1)"
+            )
+        if self.law == "mooney-rivlin":
+            self._refuse_share(at("share"))
+        if self.law == "ogden":
+            self._refuse_terms(at)
+
+    def _refuse_share(self, entry: str) -> None:
+        limit = self.nu / (1 - 2 * self.nu) if self.nu < 0.5 else np.inf  # lambda / (2 mu)
+        if (self.share or 0.0) > limit:
+            raise BadInput(
+                f"{entry}: {self.share:g} with a Poisson's ratio that is too small (accepted: to "
+                f"lambda/(2 mu), {limit:g})"
+            )
+
+    def _refuse_terms(self, at: Callable[[str], str]) -> None:
+        alpha, mu = self.alpha or [], self.mu or []
+        if len(alpha) != len(mu):
+            raise BadInput(
+                f"{at('mu')}: '{brief(mu)}' beside {len(alpha)} of alpha (accepted: as many)"
+            )
+        for k, (exponent, modulus) in enumerate(zip(alpha, mu), 1):
+            if exponent * modulus <= 0:
+                raise BadInput(
+                    f"{at('mu')}.{k}: {modulus:g} with the exponent {exponent:g} (accepted: an exponent "
+                    "other than 0, and a modulus of its sign)"
+                )
+        stiffness = self.stiffness_of_terms
+        if self.young is not None and not np.isclose(self.young, stiffness, rtol=1e-6):
+            raise BadInput(
+                f"{at('young')}: {self.young:g} beside alpha and mu, which make it {stiffness:.9g} "
+                "(accepted: without it)"
+            )
+
+    @property
+    def stiffness_of_terms(self) -> float:
+        """Young's modulus [Pa] of the terms of ogden: half the sum of mu alpha is the shear modulus."""
+        return float((1 + self.nu) * np.dot(self.mu or [0.0], self.alpha or [0.0]))
+
+    @property
+    def numbers(self) -> list[float]:
+        """The numbers of the law for the kernels (edp/kernels/laws.cpp): a share of the shear modulus,
+        or each exponent with such a share.
+        """
+        if self.law != "ogden":
+            return [self.share] if self.share is not None else []
+        parts = np.multiply(self.mu or [], self.alpha or [])
+        return np.column_stack([self.alpha or [], parts / parts.sum()]).ravel().tolist()
+
+    @property
+    def damped(self) -> bool:
+        """Whether it has any damping."""
+        return any((self.viscosity, self.bulk_viscosity, self.relaxation_modulus, self.loss))
+
+    @property
+    def damping(self) -> tuple[float, ...]:
+        """The values of DAMPING."""
+        return tuple(float(getattr(self, name) or 0.0) for name in DAMPING)
+
+    def moduli(self, thickness: float) -> tuple[float, float]:
+        """lambda + 2 mu and mu [Pa] in a wave across a body of this thickness [m]. Damping adds to
+        them: they are absolute values at omega = pi / transit (stiffen() of
+        edp/program/run/scales.idp).
+
+        The part of lambda above nu = STIFFEST acts on the volume of elements and not in waves.
+        """
+        nu = min(self.nu, STIFFEST)
+        mu, wave = self.young / (2 * (1 + nu)), self.young * (1 - nu) / ((1 + nu) * (1 - 2 * nu))
+        if not self.damped:
+            return wave, mu
+        viscosity, bulk_viscosity, modulus, time = self.damping
+        turn = 1j * math.pi * math.sqrt(wave / self.density) / thickness
+        branch = modulus * turn / (1 / (time or 1) + turn)
+        shear = abs(mu + turn * viscosity + branch)
+        return abs(wave - 2 * mu + turn * bulk_viscosity) + 2 * shear, shear
 
 
 class SaintVenantKirchhoff(Material):
@@ -448,59 +573,25 @@ class Incompressible(Material):
 
 
 class MooneyRivlin(Material):
-    """Mooney-Rivlin law, W = mu/2 ((1 - s) I1 + s I2) and terms of det F; law_parameters = "s" in files."""
+    """Mooney-Rivlin law, W = mu/2 ((1 - s) I1 + s I2) and terms of det F; s is the `share`."""
 
     law: Annotated[str, shared("law")] = "mooney-rivlin"
-    share: Annotated[
-        float | None, number(0.0, 1.0, "", "s of the second invariant in the shear modulus")
-    ] = None
-
-    @model_validator(mode="before")
-    @classmethod
-    def _of_numbers(cls, entries: Any) -> Any:
-        return _with_parameters(cls, entries, ("share",))
 
 
 class Ogden(Material):
-    """Ogden's law of one to three terms, each with an exponent and its share in the shear modulus.
-
-    In files law_parameters = "alpha_1, s_1, alpha_2, s_2 ...".
+    """Ogden's law, W = sum of mu_k/alpha_k (l1^alpha_k + l2^alpha_k + l3^alpha_k - 3) and terms of
+    det F, with one to three terms; `young` follows from them.
     """
 
     law: Annotated[str, shared("law")] = "ogden"
-    alpha: Annotated[list[float] | None, Numbers(-30.0, 30.0, 3, "exponents, not 0")] = None
-    shares: Annotated[list[float] | None, Numbers(0.0, 1.0, 3, "of the terms, sum 1")] = None
-
-    @model_validator(mode="before")
-    @classmethod
-    def _of_numbers(cls, entries: Any) -> Any:
-        return _with_parameters(cls, entries, ("alpha", "shares"))
-
-
-def _with_parameters(law: type[Material], entries: Any, names: tuple[str, ...]) -> Any:
-    """The entries of a law with its numbers, given by `names`, as `law_parameters`, too."""
-    values = [entries.get(name) for name in names] if isinstance(entries, dict) else []
-    if not isinstance(entries, dict) or None in values and "law_parameters" in entries:
-        return entries
-    if missing := [name for name, value in zip(names, values) if value is None]:
-        rule = rule_of(law, missing[0])
-        assert rule
-        raise BadInput(f"{law.__name__}: {missing[0]}: is missing (accepted: {rule.accepted})")
-    columns = [np.atleast_1d(plain(value)) for value in values]
-    if len({len(column) for column in columns}) > 1:
-        raise BadInput(
-            f"{law.__name__}: {names[-1]}: '{brief(values[-1])}' beside {len(columns[0])} of {names[0]} "
-            f"(accepted: as many)"
-        )
-    text = ",".join(f"{value}" for row in zip(*columns) for value in row)
-    return {**entries, "law_parameters": text}
+    young: Annotated[float | None, shared("young")] = None  # type: ignore[assignment]
 
 
 LAWS: dict[str, type[Material]] = {
     model.model_fields["law"].default: model
     for model in (SaintVenantKirchhoff, NeoHookean, Incompressible, MooneyRivlin, Ogden)
 }
-MATERIAL = tuple(Material.model_fields)
+MATERIAL = tuple(OfMaterial.model_fields)
 
 
 # ---- conditions at the boundary of a body
@@ -655,11 +746,9 @@ class Body(OfMaterial):
     def material(self) -> Material | None:
         """The body's own material; None unless law, young, nu and density are all set."""
         own = {name: getattr(self, name) for name in MATERIAL if name in self}
-        return (
-            LAWS.get(own.get("law", ""), Material)(**own)
-            if {"law", "young", "nu", "density"} <= set(own)
-            else None
-        )
+        law = LAWS.get(own.get("law", ""), Material)
+        needed = {name for name in MATERIAL if law.model_fields[name].is_required()}
+        return law(**own) if needed | {"law", "nu"} <= set(own) else None
 
     @property
     def sizes(self) -> list[Any]:
@@ -1034,6 +1123,7 @@ def _of_all(name: str, value: Any) -> str:
 
 # Former entries and what has taken their place.
 FORMER = {
+    "law_parameters": "share of mooney-rivlin, alpha and mu of ogden",
     "angle": "body.1.direction, the angle from the x axis: -60 for an impact at 60 degrees",
     "height": "body.1.position, that of the centre of mass",
     "block_width": "body.2.width",

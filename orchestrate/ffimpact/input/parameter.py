@@ -22,7 +22,6 @@ __all__ = [
     "Table",
     "Value",
     "integer",
-    "numbers",
     "plain",
     "real",
     "with_unit",
@@ -117,8 +116,7 @@ def plain(value: Any) -> Any:
 class Parameter(Rule):
     """The rule of one parameter.
 
-    `kind` is real, int, word or numbers (text, separated by commas). `low` and `high` bound
-    numbers. `words` are the accepted words; a number may have them too (auto). `scripts` are the
+    `kind` is real, int or word. `low` and `high` bound numbers. `words` are the accepted words; a number may have them too (auto). `scripts` are the
     scripts that take the parameter.
     """
 
@@ -144,8 +142,6 @@ class Parameter(Rule):
         common = {} if self.default is None else {"default": self.default}
         if self.kind == "word":
             return common | {"enum": list(self.words)}
-        if self.kind == "numbers":
-            return common | {"type": ["string", "number", "array"]}
         number = {
             "type": "integer" if self.kind == "int" else "number",
             "minimum": self.low,
@@ -156,8 +152,6 @@ class Parameter(Rule):
     @property
     def accepted(self) -> str:
         """The accepted values, as messages print them."""
-        if self.kind == "numbers":
-            return "none, or numbers separated by commas"
         return (
             "|".join(self.words)
             if self.kind == "word"
@@ -174,17 +168,6 @@ class Parameter(Rule):
             return raw
         if self.kind == "word":
             raise BadInput(f"{self.name}: {unknown(raw, self.words)}")
-        if self.kind == "numbers":
-            texts = (
-                raw.split(",")
-                if isinstance(raw, str)
-                else [str(item) for item in (raw if isinstance(raw, list) else [raw])]
-            )
-            if not texts or not all(_NUMBER.fullmatch(text.strip()) for text in texts):
-                raise BadInput(
-                    f"{self.name}: '{brief(raw)}' is no list of numbers (accepted: {self.accepted})"
-                )
-            return ",".join(text.strip() for text in texts)
         expected = "a whole number" if self.kind == "int" else "a number"
         is_number = _NUMBER.fullmatch(raw) if isinstance(raw, str) else type(raw) in (int, float)
         if not is_number or (
@@ -261,8 +244,3 @@ def word(
 ) -> Parameter:
     """The rule of a choice between words."""
     return Parameter(name, "word", default, "-", meaning, words=words, scripts=scripts)
-
-
-def numbers(name: str, meaning: str, scripts: tuple[str, ...] = ()) -> Parameter:
-    """The rule of numbers separated by commas, or the word none."""
-    return Parameter(name, "numbers", "none", "-", meaning, words=("none",), scripts=scripts)

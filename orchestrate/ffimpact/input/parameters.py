@@ -40,9 +40,10 @@ __all__ = [
 FOLLOWS = {
     "friction_dynamic": ("friction_static",),
     "viscosity": ("loss",),
-    "law_parameters": ("law",),
-    "penalty": ("young", "density", "radius", "exponent"),
-    "dt": ("young", "density", "radius"),
+    **dict.fromkeys(("share", "alpha", "mu"), ("law",)),
+    "young": ("mu",),
+    "penalty": ("young", "mu", "density", "radius", "exponent"),
+    "dt": ("young", "mu", "density", "radius"),
     **dict.fromkeys(("mesh_size", "contact_mesh_size"), ("radius",)),
 }
 

@@ -8,7 +8,7 @@ chooses a parameter with the value `auto`, or with 0 if the meaning of the param
 
 from dataclasses import replace
 
-from .parameter import Parameter, integer, numbers, real, word
+from .parameter import Parameter, integer, real, word
 
 __all__ = ["LAWS", "PARAMETERS", "SCRIPTS"]
 
@@ -36,11 +36,6 @@ ROWS = (
         OF_BODIES,
     ),
     real("density", 1722, 1e-15, 1e12, "kg/m3", "reference density", OF_BODIES),
-    numbers(
-        "law_parameters",
-        "what the law takes beyond young and nu, separated by commas",
-        OF_BODIES,
-    ),
     real(
         "viscosity",
         0,

@@ -189,7 +189,8 @@ def material(body: Table) -> str:
             if "mass" in body
             else f"rigid, ρ = {body['density']:g} kg/m³"
         )
-    own = "" if body.get("law_parameters", "none") == "none" else f" ({body['law_parameters']})"
+    listed = [f"{name} = {body[name]}" for name in ("share", "alpha", "mu") if name in body]
+    own = f" ({', '.join(listed)})" if listed else ""
     viscosities = "".join(
         f", {sign} = {body[name]:.3g} Pa s"
         for name, sign in (("viscosity", "η"), ("bulk_viscosity", "ζ"))

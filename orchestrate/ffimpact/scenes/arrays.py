@@ -14,7 +14,6 @@ from ..input.parameters import PARAMETERS, Value
 from ..mesh.mesh import AXIS, WIDEST, Mesh
 from ..mesh.plane_file import on_circle
 from ..mesh.solid_mesh import DEPTH, SolidMesh
-from .laws import law_numbers
 from .mirror import copies
 from .scene import Scene
 
@@ -93,7 +92,7 @@ def scene_arrays(scene: Scene, centres: np.ndarray, pairs: list[dict[str, Value]
         | table("bodies", _bodies(scene, centres))
         | joined(
             "bodies.law_numbers",
-            [law_numbers(body.material.law_parameters) for body in scene.bodies],
+            [np.array(body.material.numbers, dtype=float) for body in scene.bodies],
         )
         | _obstacles(scene)
         | table("pairs", of_pairs)

@@ -12,7 +12,7 @@ import hashlib
 import math
 import tomllib
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
@@ -447,7 +447,7 @@ def used_tables(
 
     bodies = []
     for body_table, body, size in zip(scene.content["body"], scene.bodies, sizes):
-        used = {"name": body.name} | body_table | ({} if body.rigid else asdict(body.material))
+        used = {"name": body.name} | body_table | ({} if body.rigid else body.material.table())
         used |= {"density": body.material.density} if body.rigid and not body.mass else {}
         used |= {"mesh_size": size.bulk, "contact_mesh_size": size.contact} if size else {}
         used |= {"mesh_stretch": size.stretch} if size and size.stretch > 1 else {}
@@ -496,7 +496,7 @@ def _with_viscosity(k: int, ask: Asker) -> Body:
             f"body.{k + 1}.loss: {material.loss:g} asks for viscosity {viscosity:g} Pa s of '{body.name}', which "
             f"is {material.viscosity:g} (accepted: one of the two)"
         )
-    return replace(body, material=replace(material, viscosity=viscosity))
+    return replace(body, material=material.model_copy(update={"viscosity": viscosity}))
 
 
 def element_sizes(k: int, ask: Asker) -> Sizes:

@@ -19,7 +19,7 @@ from ..geometry.outlines import Outline, Shape, Turn
 from ..geometry.place_functions import Field
 from ..input import models, parameters
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
-from ..input.models import MOST_STRETCH
+from ..input.models import MOST_STRETCH, Material
 from ..input.parameters import Table, Value
 from ..input.rules import SHORTEST
 from ..mesh import flat, mesh, revolution, solids
@@ -28,7 +28,7 @@ from ..mesh.solid_mesh import SolidMesh
 from ..mesh.solids import Solid
 from . import material
 from .conditions import Load, Support, read_loads, read_supports
-from .material import NOT_RIGID, Material
+from .material import NOT_RIGID
 
 __all__ = ["Body", "FIELDS", "SIZES", "STIFF", "read", "stiffened"]
 
@@ -322,7 +322,9 @@ def stiffened(bodies: list[Body], penalties: list[Value], path: str) -> list[Bod
     half = max(body.outline.half_thickness for body in bodies)
     young = STIFF * (soft or max(float(penalty) for penalty in penalties) * half)
     return [
-        replace(body, material=replace(body.material, young=young)) if body.rigid else body
+        replace(body, material=body.material.model_copy(update={"young": young}))
+        if body.rigid
+        else body
         for body in bodies
     ]
 

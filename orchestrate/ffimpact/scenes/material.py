@@ -1,72 +1,26 @@
-"""Materials of the bodies of a scene: a law with its numbers and damping, in SI units, and the moduli
-of waves in it (docs/explanation/materials.md).
+"""Completes the materials of the bodies of a scene: with entries at its top and with defaults, in SI
+units (docs/explanation/materials.md).
 """
-
-import math
-from dataclasses import dataclass
 
 from ..failure import BadInput
 from ..input import models
-from ..input.models import MATERIAL
-from ..input.parameters import PARAMETERS, Table
+from ..input.models import DAMPING, LAW_ENTRIES, MATERIAL, Material
+from ..input.parameters import PARAMETERS
 
-__all__ = ["DAMPING", "Material", "NOT_RIGID", "STIFFEST", "read", "rigid"]
+__all__ = ["NOT_RIGID", "read", "rigid"]
 
-DAMPING = ("viscosity", "bulk_viscosity", "relaxation_modulus", "relaxation_time")
-OPTIONAL = ("law_parameters", *DAMPING, "loss")
-NOT_RIGID = ("law", "young", "nu", *OPTIONAL)  # entries that a rigid body has not
-# Largest nu in the speed of waves. The stiffness by a larger nu acts on the volume of elements.
-STIFFEST = 0.45
-
-
-@dataclass(frozen=True)
-class Material:
-    """The entries of a material, all of them set."""
-
-    law: str
-    young: float
-    nu: float
-    density: float
-    law_parameters: str
-    viscosity: float
-    bulk_viscosity: float
-    relaxation_modulus: float
-    relaxation_time: float
-    loss: float
-
-    @property
-    def damped(self) -> bool:
-        """Whether it has any damping."""
-        return any((self.viscosity, self.bulk_viscosity, self.relaxation_modulus, self.loss))
-
-    @property
-    def damping(self) -> tuple[float, ...]:
-        """The values of DAMPING."""
-        return tuple(float(getattr(self, name)) for name in DAMPING)
-
-    def moduli(self, thickness: float) -> tuple[float, float]:
-        """lambda + 2 mu and mu [Pa] in a wave across a body of this thickness [m]. Damping adds to
-        them: they are absolute values at omega = pi / transit (stiffen() of
-        edp/program/run/scales.idp).
-
-        The part of lambda above nu = STIFFEST acts on the volume of elements and not in waves.
-        """
-        nu = min(self.nu, STIFFEST)
-        mu, wave = self.young / (2 * (1 + nu)), self.young * (1 - nu) / ((1 + nu) * (1 - 2 * nu))
-        if not self.damped:
-            return wave, mu
-        turn = 1j * math.pi * math.sqrt(wave / self.density) / thickness
-        branch = self.relaxation_modulus * turn / (1 / (self.relaxation_time or 1) + turn)
-        shear = abs(mu + turn * self.viscosity + branch)
-        return abs(wave - 2 * mu + turn * self.bulk_viscosity) + 2 * shear, shear
+NEEDED = ("law", "young", "nu", "density")
+NOT_RIGID = tuple(
+    name for name in MATERIAL if name != "density"
+)  # entries that a rigid body has not
+DEFAULTS = {name: PARAMETERS[name].default for name in (*DAMPING, "loss")}
 
 
 def rigid(density: float) -> Material:
     """Returns the material of a rigid body [kg/m3]. Its `young` follows from the other bodies
     (bodies.stiffened()).
     """
-    defaults = {key: PARAMETERS[key].default for key in OPTIONAL}
-    return Material(law="svk", young=1.0, nu=0.0, density=density, **defaults)
+    return Material.model_construct(law="svk", young=1.0, nu=0.0, density=density, **DEFAULTS)
 
 
 def read(table: models.Body, top: models.Top) -> Material:
@@ -74,25 +28,29 @@ def read(table: models.Body, top: models.Top) -> Material:
     BadInput if one is in neither.
 
     A viscosity of the body replaces a loss at the top of the file, and a loss of the body a
-    viscosity there.
+    viscosity there; the law of a body replaces the entries of another law there.
     """
-    missing = [
-        key for key in MATERIAL if key not in table and key not in top and key not in OPTIONAL
-    ]
+    law = table.law or top.law
+    of_law = LAW_ENTRIES.get(law or "", ())
+    has_terms = law == "ogden" and all(name in table or name in top for name in of_law)
+    needed = [name for name in NEEDED if not (name == "young" and has_terms)]
+    missing = [name for name in needed if name not in table and name not in top]
     if missing:
         raise BadInput(
             *(
-                f"{table.at(key)}: is missing, here and at the top of the file (accepted: "
-                f"{PARAMETERS[key].accepted})"
-                for key in missing
+                f"{table.at(name)}: is missing, here and at the top of the file (accepted: "
+                f"{PARAMETERS[name].accepted})"
+                for name in missing
             )
         )
-    values: Table = {}
-    for key in MATERIAL:
-        other = {"viscosity": "loss", "loss": "viscosity"}.get(key)
-        absent = key not in top or other and other in table
-        common = PARAMETERS[key].default if absent else getattr(top, key)
-        values[key] = getattr(table, key) if key in table else common
+    values = dict(DEFAULTS)
+    for name in MATERIAL:
+        other = {"viscosity": "loss", "loss": "viscosity"}.get(name)
+        of_another_law = table.law not in (None, top.law) and name in ("share", "alpha", "mu")
+        if name in table:
+            values[name] = getattr(table, name)
+        elif name in top and not (other and other in table) and not of_another_law:
+            values[name] = getattr(top, name)
     if values["relaxation_modulus"] == 0 and "relaxation_modulus" in table:
         values["relaxation_time"] = 0.0
     if (values["relaxation_modulus"] > 0) != (values["relaxation_time"] > 0):
@@ -100,4 +58,11 @@ def read(table: models.Body, top: models.Top) -> Material:
             f"{table.at('relaxation_time')}: {values['relaxation_time']:g} s with relaxation_modulus "
             f"{values['relaxation_modulus']:g} Pa (accepted: both above 0, or none)"
         )
-    return Material(**values)
+    if has_terms and "young" not in table and "mu" in table:
+        values["young"] = None  # not that at the top
+    material = Material.model_construct(**values)
+    return (
+        material.model_copy(update={"young": material.stiffness_of_terms})
+        if has_terms and material.young is None
+        else material
+    )

@@ -22,15 +22,14 @@ from ..failure import BadInput, brief, gathered
 from ..geometry.outlines import Outline, Shape, normal_of
 from ..input import dimension, models, parameters
 from ..input.dimension import AXISYMMETRIC, SOLID, Dimension
-from ..input.models import CONTACT, MATERIAL, OWN, listed
+from ..input.models import CONTACT, MATERIAL, OWN, STIFFEST, listed
 from ..input.parameters import Table, Value
 from ..mesh.solid_file import declares_unit, takes_in_others
 from ..output import former
 from ..output.columns import Features, recorded
-from . import bodies, conditions, laws, mirror, needs, obstacles
+from . import bodies, conditions, mirror, needs, obstacles
 from .bodies import FIELDS, SIZES, Body
 from .entries import release, set_entry, toml_value
-from .material import STIFFEST
 from .obstacles import Obstacle
 
 __all__ = ["Pair", "RUN", "Scene", "gap_between", "gap_to_obstacle", "read", "refuse_rest"]
@@ -342,23 +341,10 @@ def read(content: Table, folder: Path, name: str) -> Scene:
     _refuse_friction(scene)
     _refuse_start(scene)
     for k, body in enumerate(all_bodies, 1):
-        prefix, material = f"body.{k}." if len(all_bodies) > 1 else "", body.material
-        _refuse_nu(f"{prefix}nu", material.nu, material.law)
-        laws.refuse_numbers(
-            f"{prefix}law_parameters", material.law, material.law_parameters, material.nu
-        )
+        prefix = f"body.{k}." if len(all_bodies) > 1 else ""
+        body.material.refuse(prefix.__add__)
     mirror.copies(scene)
     return scene
-
-
-def _refuse_nu(entry: str, nu: float, law: str) -> None:
-    """Raises BadInput unless the nu of a body is at most 0.4999, or 0.5, as law = incompressible
-    has it.
-    """
-    if law == "incompressible" and nu != 0.5:
-        raise BadInput(f"{entry}: {nu:g} of law = incompressible (accepted: 0.5)")
-    if 0.4999 < nu < 0.5:
-        raise BadInput(f"{entry}: {nu:g} is out of range (accepted: 0 to 0.4999, or 0.5: J = 1)")
 
 
 def _refuse_friction(scene: Scene) -> None:
