@@ -10,7 +10,7 @@ from verification.test_residual_and_tangent import MOONEY, OGDEN
 
 TERMS = ((1.3, 0.5), (5.0, 0.2), (-2.0, 0.3))  # exponents and shares of OGDEN
 # entries that make them neo-Hookean
-NEOHOOKEAN = {"mooney-rivlin": {"share": 0}, "ogden": {"alpha": [2], "mu": [7e6 / 2.9]}}
+NEOHOOKEAN = {"mooney-rivlin": {"share": 0}, "ogden": {"alpha": (2,), "mu": (7e6 / 2.9,)}}
 NU = 0.45
 KINDS = {"disc": {"accuracy": 0.1}, "ball-axisymmetric": {"accuracy": 0.1}, "ball": {"accuracy": 0.2, "mesh_size": 0.03, "contact_mesh_size": 0.015}}
 

@@ -25,11 +25,10 @@ from .geometry import place_functions
 from .geometry.time_functions import tabulated
 from .input import models
 from .input.dimension import AXISYMMETRIC, DIMENSIONS, PLANE_STRAIN, SOLID, Dimension
-from .input.models import Body, Contact, Obstacle
+from .input.models import FIELDS, Body, Contact, Obstacle
 from .input.parameter import plain
 from .input.toml_text import to_toml
 from .scenes import conditions, scene as reading
-from .scenes.bodies import FIELDS
 
 __all__ = ["Scene"]
 

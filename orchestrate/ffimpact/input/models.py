@@ -8,7 +8,7 @@ The program chooses an entry that is None. Units are SI.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable, Iterator
 from functools import partial
 from inspect import Parameter as Keyword, Signature
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
@@ -19,12 +19,14 @@ from pydantic import (
     BeforeValidator,
     ConfigDict,
     Field,
+    ModelWrapValidatorHandler,
     PrivateAttr,
     ValidationError,
     model_serializer,
     model_validator,
 )
 from pydantic.fields import FieldInfo
+from pydantic_core import PydanticCustomError
 
 from ..failure import BadInput, brief, gathered, suggestion, unknown
 from .dimension import AXISYMMETRIC, DIMENSIONS, PLANE_STRAIN, SOLID, Dimension
@@ -66,6 +68,7 @@ __all__ = [
     "Ellipse",
     "Ellipsoid",
     "Entries",
+    "FIELDS",
     "FORMER",
     "Gas",
     "Implicit",
@@ -79,6 +82,7 @@ __all__ = [
     "Material",
     "Mesh",
     "MooneyRivlin",
+    "NOT_RIGID",
     "NeoHookean",
     "OBSTACLES",
     "OWN",
@@ -217,6 +221,23 @@ class Entries(BaseModel, metaclass=_Made):
             raise BadInput(*_lines(type(self), error, type(self).__name__, ": ", None)) from None
         self._given = {**self._given, name: value}
 
+    @model_validator(mode="wrap")
+    @classmethod
+    def _agrees(cls, given: Any, validated: ModelWrapValidatorHandler[Self]) -> Self:
+        """Refuses entries that do not agree with each other, when made and when set."""
+        model = validated(given)
+        if isinstance(given, dict):
+            model._given = given
+        if refusals := list(model.refusals()):
+            raise PydanticCustomError("entries", "they do not agree", {"refusals": refusals})
+        return model
+
+    def refusals(self) -> Iterator[tuple[str, str]]:
+        """Yields entries that do not agree with others of the table, each with the message behind its
+        name.
+        """
+        yield from ()
+
     @model_serializer(mode="plain")
     def _dumped(self) -> dict[str, Any]:
         """model_dump() is table(): nothing of a body's shape is lost."""
@@ -344,6 +365,12 @@ def _lines(
         holder = model
         for part in problem["loc"][:-1]:
             holder = holder.nested.get(str(part), holder)
+        if problem["type"] == "entries":
+            path = [str(part + 1 if isinstance(part, int) else part) for part in problem["loc"]]
+            for own_name, text in problem["ctx"]["refusals"]:
+                dotted = ".".join([*path, *filter(None, [own_name])])
+                messages.append(f"{entry}{between if entry and dotted else ''}{dotted}{text}")
+            continue
         *parents, last = problem["loc"]
         parent_keys = [str(part + 1 if isinstance(part, int) else part) for part in parents]
         name = brief(last + 1 if isinstance(last, int) else last)
@@ -447,67 +474,53 @@ class Material(OfMaterial):
         others -= set(LAW_ENTRIES.get(law.default, ()))
         return [name for name in super().names(dimension) if name not in others]
 
-    @model_validator(mode="after")
-    def _is_accepted(self) -> Self:
-        own, name = type(self).model_fields["law"], type(self).__name__
+    def refusals(self) -> Iterator[tuple[str, str]]:
+        own, taken = type(self).model_fields["law"], LAW_ENTRIES.get(self.law, ())
         if not own.is_required() and self.law != own.default:
             other = LAWS[self.law].__name__ if self.law in LAWS else "Material"
-            raise BadInput(f"{name}: law: '{self.law}' is another law (accepted: {other})")
-        self.refuse(lambda entry: f"{name}: {entry}")
-        return self
-
-    def refuse(self, at: Callable[[str], str]) -> None:
-        """Raises BadInput for entries that the law lacks, has not or does not accept. at() makes
-        names in messages.
-        """
-        taken = LAW_ENTRIES.get(self.law, ())
-        for entry in (entry for entries in LAW_ENTRIES.values() for entry in entries):
-            if entry in self and entry not in taken:
-                laws = "|".join(law for law, entries in LAW_ENTRIES.items() if entry in entries)
-                raise BadInput(
-                    f"{at(entry)}: of law = {laws}, not of {self.law} (accepted: without it)"
-                )
-            rule = rule_of(type(self), entry)
-            if entry in taken and entry not in self and rule:
-                raise BadInput(
-                    f"{at(entry)}: is missing, of law = {self.law} (accepted: {rule.accepted})"
-                )
+            yield "law", f": '{self.law}' is another law (accepted: {other})"
+            return
+        for law, entries in LAW_ENTRIES.items():
+            for entry in entries:
+                if entry in self and entry not in taken:
+                    yield entry, f": of law = {law}, not of {self.law} (accepted: without it)"
+                if entry not in self and entry in taken:
+                    accepted = "" if not (rule := rule_of(OfMaterial, entry)) else rule.accepted
+                    yield entry, f": is missing, of law = {self.law} (accepted: {accepted})"
         if self.law == "incompressible" and self.nu != 0.5:
-            raise BadInput(f"{at('nu')}: {self.nu:g} of law = incompressible (accepted: 0.5)")
-        if 0.4999 < self.nu < 0.5:
-            raise BadInput(
-                f"{at('nu')}: {self.nu:g} is out of range (accepted: 0 to 0.4999, or 0.5: J = 1)"
-            )
-        if self.law == "mooney-rivlin":
-            self._refuse_share(at("share"))
-        if self.law == "ogden":
-            self._refuse_terms(at)
-
-    def _refuse_share(self, entry: str) -> None:
+            yield "nu", f": {self.nu:g} of law = incompressible (accepted: 0.5)"
+        elif 0.4999 < self.nu < 0.5:
+            accepted = "0 to 0.4999, or 0.5: J = 1"
+            yield "nu", f": {self.nu:g} is out of range (accepted: {accepted})"
         limit = self.nu / (1 - 2 * self.nu) if self.nu < 0.5 else np.inf  # lambda / (2 mu)
-        if (self.share or 0.0) > limit:
-            raise BadInput(
-                f"{entry}: {self.share:g} with a Poisson's ratio that is too small (accepted: to "
-                f"lambda/(2 mu), {limit:g})"
+        if self.law == "mooney-rivlin" and (self.share or 0.0) > limit:
+            yield (
+                "share",
+                f": {self.share:g} with a Poisson's ratio that is too small (accepted: to "
+                f"lambda/(2 mu), {limit:g})",
             )
+        if self.alpha and self.mu:
+            yield from self._of_terms(self.alpha, self.mu)
 
-    def _refuse_terms(self, at: Callable[[str], str]) -> None:
-        alpha, mu = self.alpha or [], self.mu or []
+    def _of_terms(self, alpha: list[float], mu: list[float]) -> Iterator[tuple[str, str]]:
+        """Yields what the terms of ogden lack."""
         if len(alpha) != len(mu):
-            raise BadInput(
-                f"{at('mu')}: '{brief(mu)}' beside {len(alpha)} of alpha (accepted: as many)"
-            )
+            yield "mu", f": '{brief(mu)}' beside {len(alpha)} of alpha (accepted: as many)"
+            return
         for k, (exponent, modulus) in enumerate(zip(alpha, mu), 1):
             if exponent * modulus <= 0:
-                raise BadInput(
-                    f"{at('mu')}.{k}: {modulus:g} with the exponent {exponent:g} (accepted: an exponent "
-                    "other than 0, and a modulus of its sign)"
+                yield (
+                    f"mu.{k}",
+                    f": {modulus:g} with the exponent {exponent:g} (accepted: an exponent other "
+                    "than 0, and a modulus of its sign)",
                 )
+                return
         stiffness = self.stiffness_of_terms
         if self.young is not None and not np.isclose(self.young, stiffness, rtol=1e-6):
-            raise BadInput(
-                f"{at('young')}: {self.young:g} beside alpha and mu, which make it {stiffness:.9g} "
-                "(accepted: without it)"
+            yield (
+                "young",
+                f": {self.young:g} beside alpha and mu, which make it {stiffness:.9g} (accepted: "
+                "without it)",
             )
 
     @property
@@ -592,6 +605,9 @@ LAWS: dict[str, type[Material]] = {
     for model in (SaintVenantKirchhoff, NeoHookean, Incompressible, MooneyRivlin, Ogden)
 }
 MATERIAL = tuple(OfMaterial.model_fields)
+NOT_RIGID = tuple(
+    name for name in MATERIAL if name != "density"
+)  # entries that a rigid body has not
 
 
 # ---- conditions at the boundary of a body
@@ -655,8 +671,20 @@ class Load(Entries):
     )
     gas: Gas | None = None
 
+    @property
+    def kinds(self) -> list[str]:
+        """Which stresses it has."""
+        return [kind for kind in ("traction", "pressure", "gas") if kind in self]
+
+    def refusals(self) -> Iterator[tuple[str, str]]:
+        if len(self.kinds) != 1:
+            has = " and ".join(self.kinds) or "no stress"
+            yield "", f": has {has} (accepted: one of traction, pressure, gas)"
+
 
 # ---- bodies
+
+FIELDS = ("initial_velocity", "initial_displacement")  # entries that are functions of place
 
 
 class Body(OfMaterial):
@@ -742,6 +770,36 @@ class Body(OfMaterial):
         own = {name: value for name, value in entries.items() if name != "material"}
         return (entries["material"].table() if "material" in entries else {}) | own
 
+    def refusals(self) -> Iterator[tuple[str, str]]:
+        if self.velocity is not None and (self.speed is not None or self.direction is not None):
+            yield (
+                "velocity",
+                f": '{self.value_text('velocity')}' stands beside speed or direction (accepted: "
+                "velocity, or speed with direction)",
+            )
+        elif (self.speed is None) != (self.direction is None):
+            accepted = "speed [m/s] with direction [deg], counter-clockwise from x"
+            missing = "direction" if self.direction is None else "speed"
+            yield missing, f": is missing (accepted: {accepted})"
+        if 0 < (stretch := self.mesh_stretch or 0.0) < 1:
+            accepted = f"0, or from 1 to {MOST_STRETCH:g}"
+            yield "mesh_stretch", f": {stretch:g} is below 1 (accepted: {accepted})"
+        if self.angle is not None and self.turn is not None:
+            accepted = "angle about z, or turn = [x, y, z]"
+            yield (
+                "angle",
+                f": '{self.value_text('angle')}' stands beside turn (accepted: {accepted})",
+            )
+        if not self.rigid:
+            for name in [name for name in ("mass", "inertia") if name in self][:1]:
+                yield name, ": is of a rigid body (accepted: with rigid = true, or density)"
+            return
+        for name in [name for name in (*NOT_RIGID, "support", *FIELDS) if name in self][:1]:
+            accepted = "density, or mass; without rigid = true"
+            yield name, f": a rigid body has none (accepted: {accepted})"
+        if "mass" in self and "density" in self:
+            yield "mass", ": stands beside density (accepted: one of them)"
+
     @property
     def material(self) -> Material | None:
         """The body's own material; None unless law, young, nu and density are all set."""
@@ -775,14 +833,27 @@ class Drawn(Body):
 
     @property
     def is_placed_as_drawn(self) -> bool:
-        """Whether `position` is that of the drawing's origin; raises BadInput if it is missing."""
-        as_drawn = self.placement == "as-drawn"
-        if self.position is None and not as_drawn:
-            raise BadInput(
-                f"{self.at('position')}: is missing (accepted: that of the centre of mass, or "
-                f"placement = 'as-drawn')"
-            )
-        return as_drawn
+        """Whether `position` is that of the drawing's origin."""
+        return self.placement == "as-drawn"
+
+    def refusals(self) -> Iterator[tuple[str, str]]:
+        yield from super().refusals()
+        if self.position is None and not self.is_placed_as_drawn:
+            accepted = "that of the centre of mass, or placement = 'as-drawn'"
+            yield "position", f": is missing (accepted: {accepted})"
+
+
+class Hollow(Body):
+    """The entries of a body with a wall."""
+
+    radius: Annotated[float, number(meaning="outer radius")]
+    inner_radius: Annotated[float, number(meaning="inner radius")]
+
+    def refusals(self) -> Iterator[tuple[str, str]]:
+        yield from super().refusals()
+        if self.inner_radius >= self.radius:
+            inner, outer = self.inner_radius, self.radius
+            yield "inner_radius", f": {inner:g} is not less than the radius {outer:g}"
 
 
 class Disc(Body):
@@ -809,12 +880,10 @@ class Rectangle(Body):
     height: Annotated[float, number(meaning="height")]
 
 
-class Ring(Body):
+class Ring(Hollow):
     """A ring in plane strain."""
 
     shape = "ring"
-    radius: Annotated[float, number(meaning="outer radius")]
-    inner_radius: Annotated[float, number(meaning="inner radius")]
 
 
 class Polygon(Drawn):
@@ -838,13 +907,11 @@ class Ball(Body):
     radius: Annotated[float, number(meaning="radius")]
 
 
-class Shell(Body):
+class Shell(Hollow):
     """A hollow ball, of revolution or in space."""
 
     shape = "shell"
     dimensions = (AXISYMMETRIC, SOLID)
-    radius: Annotated[float, number(meaning="outer radius")]
-    inner_radius: Annotated[float, number(meaning="inner radius")]
 
 
 class Ellipsoid(Body):
@@ -864,13 +931,11 @@ class Cylinder(Body):
     height: Annotated[float, number(meaning="height")]
 
 
-class Tube(Body):
+class Tube(Hollow):
     """A tube about the y axis, of revolution or in space."""
 
     shape = "tube"
     dimensions = (AXISYMMETRIC, SOLID)
-    radius: Annotated[float, number(meaning="outer radius")]
-    inner_radius: Annotated[float, number(meaning="inner radius")]
     height: Annotated[float, number(meaning="height")]
 
 
@@ -881,6 +946,12 @@ class Torus(Body):
     dimensions = (AXISYMMETRIC,)
     radius: Annotated[float, number(meaning="from the axis to the middle of the section")]
     section: Annotated[float, number(meaning="radius of the section")]
+
+    def refusals(self) -> Iterator[tuple[str, str]]:
+        yield from super().refusals()
+        if self.section >= self.radius:
+            accepted = f"below radius, {self.radius:g} m"
+            yield "section", f": {self.section:g} m reaches the axis (accepted: {accepted})"
 
 
 class Box(Body):
@@ -924,6 +995,16 @@ class Mesh(Drawn):
         number(1e-9, 1e9, "m", "a unit of length of the file or points; STEP declares its own"),
     ] = None
 
+    def refusals(self) -> Iterator[tuple[str, str]]:
+        yield from super().refusals()
+        arrays = [name for name in ("points", "cells", "labels") if name in self]
+        missing = [name for name in ("points", "cells") if arrays and name not in self]
+        if arrays and self.file is not None:
+            accepted = "a file, or points and cells"
+            yield "file", f": stands beside {arrays[0]} (accepted: {accepted})"
+        elif missing:
+            yield missing[0], ": is missing (accepted: points and cells, or a file)"
+
 
 BODIES: dict[str, type[Body]] = {
     model.shape: model
@@ -955,6 +1036,15 @@ class OfContact(Entries):
     friction_static: Annotated[float | None, shared("friction_static")] = None
     friction_dynamic: Annotated[float | str | None, shared("friction_dynamic")] = None
 
+    def refusals(self) -> Iterator[tuple[str, str]]:
+        static, dynamic = self.friction_static, self.friction_dynamic
+        if static is not None and isinstance(dynamic, float) and dynamic > static:
+            yield (
+                "friction_dynamic",
+                f": {dynamic:g} is larger than friction_static {static:g} (accepted: 0 to "
+                "friction_static)",
+            )
+
     @classmethod
     def refused(cls, name: str, value: Any, dimension: Dimension | None) -> str:
         return _of_all(name, value) or super().refused(name, value, dimension)
@@ -977,6 +1067,17 @@ class Obstacle(OfContact):
     axis: Annotated[
         list[float] | None, Vector("in space, the direction that it turns about", count=3)
     ] = None
+
+    def refusals(self) -> Iterator[tuple[str, str]]:
+        yield from super().refusals()
+        for name in ("pivot", "axis"):
+            if name in self and self.rotation is None:
+                yield name, ": stands without rotation (accepted: with it)"
+        if self.velocity is not None and any(name in self for name in ("motion", "rotation")):
+            yield "velocity", ": stands beside motion or rotation (accepted: one of them)"
+        if self.axis is not None and not any(self.axis):
+            text = self.value_text("axis")
+            yield "axis", f": '{text}' has no direction (accepted: other than 0)"
 
     def table(self) -> dict[str, Any]:
         """The table `[[obstacle]]`."""
@@ -1033,6 +1134,11 @@ class Polyline(Obstacle):
         float | None,
         number(0.0, LONGEST, "m", "radius that cuts convex corners; sides stay on the vertices"),
     ] = None
+
+    def refusals(self) -> Iterator[tuple[str, str]]:
+        yield from super().refusals()
+        if self.rounding and self.fillet:
+            yield "rounding", f": {self.rounding:g} m beside fillet (accepted: one of them)"
 
 
 class Surface(Obstacle):

@@ -116,8 +116,8 @@ def plain(value: Any) -> Any:
 class Parameter(Rule):
     """The rule of one parameter.
 
-    `kind` is real, int or word. `low` and `high` bound numbers. `words` are the accepted words; a number may have them too (auto). `scripts` are the
-    scripts that take the parameter.
+    `kind` is real, int or word. `low` and `high` bound numbers. `words` are the accepted words; a
+    number may have them too (auto). `scripts` are the scripts that take the parameter.
     """
 
     name: str

@@ -18,7 +18,7 @@ from ..geometry.outlines import (
     polygon_loop,
     self_crossing,
 )
-from ..input.models import Body, Mesh, Polygon, Ring
+from ..input.models import Body, Mesh, Polygon
 from ..input.parameters import Table
 from . import given, mesh, plane_file
 
@@ -44,10 +44,7 @@ def shape(body: Body, folder: Path) -> tuple[Outline, mesh.Mesh | None, np.ndarr
 
 
 def motion(body: Body) -> Table:
-    """The initial position (2,) [m], angle [rad], velocity (2,) [m/s] and spin [rad/s] of a body.
-
-    Raises BadInput if the velocity is over- or underdetermined.
-    """
+    """The initial position (2,) [m], angle [rad], velocity (2,) [m/s] and spin [rad/s] of a body."""
     return {
         "position": np.array(body.position or [0.0, 0.0]),
         "angle": math.radians(body.angle or 0.0),
@@ -57,21 +54,8 @@ def motion(body: Body) -> Table:
 
 
 def velocity(body: Body, axes: int) -> np.ndarray:
-    """The initial velocity (axes,) [m/s] of a body, by velocity or by speed and direction.
-
-    Raises BadInput if it is over- or underdetermined.
-    """
+    """The initial velocity (axes,) [m/s] of a body, by velocity or by speed and direction."""
     speed, degrees = body.speed, body.direction
-    if body.velocity is not None and (speed is not None or degrees is not None):
-        raise BadInput(
-            f"{body.at('velocity')}: '{body.value_text('velocity')}' stands beside speed or direction (accepted: velocity, "
-            f"or speed with direction)"
-        )
-    if (speed is None) != (degrees is None):
-        missing = "direction" if degrees is None else "speed"
-        raise BadInput(
-            f"{body.at(missing)}: is missing (accepted: speed [m/s] with direction [deg], counter-clockwise from x)"
-        )
     if speed is None or degrees is None:
         return np.array(body.velocity or [0.0] * axes)
     return speed * np.array([_sin(degrees + 90), _sin(degrees), 0.0][:axes])
@@ -92,10 +76,6 @@ def _sin(degrees: float) -> float:
 def _outline(body: Body) -> Outline:
     if isinstance(body, Polygon):
         return _polygon(body)
-    if isinstance(body, Ring) and body.inner_radius >= body.radius:
-        raise BadInput(
-            f"{body.at('inner_radius')}: {body.inner_radius:g} is not less than the radius {body.radius:g}"
-        )
     return Outline(LOOPS[body.shape](*body.sizes))
 
 

@@ -20,18 +20,8 @@ Made = TypeVar("Made", Mesh, SolidMesh)
 
 
 def is_given(body: Table) -> bool:
-    """Whether a body has its mesh as arrays. Raises BadInput for half of them, or a file beside."""
-    arrays = [name for name in ("points", "cells") if name in body]
-    if "labels" in body and not arrays:
-        arrays = ["labels"]
-    if arrays and "file" in body:
-        raise BadInput(
-            f"{body.at('file')}: stands beside {arrays[0]} (accepted: a file, or points and cells)"
-        )
-    if arrays and not {"points", "cells"} <= set(arrays):
-        other = "cells" if "points" in body else "points"
-        raise BadInput(f"{body.at(other)}: is missing (accepted: points and cells, or a file)")
-    return bool(arrays)
+    """Whether a body has its mesh as arrays."""
+    return body.points is not None
 
 
 def plane(body: Table) -> Mesh:

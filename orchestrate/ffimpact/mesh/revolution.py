@@ -27,7 +27,6 @@ from . import flat, mesh
 
 __all__ = [
     "boundary",
-    "check_radii",
     "closed_over_axis",
     "crossing_axis",
     "image",
@@ -63,7 +62,6 @@ def shape(body: Body, folder: Path) -> tuple[Outline, mesh.Mesh | None, np.ndarr
         half = half.moved(-centre)
         return flat.mesh_outline(whole(half)), half, centre
     if isinstance(body, Shell):
-        check_radii(body)
         loops = (circle_loop(body.radius), circle_loop(body.inner_radius))
         return Outline(loops), None, np.zeros(2)
     loop = _tube_loop(body) or _loop(body)
@@ -99,27 +97,11 @@ def _loop(body: Body) -> Loop:
     return LOOPS[body.shape](*body.sizes)
 
 
-def check_radii(body: Shell | Tube) -> None:
-    """Raises BadInput if the wall of a hollow body has no thickness."""
-    if not body.inner_radius < body.radius:
-        raise BadInput(
-            f"{body.at('inner_radius')}: {body.inner_radius:g} m is no smaller than radius (accepted: below {body.radius:g} m)"
-        )
-
-
 def _tube_loop(body: Body) -> Loop | None:
-    """The loop to the right of the axis, of a section that does not reach the axis; else None.
-
-    Raises BadInput if the lengths of the body contradict each other.
-    """
+    """The loop to the right of the axis, of a section that does not reach the axis; else None."""
     if isinstance(body, Torus):
-        if not body.section < body.radius:
-            raise BadInput(
-                f"{body.at('section')}: {body.section:g} m reaches the axis (accepted: below radius, {body.radius:g} m)"
-            )
         return circle_loop(body.section).placed(np.array([body.radius, 0.0]), 0.0)
     if isinstance(body, Tube):
-        check_radii(body)
         inner, outer, half = body.inner_radius, body.radius, body.height / 2
         return Loop(np.array([[inner, -half], [outer, -half], [outer, half], [inner, half]]))
     if isinstance(body, Polygon) and (right := np.array(body.vertices))[:, 0].min() > 0:

@@ -17,11 +17,10 @@ from scipy.spatial import cKDTree
 from ..failure import BadInput
 from ..geometry import outlines, tumbling
 from ..geometry.outlines import Turn
-from ..input.models import Body, Mesh, Shell, Tube
+from ..input.models import Body, Mesh
 from ..input.parameters import Table
 from . import curved, flat, given, solid_file
 from .mesh import Sizes
-from .revolution import check_radii
 from .solid_mesh import MOST_CELLS, SolidMesh, expected_cells, mesh_shape
 
 if TYPE_CHECKING:
@@ -514,8 +513,6 @@ def shape(body: Body, folder: Path) -> tuple[Solid, SolidMesh | None, np.ndarray
     """
     if isinstance(body, Mesh):
         return _of_file(body, folder)
-    if isinstance(body, Shell | Tube):
-        check_radii(body)
     return Solid(MADE[body.shape](*body.sizes), np.zeros(3), np.eye(3)), None, np.zeros(3)
 
 
@@ -561,15 +558,7 @@ def _of_mesh(made: SolidMesh) -> tuple[Solid, SolidMesh, np.ndarray]:
 
 
 def motion(body: Body) -> Table:
-    """The initial position [m], rotation vector [rad], velocity [m/s] and spin [rad/s], each (3,).
-
-    Raises BadInput if the table contains both `angle` and `turn`, or a velocity twice.
-    """
-    if body.angle is not None and body.turn is not None:
-        raise BadInput(
-            f"{body.at('angle')}: '{body.value_text('angle')}' stands beside turn (accepted: angle about z, or turn = "
-            f"[x, y, z])"
-        )
+    """The initial position [m], rotation vector [rad], velocity [m/s] and spin [rad/s], each (3,)."""
     none = [0.0, 0.0, 0.0]
     turn = [0.0, 0.0, body.angle] if body.angle is not None else body.turn or none
     return {

@@ -19,7 +19,7 @@ from ..geometry.outlines import Outline, Shape, Turn
 from ..geometry.place_functions import Field
 from ..input import models, parameters
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
-from ..input.models import MOST_STRETCH, Material
+from ..input.models import FIELDS, Material
 from ..input.parameters import Table, Value
 from ..input.rules import SHORTEST
 from ..mesh import flat, mesh, revolution, solids
@@ -28,9 +28,8 @@ from ..mesh.solid_mesh import SolidMesh
 from ..mesh.solids import Solid
 from . import material
 from .conditions import Load, Support, read_loads, read_supports
-from .material import NOT_RIGID
 
-__all__ = ["Body", "FIELDS", "SIZES", "STIFF", "read", "stiffened"]
+__all__ = ["Body", "SIZES", "STIFF", "read", "stiffened"]
 
 # Modules with the functions shape() and motion().
 GEOMETRY = {PLANE_STRAIN: flat, AXISYMMETRIC: revolution, SOLID: solids}
@@ -40,7 +39,6 @@ MEAN = 24  # number of points along an axis from which the mean of a field follo
 BESIDE = 0.01  # distance of the box of a body from its sampled points, over its extents
 FINEST = 1 / 20000  # smallest element size over the half thickness of a body
 SIZES = ("mesh_size", "contact_mesh_size")
-FIELDS = ("initial_velocity", "initial_displacement")  # entries that are functions of place
 
 
 @dataclass(frozen=True)
@@ -189,14 +187,6 @@ def _body(table: models.Body, top: models.Top, folder: Path, dimension: Dimensio
             f"which has its own element sizes (accepted: {', '.join(SIZES)} where gmsh makes "
             f"the mesh: of a shape, or of a geometry, {', '.join(GEOMETRIES)})"
         )
-    if not table.rigid and (refused := [key for key in ("mass", "inertia") if key in table]):
-        raise BadInput(
-            f"{table.at(refused[0])}: is of a rigid body (accepted: with rigid = true, or density)"
-        )
-    if 0 < (stretch := table.mesh_stretch or 0.0) < 1:
-        raise BadInput(
-            f"{table.at('mesh_stretch')}: {stretch:g} is below 1 (accepted: 0, or from 1 to {MOST_STRETCH:g})"
-        )
     made_of = (
         _rigid(table, top, dimension, outline)
         if table.rigid
@@ -219,7 +209,7 @@ def _body(table: models.Body, top: models.Top, folder: Path, dimension: Dimensio
         **made_of,
         mesh_size=bulk,
         contact_mesh_size=contact,
-        mesh_stretch=stretch,
+        mesh_stretch=table.mesh_stretch or 0.0,
         supports=read_supports(table.support or [], dimension, end_time, folder),
         loads=read_loads(table.load or [], dimension, end_time, folder),
     )
@@ -248,13 +238,6 @@ def _with_mean(body: Body, dimension: Dimension) -> Body:
 
 def _rigid(table: models.Body, top: models.Top, dimension: Dimension, outline: Shape) -> Table:
     """Returns the material, mass and moments of a rigid body."""
-    for key in (*NOT_RIGID, "support", *FIELDS):
-        if key in table:
-            raise BadInput(
-                f"{table.at(key)}: a rigid body has none (accepted: density, or mass; without rigid = true)"
-            )
-    if "mass" in table and "density" in table:
-        raise BadInput(f"{table.at('mass')}: stands beside density (accepted: one of them)")
     mass = table.mass or 0.0
     if not mass and "density" not in table and "density" not in top:
         raise BadInput(

@@ -230,12 +230,7 @@ def _support(table: models.Support, dimension: Dimension, end_time: float, folde
 
 
 def _load(table: models.Load, dimension: Dimension, end_time: float, folder: Path) -> Load:
-    kinds = [kind for kind in KINDS if kind in table]
-    if len(kinds) != 1:
-        raise BadInput(
-            f"{table.entry}: has {' and '.join(kinds) or 'no stress'} (accepted: one of {', '.join(KINDS)})"
-        )
-    kind, part = kinds[0], _part(table)
+    kind, part = table.kinds[0], _part(table)
     if table.gas:
         gas = table.gas
         ambient = AMBIENT if gas.ambient_pressure is None else gas.ambient_pressure

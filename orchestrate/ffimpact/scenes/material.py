@@ -7,7 +7,7 @@ from ..input import models
 from ..input.models import DAMPING, LAW_ENTRIES, MATERIAL, Material
 from ..input.parameters import PARAMETERS
 
-__all__ = ["NOT_RIGID", "read", "rigid"]
+__all__ = ["read", "rigid"]
 
 NEEDED = ("law", "young", "nu", "density")
 NOT_RIGID = tuple(
@@ -43,7 +43,7 @@ def read(table: models.Body, top: models.Top) -> Material:
                 for name in missing
             )
         )
-    values = dict(DEFAULTS)
+    values = dict.fromkeys(MATERIAL) | DEFAULTS
     for name in MATERIAL:
         other = {"viscosity": "loss", "loss": "viscosity"}.get(name)
         of_another_law = table.law not in (None, top.law) and name in ("share", "alpha", "mu")
@@ -58,11 +58,8 @@ def read(table: models.Body, top: models.Top) -> Material:
             f"{table.at('relaxation_time')}: {values['relaxation_time']:g} s with relaxation_modulus "
             f"{values['relaxation_modulus']:g} Pa (accepted: both above 0, or none)"
         )
-    if has_terms and "young" not in table and "mu" in table:
-        values["young"] = None  # not that at the top
-    material = Material.model_construct(**values)
-    return (
-        material.model_copy(update={"young": material.stiffness_of_terms})
-        if has_terms and material.young is None
-        else material
-    )
+    if has_terms and "mu" in table and "young" not in table:
+        values["young"] = None  # that at the top is of other bodies
+    if has_terms and values["young"] is None:
+        values["young"] = Material.model_construct(**values).stiffness_of_terms
+    return Material.model_construct(**values)

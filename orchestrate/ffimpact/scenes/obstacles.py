@@ -231,10 +231,6 @@ class Polyline(Obstacle):
         if dimension is AXISYMMETRIC:
             vertices, closed = mirrored(table.at("vertices"), vertices)
         polyline.check(table.entry, vertices, closed)
-        if table.rounding and table.fillet:
-            raise BadInput(
-                f"{table.at('rounding')}: {table.rounding:g} m beside fillet (accepted: one of them)"
-            )
         if table.fillet:
             vertices = polyline.inset(table.at("fillet"), vertices, closed, table.fillet)
         return polyline.numbers(vertices, closed, table.rounding or table.fillet or 0.0)
@@ -436,13 +432,6 @@ def _drive(
     """Returns the motion of the entries motion, rotation, pivot and axis, or None without them."""
     if not any(key in table for key in DRIVE):
         return None
-    for key, needs in (("pivot", "rotation"), ("axis", "rotation")):
-        if key in table and needs not in table:
-            raise BadInput(f"{table.at(key)}: stands without {needs} (accepted: with it)")
-    if "velocity" in table:
-        raise BadInput(
-            f"{table.at('velocity')}: stands beside motion or rotation (accepted: one of them)"
-        )
     if dimension is AXISYMMETRIC and "rotation" in table:
         raise BadInput(
             f"{table.at('rotation')}: nothing turns in a scene of revolution (accepted: motion)"
@@ -468,10 +457,6 @@ def _drive(
     )
     turn = degrees.scaled(np.pi / 180)
     axis = np.array(table.axis or [0.0, 0.0, 1.0])
-    if not axis.any():
-        raise BadInput(
-            f"{table.at('axis')}: '{table.value_text('axis')}' has no direction (accepted: other than 0)"
-        )
     centre = (
         getattr(table, "centre", None) or getattr(table, "point", None) or [0.0] * dimension.axes
     )

@@ -22,13 +22,13 @@ from ..failure import BadInput, brief, gathered
 from ..geometry.outlines import Outline, Shape, normal_of
 from ..input import dimension, models, parameters
 from ..input.dimension import AXISYMMETRIC, SOLID, Dimension
-from ..input.models import CONTACT, MATERIAL, OWN, STIFFEST, listed
+from ..input.models import CONTACT, FIELDS, MATERIAL, OWN, STIFFEST, listed
 from ..input.parameters import Table, Value
 from ..mesh.solid_file import declares_unit, takes_in_others
 from ..output import former
 from ..output.columns import Features, recorded
 from . import bodies, conditions, mirror, needs, obstacles
-from .bodies import FIELDS, SIZES, Body
+from .bodies import SIZES, Body
 from .entries import release, set_entry, toml_value
 from .obstacles import Obstacle
 
@@ -342,7 +342,8 @@ def read(content: Table, folder: Path, name: str) -> Scene:
     _refuse_start(scene)
     for k, body in enumerate(all_bodies, 1):
         prefix = f"body.{k}." if len(all_bodies) > 1 else ""
-        body.material.refuse(prefix.__add__)
+        for entry, text in body.material.refusals():
+            raise BadInput(f"{prefix}{entry}{text}")
     mirror.copies(scene)
     return scene
 
