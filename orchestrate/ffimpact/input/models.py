@@ -8,7 +8,7 @@ The program chooses an entry that is None. Units are SI.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from inspect import Parameter as Keyword, Signature
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
@@ -121,6 +121,11 @@ if TYPE_CHECKING:
     from pydantic._internal._model_construction import ModelMetaclass
 else:
     ModelMetaclass = type(BaseModel)
+
+# Types of entries. Arrays and tuples become lists; Python functions become tables.
+Components = list[float] | float  # one for each axis, or the only one
+Timed = float | str | list[Any] | dict[str, Any] | Callable[[float], Any]  # functions of time
+Placed = list[float | str] | dict[str, Any] | Callable[[np.ndarray], Any]  # functions of place
 
 PLACEMENTS = ("centroid", "as-drawn")
 MOST_PRESSURE = 1e15  # largest accepted pressure [Pa]
@@ -621,7 +626,9 @@ class Support(Entries):
         str | None,
         Parameter("", "word", None, "", "what is held", words=("all", "x", "y", "z", "normal")),
     ] = None
-    motion: Annotated[Any, Function("displacement [m], a function of t for each axis")] = None
+    motion: Annotated[Timed | None, Function("displacement [m], a function of t for each axis")] = (
+        None
+    )
     release: Annotated[float | None, number(1e-12, LONGEST, "s", "time from which it is free")] = (
         None
     )
@@ -663,12 +670,12 @@ class Load(Entries):
 
     nested = {"gas": Gas}
     where: Annotated[str | dict[str, Any], Where(SIDES)]
-    traction: Annotated[Any, Function("per reference area [Pa], a function of t for each axis")] = (
-        None
-    )
-    pressure: Annotated[Any, Function("follows the surface [Pa], a function of t", single=True)] = (
-        None
-    )
+    traction: Annotated[
+        Timed | None, Function("per reference area [Pa], a function of t for each axis")
+    ] = None
+    pressure: Annotated[
+        Timed | None, Function("follows the surface [Pa], a function of t", single=True)
+    ] = None
     gas: Gas | None = None
 
     @property
@@ -704,8 +711,8 @@ class Body(OfMaterial):
     }  # fmt: skip
 
     name: Annotated[str | None, Name("of its own")] = None
-    position: Annotated[Any, Place("of the centre of mass [m]")]
-    velocity: Annotated[Any, Place("of the centre of mass [m/s]")] = None
+    position: Annotated[Components | None, Place("of the centre of mass [m]")]
+    velocity: Annotated[Components | None, Place("of the centre of mass [m/s]")] = None
     mesh_size: Annotated[
         float | None, shared("mesh_size", "largest element size; 0 = by accuracy")
     ] = None
@@ -730,7 +737,8 @@ class Body(OfMaterial):
         float | None, number(1e-12, LONGEST, "", "of a rigid body [kg, in the plane kg/m]")
     ] = None
     inertia: Annotated[
-        Any, InSpace(number(1e-18, LONGEST, ""), "of a rigid body [kg m2]", about_z=False)
+        Components | None,
+        InSpace(number(1e-18, LONGEST, ""), "of a rigid body [kg m2]", about_z=False),
     ] = None
     angle: Annotated[float | None, number(-MOST_TURN, MOST_TURN, "deg", "turned by, about z")] = (
         None
@@ -746,14 +754,14 @@ class Body(OfMaterial):
             -MOST_TURN, MOST_TURN, "deg", "of the speed, in the plane of x and y, from the x axis"
         ),
     ] = None
-    spin: Annotated[Any, InSpace(shared("spin"), "angular velocity [rad/s]; in space a vector")] = (
-        None
-    )
+    spin: Annotated[
+        Components | None, InSpace(shared("spin"), "angular velocity [rad/s]; in space a vector")
+    ] = None
     initial_velocity: Annotated[
-        Any, OfPlace("of the points of the body [m/s], on top of velocity and spin")
+        Placed | None, OfPlace("of the points of the body [m/s], on top of velocity and spin")
     ] = None
     initial_displacement: Annotated[
-        Any, OfPlace("of the points of the body [m], which deforms it")
+        Placed | None, OfPlace("of the points of the body [m], which deforms it")
     ] = None
 
     @model_validator(mode="before")
@@ -824,7 +832,8 @@ class Drawn(Body):
     """A body whose shape is drawn: by vertices or in a file, with an origin of its own."""
 
     position: Annotated[
-        Any, Place("of the centre of mass, or with placement = 'as-drawn' of the origin [m]")
+        Components | None,
+        Place("of the centre of mass, or with placement = 'as-drawn' of the origin [m]"),
     ] = None
     placement: Annotated[
         str | None,
@@ -896,7 +905,7 @@ class Polygon(Drawn):
     dimensions = (PLANE_STRAIN, AXISYMMETRIC)
     only = Drawn.only | {"holes": (PLANE_STRAIN,)}
     vertices: Annotated[list[list[float]], Points(3, "corners [m], each once, in order")]
-    holes: Annotated[Any, Polygons("holes in it")] = None
+    holes: Annotated[list[list[list[float]]] | None, Polygons("holes in it")] = None
 
 
 class Ball(Body):
@@ -974,15 +983,17 @@ class Mesh(Drawn):
     dimensions = (PLANE_STRAIN, AXISYMMETRIC, SOLID)
     file: Annotated[str | None, Text("path, from the folder of the scene on")] = None
     points: Annotated[
-        Any, Rows((2, 3), "points of a mesh, in place of a file"), Field(repr=False)
+        list[list[float]] | None,
+        Rows((2, 3), "points of a mesh, in place of a file"),
+        Field(repr=False),
     ] = None
     cells: Annotated[
-        Any,
+        list[list[int]] | None,
         Rows((3, 4), "corners of its triangles or tetrahedra, as numbers of points", True),
         Field(repr=False),
     ] = None
     labels: Annotated[
-        Any,
+        dict[str, list[list[int]]] | None,
         Parts(
             Rows((2, 3), whole=True),
             "parts of its boundary, for `where`; 'contact' may come into contact (without it all), "
@@ -1060,9 +1071,13 @@ class Obstacle(OfContact):
     heading = ("kind",)
     dimensions: ClassVar[tuple[Dimension, ...]] = (PLANE_STRAIN, AXISYMMETRIC, SOLID)
     name: Annotated[str | None, Name("of its own")] = None
-    velocity: Annotated[Any, Place("[m/s]")] = None
-    motion: Annotated[Any, Function("displacement [m], a function of t for each axis")] = None
-    rotation: Annotated[Any, Function("turned by [degrees], a function of t", single=True)] = None
+    velocity: Annotated[Components | None, Place("[m/s]")] = None
+    motion: Annotated[Timed | None, Function("displacement [m], a function of t for each axis")] = (
+        None
+    )
+    rotation: Annotated[
+        Timed | None, Function("turned by [degrees], a function of t", single=True)
+    ] = None
     pivot: Annotated[list[float] | None, Vector("what it turns about [m]")] = None
     axis: Annotated[
         list[float] | None, Vector("in space, the direction that it turns about", count=3)
@@ -1097,7 +1112,7 @@ class Circle(Obstacle):
 
     kind = "circle"
     dimensions = (PLANE_STRAIN,)
-    centre: Annotated[Any, Place("[m]")]
+    centre: Annotated[Components, Place("[m]")]
     radius: Annotated[float, number(meaning="radius")]
 
 
@@ -1105,7 +1120,7 @@ class Bowl(Obstacle):
     """A concave obstacle: the solid outside a circle or sphere."""
 
     kind = "bowl"
-    centre: Annotated[Any, Place("[m]")]
+    centre: Annotated[Components, Place("[m]")]
     radius: Annotated[float, number(meaning="radius")]
 
 
@@ -1114,7 +1129,7 @@ class Sphere(Obstacle):
 
     kind = "sphere"
     dimensions = (AXISYMMETRIC, SOLID)
-    centre: Annotated[Any, Place("[m]")]
+    centre: Annotated[Components, Place("[m]")]
     radius: Annotated[float, number(meaning="radius")]
 
 
@@ -1165,7 +1180,7 @@ class Implicit(Obstacle):
 
     kind = "implicit"
     distance: Annotated[
-        Any, Function("expression in x, y (, z) of the signed distance [m]", single=True)
+        Timed, Function("expression in x, y (, z) of the signed distance [m]", single=True)
     ]
 
 
@@ -1183,7 +1198,7 @@ class Pair(OfContact):
     They replace the entries of the whole scene.
     """
 
-    bodies: Annotated[Any, Partners("two names")] = None
+    bodies: Annotated[Sequence[str] | None, Partners("two names")] = None
 
 
 class Contact(OfContact):

@@ -87,4 +87,4 @@ def _labels(body: Table, sides: np.ndarray, never: int) -> tuple[np.ndarray, dic
 
 def _given_numbers(body: Table) -> np.ndarray:
     """The number in the scene of each point that cells use."""
-    return np.unique(body.cells)
+    return np.unique(np.array(body.cells))

@@ -268,7 +268,7 @@ def _moments(table: models.Body, dimension: Dimension) -> tuple[float, ...]:
             f"{table.at('inertia')}: no body of revolution turns in its scene (accepted: without inertia)"
         )
     if dimension is PLANE_STRAIN:
-        return (float(table.inertia), *(0.0,) * 5)
+        return (float(np.array(table.inertia)), *(0.0,) * 5)
     about = np.array(table.inertia)
     own = about.sum() / 2 - about
     if not (own > 0).all():

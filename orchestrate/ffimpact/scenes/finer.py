@@ -25,10 +25,10 @@ def scaled(scene: Scene, used: Table, factor: float) -> Table:
         entries["contact.pair"] = _pairs(scene, used["contact"]["pair"], factor)
     entries["accuracy"] = estimate.loosened(used["accuracy"], factor)
     stretched = any("mesh_stretch" in table for table in used["body"])
-    # errors of fronts are of first order in the elements
-    first_order = math.sqrt(scene.number("accuracy") * entries["accuracy"])
-    finer = scene.override({"accuracy": first_order})
-    strikes = fronts(finer, onsets_of(scene)) if stretched else []
+    strikes = []
+    if stretched:  # errors of fronts are of first order in the elements
+        first_order = math.sqrt(scene.number("accuracy") * entries["accuracy"])
+        strikes = fronts(scene.override({"accuracy": first_order}), onsets_of(scene))
     for k, (body, table) in enumerate(zip(scene.bodies, used["body"])):
         if not body.mesh:
             bulk = min(factor * table["mesh_size"], 2 * body.outline.coarsest)

@@ -2,6 +2,8 @@
 units (docs/explanation/materials.md).
 """
 
+from typing import Any
+
 from ..failure import BadInput
 from ..input import models
 from ..input.models import DAMPING, LAW_ENTRIES, MATERIAL, Material
@@ -10,9 +12,6 @@ from ..input.parameters import PARAMETERS
 __all__ = ["read", "rigid"]
 
 NEEDED = ("law", "young", "nu", "density")
-NOT_RIGID = tuple(
-    name for name in MATERIAL if name != "density"
-)  # entries that a rigid body has not
 DEFAULTS = {name: PARAMETERS[name].default for name in (*DAMPING, "loss")}
 
 
@@ -43,7 +42,7 @@ def read(table: models.Body, top: models.Top) -> Material:
                 for name in missing
             )
         )
-    values = dict.fromkeys(MATERIAL) | DEFAULTS
+    values: dict[str, Any] = dict.fromkeys(MATERIAL) | DEFAULTS
     for name in MATERIAL:
         other = {"viscosity": "loss", "loss": "viscosity"}.get(name)
         of_another_law = table.law not in (None, top.law) and name in ("share", "alpha", "mu")
