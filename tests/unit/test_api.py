@@ -55,8 +55,8 @@ def test_an_entry_set_to_none_is_left_to_the_program():
         (lambda scene: setattr(scene, "accuracy", 3), ("accuracy", "3", "0.4")),
         (lambda scene: setattr(scene, "bodies", []), ("body", "missing")),
         (lambda scene: setattr(scene.contact, "penalty", "stiff"), ("penalty", "stiff", "auto")),
-        (lambda scene: setattr(scene, "contact", ff.Contact(friction_static=0.1, friction_dynamic=0.2)),
-         ("contact.friction_dynamic", "0.2", "0.1")),
+        (lambda scene: setattr(scene.bodies[0], "speed", 3), ("velocity", "beside speed or direction")),
+        (lambda scene: setattr(scene.contact, "friction_dynamic", 0.2), ("friction_dynamic", "0.2", "static 0")),
     ],
 )  # fmt: skip
 def test_an_entry_is_checked_when_it_is_set(change, words):
@@ -150,7 +150,13 @@ def test_numbers_of_a_law_have_names():
     mooney = ff.MooneyRivlin(share=0.3, **MATERIAL)
     ogden = ff.Ogden(alpha=[1.3, -2], mu=[1e6, -2e6], nu=0.4, density=1722)
     assert mooney.table() == {"law": "mooney-rivlin", "share": 0.3} | MATERIAL
-    assert ogden.table() == {"law": "ogden", "nu": 0.4, "density": 1722, "alpha": [1.3, -2], "mu": [1e6, -2e6]}
+    assert ogden.table() == {
+        "law": "ogden",
+        "nu": 0.4,
+        "density": 1722,
+        "alpha": [1.3, -2],
+        "mu": [1e6, -2e6],
+    }
     for material in (mooney, ogden):
         disc = ff.Disc(radius=1, position=(0, 1), material=material)
         assert disc.material.table() == material.table() and type(disc.material) is type(material)
@@ -198,9 +204,18 @@ def test_all_that_is_wrong_with_a_scene_is_told_at_once():
         (lambda: ff.MooneyRivlin(share=1.2, **MATERIAL), ("share", "1.2", "0 to 1")),
         (lambda: ff.Material(), ("law", "missing", "svk")),
         (
-            lambda: drop(contact=ff.Contact(friction_static=0.1, friction_dynamic=0.2)),
-            ("contact.friction_dynamic", "0.2"),
+            lambda: ff.Contact(friction_dynamic=0.2),
+            ("Contact: friction_dynamic", "0.2", "static 0"),
         ),
+        (lambda: ff.Pair(friction_static=0.1, friction_dynamic=0.2), ("friction_dynamic", "0.2")),
+        (lambda: ff.Plane(friction_static=0.1, friction_dynamic=0.2), ("friction_dynamic", "0.2")),
+        (lambda: ff.Plane(pivot=(0, 0)), ("Plane: pivot", "without rotation")),
+        (
+            lambda: ff.Ring(radius=1, inner_radius=1, position=(0, 2)),
+            ("inner_radius: 1", "radius 1"),
+        ),
+        (lambda: ff.Disc(radius=1, position=(0, 2), mass=3), ("mass", "rigid = true")),
+        (lambda: ff.Load(where="top"), ("Load: has no stress", "pressure")),
         (lambda: drop().set({"body.1.velocity": [0, 0]}), ("velocity", "nothing would ever move")),
         (lambda: ff.Disc(radius="5 cm", position=(0, 0)), ("radius", "5 cm", "unit")),
         (

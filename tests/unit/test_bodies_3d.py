@@ -129,7 +129,7 @@ def test_obstacles_break_symmetry():
 # ---- what is refused
 
 BAD = [
-    ({"shape": "shell", "inner_radius": 0.05}, {}, "body.1.inner_radius: 0.05 m is no smaller than radius (accepted: below 0.05 m)"),
+    ({"shape": "shell", "inner_radius": 0.05}, {}, "body.1.inner_radius: 0.05 is not less than the radius 0.05"),
     ({"position": [0, 1]}, {}, "body.1.position: '[0, 1]' is no [x, y, z] (accepted: three numbers"),
     ({"velocity": [0, 1]}, {}, "body.1.velocity: '[0, 1]' is no [x, y, z]"),
     ({"turn": [0, 0, 1], "angle": 3}, {}, "body.1.angle: '3' stands beside turn"),

@@ -24,10 +24,10 @@ def scene(**entries) -> ff.Scene:
 
 
 REFUSED = {
-    "no cells": ({"cells": None}, "body.1.cells: is missing (accepted: points and cells, or a file)"),
-    "no points": ({"points": None}, "body.1.points: is missing (accepted: points and cells, or a file)"),
-    "labels alone": ({"points": None, "cells": None, "labels": {"a": BOTTOM}}, "body.1.points: is missing"),
-    "beside a file": ({"file": "a.msh"}, "body.1.file: stands beside points (accepted: a file, or points and cells)"),
+    "no cells": ({"cells": None}, "Mesh: cells: is missing (accepted: points and cells, or a file)"),
+    "no points": ({"points": None}, "Mesh: points: is missing (accepted: points and cells, or a file)"),
+    "labels alone": ({"points": None, "cells": None, "labels": {"a": BOTTOM}}, "Mesh: points: is missing"),
+    "beside a file": ({"file": "a.msh"}, "Mesh: file: stands beside points (accepted: a file, or points and cells)"),
     "words": ({"points": "x"}, "Mesh: points: 'x' are no such rows (accepted: 1 to 2000000 rows of 2 or 3 numbers"),
     "ragged": ({"points": [[0, 1], [2]]}, "Mesh: points: '[[0, 1], [2]]' are no such rows"),
     "nan": ({"points": [[0, np.nan]]}, "Mesh: points: row 0 is [0, nan] (accepted: "),
@@ -61,12 +61,12 @@ def test_labels_decide_contact_and_name_parts():
     shifted = {"points": np.vstack([[9, 9], POINTS]), "cells": numbers[CELLS], "labels":
                {name: numbers[np.array(rows)] for name, rows in labels.items()}}  # fmt: skip
     for entries in ({"points": POINTS, "cells": CELLS[:, ::-1], "labels": labels}, shifted):
-        made = given.plane(ff.Mesh(**entries))
+        made = given.plane(ff.Mesh(position=(0, 0), **entries))
         assert set(map(tuple, made.edges[made.labels == FREE].tolist())) == {(0, 1), (1, 2)}
         assert set(made.labels) == {FREE, Mesh.NEVER}
         assert made.edges[made.groups["left"]].tolist() == [[3, 0]]
-    assert set(given.plane(ff.Mesh(points=POINTS, cells=CELLS)).labels) == {FREE}
-    half = given.plane(ff.Mesh(points=POINTS, cells=CELLS, labels={"symmetry": [[0, 3], [3, 6]]}))
+    assert set(given.plane(ff.Mesh(position=(0, 0), points=POINTS, cells=CELLS)).labels) == {FREE}
+    half = given.plane(ff.Mesh(position=(0, 0), points=POINTS, cells=CELLS, labels={"symmetry": [[0, 3], [3, 6]]}))
     assert (half.labels == AXIS).sum() == 2 and (half.labels == FREE).sum() == 6
 
 

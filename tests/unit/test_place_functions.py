@@ -55,7 +55,7 @@ REFUSED = {
     "small table": ({"initial_velocity": {"x": [0, 1, 2, 3], "y": [0, 1, 2, 3], "values": 16 * [[0, 0]]}},
                     "body.1.initial_velocity: is [nan nan] at ("),
     "rigid": ({"rigid": True, "material": None, "density": 1e3, "initial_velocity": [0, "x"]},
-              "body.1.initial_velocity: a rigid body has none"),
+              "Disc: initial_velocity: a rigid body has none"),
     "at rest": ({"velocity": None, "initial_velocity": [0, "x"], "top": {"start": "equilibrium", "gravity": 9.81}},
                 "body.1.initial_velocity: '[0, 'x']' beside start = 'equilibrium'"),
     "symmetry": ({"initial_velocity": [0, "x"], "top": {"symmetry": "half"}}, "symmetry: half, but the scene is not"),

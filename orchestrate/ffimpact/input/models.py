@@ -71,6 +71,7 @@ __all__ = [
     "FIELDS",
     "FORMER",
     "Gas",
+    "Hollow",
     "Implicit",
     "Incompressible",
     "LAWS",
@@ -228,11 +229,11 @@ class Entries(BaseModel, metaclass=_Made):
 
     @model_validator(mode="wrap")
     @classmethod
-    def _agrees(cls, given: Any, validated: ModelWrapValidatorHandler[Self]) -> Self:
+    def _agrees(cls, entries: Any, validated: ModelWrapValidatorHandler[Self]) -> Self:
         """Refuses entries that do not agree with each other, when made and when set."""
-        model = validated(given)
-        if isinstance(given, dict):
-            model._given = given
+        model = validated(entries)
+        if isinstance(entries, dict):
+            model._given = entries
         if refusals := list(model.refusals()):
             raise PydanticCustomError("entries", "they do not agree", {"refusals": refusals})
         return model
@@ -1047,8 +1048,12 @@ class OfContact(Entries):
     friction_static: Annotated[float | None, shared("friction_static")] = None
     friction_dynamic: Annotated[float | str | None, shared("friction_dynamic")] = None
 
+    default_static: ClassVar[float | None] = None  # friction_static; None: that of the scene
+
     def refusals(self) -> Iterator[tuple[str, str]]:
         static, dynamic = self.friction_static, self.friction_dynamic
+        if static is None:
+            static = self.default_static
         if static is not None and isinstance(dynamic, float) and dynamic > static:
             yield (
                 "friction_dynamic",
@@ -1205,6 +1210,7 @@ class Contact(OfContact):
     """Contact and friction of the whole scene, paper (10) to (13)."""
 
     nested = {"pair": Pair}
+    default_static = 0.0
     exponent: Annotated[float | None, shared("exponent")] = None
     slip_velocity: Annotated[float | str | None, shared("slip_velocity")] = None
     regularization: Annotated[str | None, shared("regularization")] = None

@@ -136,12 +136,13 @@ class Scene:
         return converted
 
     def tables(self, entries: dict[str, Value]) -> models.Tables:
-        """Returns the tables with `entries` set. Raises BadInput if the rule of an entry refuses its
-        value, whatever the others are.
+        """Returns the tables with `entries` set, and those that depend on them automatic. Raises
+        BadInput if the rule of an entry refuses its value, or it does not agree with its table.
         """
-        changed = self.content
-        for name, value in self._by_full_name(entries).items():
+        changed, named = self.content, self._by_full_name(entries)
+        for name, value in named.items():
             changed = set_entry(changed, name, value)
+        release(changed, list(named))
         return models.read(changed, self.dimension)
 
     def _by_full_name(self, entries: dict[str, Value]) -> dict[str, Value]:
