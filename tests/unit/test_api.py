@@ -56,7 +56,7 @@ def test_an_entry_set_to_none_is_left_to_the_program():
         (lambda scene: setattr(scene, "bodies", []), ("body", "missing")),
         (lambda scene: setattr(scene.contact, "penalty", "stiff"), ("penalty", "stiff", "auto")),
         (lambda scene: setattr(scene.bodies[0], "speed", 3), ("velocity", "beside speed or direction")),
-        (lambda scene: setattr(scene.contact, "friction_dynamic", 0.2), ("friction_dynamic", "0.2", "static 0")),
+        (lambda scene: setattr(scene.contact, "friction_dynamic", 0.4), ("friction_dynamic", "0.4", "static 0.3")),
     ],
 )  # fmt: skip
 def test_an_entry_is_checked_when_it_is_set(change, words):
