@@ -5,8 +5,8 @@ from style import BODY, INK, LIGHT, OTHER, arrow, box, diagram, save
 
 figure, ax = diagram(2.6)
 rows = (("obstacle", "input/models.py\nthe entry", "scenes/obstacles.py\nentry → numbers", "kernels/shapes.cpp\ngap and normal"),
-        ("friction law", "input/table.py\nthe word", "", "kernels/contact-law.cpp\nφ and its derivative"),
-        ("law", "input/table.py\nthe word", "", "kernels/laws.cpp\nS, tangent, energy"),
+        ("friction law", "input/models.py\nthe word", "", "kernels/contact-law.cpp\nφ and its derivative"),
+        ("law", "input/models.py\nthe word", "", "kernels/laws.cpp\nS, tangent, energy"),
         ("figure", "", "drawing.MORE\nhistory → figure", ""))
 for x, title in ((3.0, "what users write"), (5.75, "Python"), (8.55, "kernels (C++)")):
     ax.text(x, 3.95, title, ha="center", fontsize=9.5, weight="bold")

@@ -5,8 +5,7 @@ y points up in all dimensions.
 
 from dataclasses import dataclass
 
-from .parameter import Table
-from .parameters import Parameter
+from .parameter import Parameter, Table
 
 __all__ = [
     "AXISYMMETRIC",

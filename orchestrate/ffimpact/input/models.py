@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 from inspect import Parameter as Keyword, Signature
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 from pydantic import (
@@ -30,7 +31,7 @@ from pydantic_core import PydanticCustomError
 
 from ..failure import BadInput, brief, gathered, suggestion, unknown
 from .dimension import AXISYMMETRIC, DIMENSIONS, PLANE_STRAIN, SOLID, Dimension
-from .parameter import Parameter, Rule, plain
+from .parameter import Parameter, Rule, integer, plain, real, word
 from .rules import (
     LONGEST,
     Flag,
@@ -50,7 +51,6 @@ from .rules import (
     Where,
     number,
 )
-from .table import PARAMETERS
 
 __all__ = [
     "BODIES",
@@ -75,6 +75,7 @@ __all__ = [
     "Implicit",
     "Incompressible",
     "LAWS",
+    "LAW_WORDS",
     "LAW_ENTRIES",
     "Load",
     "MATERIAL",
@@ -91,6 +92,7 @@ __all__ = [
     "OfMaterial",
     "Obstacle",
     "Ogden",
+    "PARAMETERS",
     "Pair",
     "Plane",
     "Polygon",
@@ -114,7 +116,6 @@ __all__ = [
     "rule_of",
     "rule_of_body",
     "several",
-    "shared",
     "tables",
 ]
 
@@ -133,22 +134,6 @@ MOST_PRESSURE = 1e15  # largest accepted pressure [Pa]
 MOST_TURN = 36000.0  # largest accepted angle [degrees]
 MOST_STRETCH = 20.0  # largest accepted ratio of the lengths of an element
 SIDES = ("left", "right", "bottom", "top", "back", "front", "all", "outer", "inner", "axis")
-
-
-def shared(name: str, meaning: str = "") -> Parameter:
-    """The rule of a parameter of the table, for an entry of the same name."""
-    parameter = PARAMETERS[name]
-    return Parameter(
-        "",
-        parameter.kind,
-        None,
-        parameter.unit,
-        meaning or parameter.help,
-        parameter.low,
-        parameter.high,
-        parameter.words,
-        parameter.scripts,
-    )
 
 
 def several(value: Any) -> Any:
@@ -420,8 +405,35 @@ def _refusal(
     return f": '{text}' is no table (accepted: a table with {', '.join(model.names(dimension))})"
 
 
+def rule_of(model: type[Entries], name: str) -> Rule | None:
+    """The rule of an entry of a model, None for an entry that has none and for a table."""
+    field = model.model_fields.get(name)
+    return (
+        next((rule for rule in field.metadata if isinstance(rule, Rule)), None) if field else None
+    )
+
+
 # ---- materials
 
+OF_BODIES = ()  # of no script: entries of bodies
+# The words of the laws in edp/kernels/laws.cpp.
+LAW_WORDS = ("svk", "neohookean", "mooney-rivlin", "ogden", "incompressible")
+LAW = word(
+    "svk",
+    LAW_WORDS,
+    "constitutive law: St. Venant-Kirchhoff (5), compressible neo-Hookean (6), or another",
+    OF_BODIES,
+)
+YOUNG = real(7e6, 1e-6, 1e18, "Pa", "Young's modulus E", OF_BODIES)
+NU = real(
+    0.45,
+    0,
+    0.5,
+    "-",
+    "Poisson's ratio; the paper says only nu -> 0.5; 0.5: J = 1, of all laws but svk",
+    OF_BODIES,
+)
+DENSITY = real(1722, 1e-15, 1e12, "kg/m3", "reference density", OF_BODIES)
 DAMPING = ("viscosity", "bulk_viscosity", "relaxation_modulus", "relaxation_time")
 # Largest nu in the speed of waves. The stiffness by a larger nu acts on the volume of elements.
 STIFFEST = 0.45
@@ -432,10 +444,10 @@ LAW_ENTRIES = {"mooney-rivlin": ("share",), "ogden": ("alpha", "mu")}
 class OfMaterial(Entries):
     """The entries of a material, which a body and the top of a scene may have, too."""
 
-    law: Annotated[str | None, shared("law")] = None
-    young: Annotated[float | None, shared("young")] = None
-    nu: Annotated[float | None, shared("nu")] = None
-    density: Annotated[float | None, shared("density")] = None
+    law: Annotated[str | None, LAW] = None
+    young: Annotated[float | None, YOUNG] = None
+    nu: Annotated[float | None, NU] = None
+    density: Annotated[float | None, DENSITY] = None
     share: Annotated[
         float | None, number(0.0, 1.0, "-", "mooney-rivlin: part of I2 in the shear modulus")
     ] = None
@@ -446,11 +458,49 @@ class OfMaterial(Entries):
         list[float] | None,
         Numbers(-1e18, 1e18, 3, "ogden: moduli of the terms [Pa], in place of young"),
     ] = None
-    viscosity: Annotated[float | None, shared("viscosity")] = None
-    bulk_viscosity: Annotated[float | None, shared("bulk_viscosity")] = None
-    relaxation_modulus: Annotated[float | None, shared("relaxation_modulus")] = None
-    relaxation_time: Annotated[float | None, shared("relaxation_time")] = None
-    loss: Annotated[float | None, shared("loss")] = None
+    viscosity: Annotated[
+        float | None,
+        real(
+            0,
+            0,
+            1e18,
+            "Pa s",
+            "viscosity eta of the material: beside the law's stress 2 eta D, D the rate of deformation",
+            OF_BODIES,
+        ),
+    ] = None
+    bulk_viscosity: Annotated[
+        float | None,
+        real(0, 0, 1e18, "Pa s", "viscosity zeta of volume: beside it zeta tr(D) I", OF_BODIES),
+    ] = None
+    relaxation_modulus: Annotated[
+        float | None,
+        real(
+            0,
+            0,
+            1e18,
+            "Pa",
+            "shear modulus G of a Maxwell branch beside the law, which relaxes in relaxation_time; 0 "
+            "= none",
+            OF_BODIES,
+        ),
+    ] = None
+    relaxation_time: Annotated[
+        float | None,
+        real(0, 0, 1e9, "s", "its time tau: G exp(-t/tau) is left of G after t", OF_BODIES),
+    ] = None
+    loss: Annotated[
+        float | None,
+        real(
+            0,
+            0,
+            10,
+            "-",
+            "loss factor tan delta of shear at the first mode of the disc or ball: sets viscosity; 0 "
+            "= by viscosity",
+            OF_BODIES,
+        ),
+    ] = None
 
     @classmethod
     def refused(cls, name: str, value: Any, dimension: Dimension | None) -> str:
@@ -467,10 +517,10 @@ class Material(OfMaterial):
     `relaxation_modulus` [Pa] and `relaxation_time` [s].
     """
 
-    law: Annotated[str, shared("law")]
-    young: Annotated[float, shared("young")]
-    nu: Annotated[float, shared("nu")]
-    density: Annotated[float, shared("density")]
+    law: Annotated[str, LAW]
+    young: Annotated[float, YOUNG]
+    nu: Annotated[float, NU]
+    density: Annotated[float, DENSITY]
 
     @classmethod
     def names(cls, dimension: Dimension | None) -> list[str]:
@@ -575,26 +625,26 @@ class Material(OfMaterial):
 class SaintVenantKirchhoff(Material):
     """St. Venant-Kirchhoff law, S = lambda tr(E) I + 2 mu E, paper (5)."""
 
-    law: Annotated[str, shared("law")] = "svk"
+    law: Annotated[str, LAW] = "svk"
 
 
 class NeoHookean(Material):
     """Compressible neo-Hookean law, paper (6)."""
 
-    law: Annotated[str, shared("law")] = "neohookean"
+    law: Annotated[str, LAW] = "neohookean"
 
 
 class Incompressible(Material):
     """Incompressible neo-Hookean law, J = 1."""
 
-    law: Annotated[str, shared("law")] = "incompressible"
-    nu: Annotated[float, shared("nu")] = 0.5
+    law: Annotated[str, LAW] = "incompressible"
+    nu: Annotated[float, NU] = 0.5
 
 
 class MooneyRivlin(Material):
     """Mooney-Rivlin law, W = mu/2 ((1 - s) I1 + s I2) and terms of det F; s is the `share`."""
 
-    law: Annotated[str, shared("law")] = "mooney-rivlin"
+    law: Annotated[str, LAW] = "mooney-rivlin"
 
 
 class Ogden(Material):
@@ -602,8 +652,8 @@ class Ogden(Material):
     det F, with one to three terms; `young` follows from them.
     """
 
-    law: Annotated[str, shared("law")] = "ogden"
-    young: Annotated[float | None, shared("young")] = None  # type: ignore[assignment]
+    law: Annotated[str, LAW] = "ogden"
+    young: Annotated[float | None, YOUNG] = None  # type: ignore[assignment]
 
 
 LAWS: dict[str, type[Material]] = {
@@ -715,11 +765,11 @@ class Body(OfMaterial):
     position: Annotated[Components | None, Place("of the centre of mass [m]")]
     velocity: Annotated[Components | None, Place("of the centre of mass [m/s]")] = None
     mesh_size: Annotated[
-        float | None, shared("mesh_size", "largest element size; 0 = by accuracy")
+        float | None, real(0, 0, 1e9, "m", "largest element size; 0 = by accuracy", OF_BODIES)
     ] = None
     contact_mesh_size: Annotated[
         float | None,
-        shared("contact_mesh_size", "element size at the contact boundary; 0 = from accuracy"),
+        real(0, 0, 1e9, "m", "element size at the contact boundary; 0 = from accuracy", OF_BODIES),
     ] = None
     mesh_stretch: Annotated[
         float | None,
@@ -748,7 +798,9 @@ class Body(OfMaterial):
         list[float] | None,
         Vector("turned about a vector of this length [degrees]", -MOST_TURN, MOST_TURN, 3),
     ] = None
-    speed: Annotated[float | None, shared("speed")] = None
+    speed: Annotated[
+        float | None, real(0, 0, 1e9, "m/s", "in place of velocity, with direction", OF_BODIES)
+    ] = None
     direction: Annotated[
         float | None,
         number(
@@ -756,7 +808,11 @@ class Body(OfMaterial):
         ),
     ] = None
     spin: Annotated[
-        Components | None, InSpace(shared("spin"), "angular velocity [rad/s]; in space a vector")
+        Components | None,
+        InSpace(
+            real(0, -1e12, 1e12, "rad/s", "spin at the start, counter-clockwise", OF_BODIES),
+            "angular velocity [rad/s]; in space a vector",
+        ),
     ] = None
     initial_velocity: Annotated[
         Placed | None, OfPlace("of the points of the body [m/s], on top of velocity and spin")
@@ -837,8 +893,7 @@ class Drawn(Body):
         Place("of the centre of mass, or with placement = 'as-drawn' of the origin [m]"),
     ] = None
     placement: Annotated[
-        str | None,
-        Parameter("", "word", None, "-", "what `position` places", words=PLACEMENTS),
+        str | None, Parameter("", "word", None, "-", "what `position` places", words=PLACEMENTS)
     ] = None
 
     @property
@@ -1044,9 +1099,31 @@ BODIES: dict[str, type[Body]] = {
 class OfContact(Entries):
     """The entries of contact that a pair and an obstacle may have of their own."""
 
-    penalty: Annotated[float | str | None, shared("penalty")] = None
-    friction_static: Annotated[float | None, shared("friction_static")] = None
-    friction_dynamic: Annotated[float | str | None, shared("friction_dynamic")] = None
+    penalty: Annotated[
+        float | str | None,
+        real(
+            "auto",
+            1e-12,
+            1e100,
+            "Pa/m^m",
+            "contact stiffness k of (10); auto = stiff beside the body, from young, the width of the "
+            "contact and the exponent",
+        ),
+    ] = None
+    friction_static: Annotated[
+        float | None,
+        real(
+            0,
+            0,
+            10,
+            "-",
+            "static coefficient mu_e of (12), for |v_T| < slip_velocity; at least friction_dynamic",
+        ),
+    ] = None
+    friction_dynamic: Annotated[
+        float | str | None,
+        real("auto", 0, 10, "-", "dynamic coefficient mu_d of (12); auto = friction_static"),
+    ] = None
 
     default_static: ClassVar[float | None] = None  # friction_static; None: that of the scene
 
@@ -1211,11 +1288,46 @@ class Contact(OfContact):
 
     nested = {"pair": Pair}
     default_static = 0.0
-    exponent: Annotated[float | None, shared("exponent")] = None
-    slip_velocity: Annotated[float | str | None, shared("slip_velocity")] = None
-    regularization: Annotated[str | None, shared("regularization")] = None
-    friction_transition: Annotated[str | None, shared("friction_transition")] = None
-    penalty_damping: Annotated[float | None, shared("penalty_damping")] = None
+    exponent: Annotated[float | None, real(1, 1, 4, "-", "contact exponent m of (10)")] = None
+    slip_velocity: Annotated[
+        float | str | None,
+        real(
+            "auto",
+            1e-15,
+            1e9,
+            "m/s",
+            "epsilon of (12) and (13); auto = a hundredth of the speeds of the scene",
+        ),
+    ] = None
+    regularization: Annotated[
+        str | None,
+        word(
+            "linear",
+            ("linear", "linear-printed", "sqrt", "tanh"),
+            "phi of (13); linear-printed as the paper prints it; sqrt and tanh stay below mu_e for "
+            "|v_T| < slip_velocity",
+        ),
+    ] = None
+    friction_transition: Annotated[
+        str | None,
+        word(
+            "jump",
+            ("jump", "smooth"),
+            "from static to dynamic: the paper's jump at slip_velocity, or a half cosine up to twice "
+            "that (resolve it: dt (mu_e - mu_d) times the deceleration below slip_velocity)",
+        ),
+    ] = None
+    penalty_damping: Annotated[
+        float | None,
+        real(
+            0,
+            0,
+            1e9,
+            "s",
+            "retardation time tau of the penalty: a closing contact takes t_N + tau dt_N/dt instead of "
+            "t_N of (10), never below 0; 0 = none. It takes energy (penalty_damping_work)",
+        ),
+    ] = None
     self_contact: Annotated[
         str | None,
         Parameter(
@@ -1290,27 +1402,175 @@ class Top(OfMaterial):
         ),
     ] = None
     only = {"symmetry": (PLANE_STRAIN, SOLID)}
-    mesh_size: Annotated[float | None, shared("mesh_size")] = None
-    contact_mesh_size: Annotated[float | None, shared("contact_mesh_size")] = None
-    gravity: Annotated[float | None, shared("gravity")] = None
-    body_force_x: Annotated[float | None, shared("body_force_x")] = None
-    body_force_y: Annotated[float | None, shared("body_force_y")] = None
-    volume: Annotated[str | None, shared("volume")] = None
-    degree: Annotated[int | None, shared("degree")] = None
-    integrator: Annotated[str | None, shared("integrator")] = None
-    dt: Annotated[float | None, shared("dt")] = None
-    accuracy: Annotated[float | None, shared("accuracy")] = None
-    accuracy_of: Annotated[str | None, shared("accuracy_of")] = None
-    tolerance: Annotated[float | None, shared("tolerance")] = None
-    breakdown: Annotated[str | None, shared("breakdown")] = None
-    chatter: Annotated[str | None, shared("chatter")] = None
-    end_time: Annotated[float | None, shared("end_time")] = None
-    start: Annotated[str | None, shared("start")] = None
-    until: Annotated[str | None, shared("until")] = None
-    fields: Annotated[int | None, shared("fields")] = None
-    modes: Annotated[int | None, shared("modes")] = None
-    checkpoint_every: Annotated[int | None, shared("checkpoint_every")] = None
-    without: Annotated[str | None, shared("without")] = None
+    mesh_size: Annotated[
+        float | None, real(0, 0, 1e9, "m", "element size in the bulk; 0 = from accuracy", OF_BODIES)
+    ] = None
+    contact_mesh_size: Annotated[
+        float | None,
+        real(0, 0, 1e9, "m", "element size at the contact boundary; 0 = from accuracy", OF_BODIES),
+    ] = None
+    gravity: Annotated[
+        float | None,
+        real(
+            0, 0, 1e12, "m/s2", "gravity, along -y; another direction: body_force_x, body_force_y"
+        ),
+    ] = None
+    body_force_x: Annotated[
+        float | None,
+        real(
+            0,
+            -1e12,
+            1e12,
+            "m/s2",
+            "constant body force b of (1), along the plane",
+            ("bodies", "bodies-3d"),
+        ),
+    ] = None
+    body_force_y: Annotated[
+        float | None,
+        real(
+            0,
+            -1e12,
+            1e12,
+            "m/s2",
+            "constant body force b of (1), away from the plane; gravity comes on top",
+        ),
+    ] = None
+    volume: Annotated[
+        str | None,
+        word(
+            "auto",
+            ("plain", "projected", "auto"),
+            "resistance to change of volume: plain = at points, which locks as nu -> 0.5; projected ="
+            " what is beyond that of nu = 0.45 in the mean of each element; auto = projected, where "
+            "degree=1 plain",
+        ),
+    ] = None
+    degree: Annotated[
+        int | None, integer(2, 1, 2, "-", "polynomial degree of the displacement")
+    ] = None
+    integrator: Annotated[
+        str | None,
+        word(
+            "energy-momentum",
+            ("energy-momentum", "midpoint", "backward-euler", "bdf2", "central-difference", "auto"),
+            "time integrator; central-difference: explicit, in substeps that resolve the waves in "
+            "the bodies, contact and friction solved in each; auto: central-difference or "
+            "energy-momentum, whichever is cheaper by the estimated number of operations",
+        ),
+    ] = None
+    dt: Annotated[float | None, real(0, 0, 1e9, "s", "time step; 0 = adaptive")] = None
+    accuracy: Annotated[
+        float | None,
+        real(
+            0.005,
+            1e-5,
+            0.4,
+            "-",
+            "requested relative accuracy: of impulse and thresholded contact time relative to themselves, "
+            "rebound velocities and spin relative to the speed, energies and friction work to the largest "
+            "energy; mesh and step that are not given follow from it",
+        ),
+    ] = None
+    accuracy_of: Annotated[
+        str | None,
+        word(
+            "promised",
+            ("promised", "friction_work", "peak_force", "contact_time"),
+            "one more number to which the accuracy applies, relative to itself: it costs more"
+            " because these numbers scatter more",
+        ),
+    ] = None
+    tolerance: Annotated[
+        float | None,
+        real(
+            5e-12,
+            1e-15,
+            0.0001,
+            "-",
+            "largest work of the residual in a step, over the energy at the start",
+        ),
+    ] = None
+    breakdown: Annotated[
+        str | None,
+        word(
+            "stop",
+            ("stop", "continue"),
+            "what a run does under svk when det F <= 0 or a point loses four fifths of its volume in "
+            "the smallest step",
+        ),
+    ] = None
+    chatter: Annotated[
+        str | None,
+        word(
+            "stop",
+            ("stop", "continue"),
+            "what a run does when the body leaves the obstacle and is back within a transit of its "
+            "waves twenty times in a row",
+        ),
+    ] = None
+    end_time: Annotated[
+        float | None,
+        real(
+            0,
+            0,
+            1e9,
+            "s",
+            "end of the run; 0 = until the first impact is over, with the contacts that follow it at "
+            "once",
+        ),
+    ] = None
+    start: Annotated[
+        str | None,
+        word(
+            "given",
+            ("given", "equilibrium"),
+            "the bodies at t = 0: as given, or at rest in equilibrium under body force, loads, gas and "
+            "contact, reached from the given shape and place by slow loading",
+        ),
+    ] = None
+    until: Annotated[
+        str | None,
+        word(
+            "impact",
+            ("impact", "rest"),
+            "what ends the run, at end_time at the latest: the end of the impact, or under gravity, "
+            "with viscosity or friction, that all rests",
+        ),
+    ] = None
+    fields: Annotated[int | None, integer(0, 0, 10000, "-", "number of field snapshots (VTU)")] = (
+        None
+    )
+    modes: Annotated[
+        int | None,
+        integer(
+            0,
+            0,
+            500,
+            "-",
+            "number of natural modes of the free bodies, with their energies at the end of the run; 0"
+            " = none",
+        ),
+    ] = None
+    checkpoint_every: Annotated[
+        int | None,
+        integer(
+            0,
+            0,
+            1000000000,
+            "steps",
+            "a checkpoint every so many steps, from which a killed run goes on; 0 = none; the answer "
+            "stays the same",
+        ),
+    ] = None
+    without: Annotated[
+        str | None,
+        word(
+            "none",
+            ("none", "flight", "friction", "body-force", "frozen-factorisation", "contact-culling"),
+            "leave out one saving, to measure what it saves",
+        ),
+    ] = None
 
     @classmethod
     def refused(cls, name: str, value: Any, dimension: Dimension | None) -> str:
@@ -1338,7 +1598,21 @@ def _nearest(name: str, of_bodies: Iterable[str], of_contact: Iterable[str]) -> 
 # ---- whole scenes
 
 
-class Tables(BaseModel):
+def _parameters() -> Iterator[Parameter]:
+    models: tuple[type[Entries], ...] = (OfMaterial, Body, OfContact, Contact, Top)
+    for model in models:
+        for name in model.__annotations__:
+            rule: Rule | None = rule_of(model, name)
+            rule = rule.plane if isinstance(rule, InSpace) else rule
+            if isinstance(rule, Parameter) and rule.default is not None:
+                yield replace(rule, name=name)
+
+
+# The parameters by name: entries with defaults, which are those of a run, of contact and of bodies.
+PARAMETERS: dict[str, Parameter] = {parameter.name: parameter for parameter in _parameters()}
+
+
+class Tables(NamedTuple):
     """The tables of a scene."""
 
     top: Top
@@ -1360,7 +1634,7 @@ def read(content: dict[str, Any], dimension: Dimension) -> Tables:
         lambda: Top.read("", top, dimension), lambda: tables(content, "body", dimension),
         lambda: tables(content, "obstacle", dimension),
         lambda: Contact.read("contact", content.get("contact", {}), dimension)))  # fmt: skip
-    return Tables.model_construct(top=read_top, bodies=bodies, obstacles=obstacles, contact=contact)
+    return Tables(read_top, bodies, obstacles, contact)
 
 
 def tables(content: dict[str, Any], key: str, dimension: Dimension) -> list[Any]:
@@ -1390,14 +1664,6 @@ def of_table(
         raise BadInput(f"{entry}.{word}: {unknown(name, accepted)}")
     own = {key: value for key, value in table.items() if key != word}
     return models[name].read(entry, own, dimension)
-
-
-def rule_of(model: type[Entries], name: str) -> Rule | None:
-    """The rule of an entry of a model, None for an entry that has none and for a table."""
-    field = model.model_fields.get(name)
-    return (
-        next((rule for rule in field.metadata if isinstance(rule, Rule)), None) if field else None
-    )
 
 
 def rule_of_body(name: str) -> Parameter | None:

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Parameter",
     "Rule",
+    "SCRIPTS",
     "Table",
     "Value",
     "integer",
@@ -28,6 +29,7 @@ __all__ = [
     "word",
 ]
 
+SCRIPTS = ("bodies", "bodies-axisymmetric", "bodies-3d")  # of edp/program
 Value = float | int | str
 Table = dict[str, Any]  # a table of a TOML or JSON file
 
@@ -139,15 +141,14 @@ class Parameter(Rule):
         return replace(self, name="").check(value)
 
     def schema(self) -> dict[str, Any]:
-        common = {} if self.default is None else {"default": self.default}
         if self.kind == "word":
-            return common | {"enum": list(self.words)}
+            return {"enum": list(self.words)}
         number = {
             "type": "integer" if self.kind == "int" else "number",
             "minimum": self.low,
             "maximum": self.high,
         }
-        return common | ({"anyOf": [number, {"enum": list(self.words)}]} if self.words else number)
+        return {"anyOf": [number, {"enum": list(self.words)}]} if self.words else number
 
     @property
     def accepted(self) -> str:
@@ -203,18 +204,17 @@ def with_unit(text: str, unit: str) -> str:
 
 
 def real(
-    name: str,
     default: float | str,
     low: float,
     high: float,
     unit: str,
     meaning: str,
-    scripts: tuple[str, ...] = (),
+    scripts: tuple[str, ...] = SCRIPTS,
 ) -> Parameter:
     """The rule of a number between two bounds; `auto` is accepted if it is the default."""
     words = ("auto",) if default == "auto" else ()
     return Parameter(
-        name,
+        "",
         "real",
         default if words else float(default),
         unit,
@@ -227,20 +227,14 @@ def real(
 
 
 def integer(
-    name: str,
-    default: int,
-    low: int,
-    high: int,
-    unit: str,
-    meaning: str,
-    scripts: tuple[str, ...] = (),
+    default: int, low: int, high: int, unit: str, meaning: str, scripts: tuple[str, ...] = SCRIPTS
 ) -> Parameter:
     """The rule of a whole number between two bounds."""
-    return Parameter(name, "int", default, unit, meaning, low, high, (), scripts)
+    return Parameter("", "int", default, unit, meaning, low, high, (), scripts)
 
 
 def word(
-    name: str, default: str, words: tuple[str, ...], meaning: str, scripts: tuple[str, ...] = ()
+    default: str, words: tuple[str, ...], meaning: str, scripts: tuple[str, ...] = SCRIPTS
 ) -> Parameter:
     """The rule of a choice between words."""
-    return Parameter(name, "word", default, "-", meaning, words=words, scripts=scripts)
+    return Parameter("", "word", default, "-", meaning, words=words, scripts=scripts)

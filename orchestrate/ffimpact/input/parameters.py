@@ -5,13 +5,13 @@ import re
 
 from ..failure import BadInput, brief, suggestion
 from ..places import ROOT as ROOT
+from .models import PARAMETERS as PARAMETERS
 from .parameter import (
     Parameter as Parameter,
     Table as Table,
     Value as Value,
     with_unit as with_unit,
 )
-from .table import PARAMETERS as PARAMETERS
 
 __all__ = [
     "FOLLOWS",

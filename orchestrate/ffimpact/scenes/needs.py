@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ..failure import BadInput
+from ..input.models import LAW_WORDS
 from ..input.parameters import PARAMETERS, Value
-from ..input.table import LAWS
 
 if TYPE_CHECKING:
     from .scene import Scene
@@ -76,7 +76,7 @@ NEEDS = (
             "integrator": (IMPLICIT,),
             "degree": (2,),
             "volume": ("projected",),
-            "law": tuple(law for law in LAWS if law != "svk"),
+            "law": tuple(law for law in LAW_WORDS if law != "svk"),
         },
     ),
     # An element of degree 1 has one volume.
