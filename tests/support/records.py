@@ -1,6 +1,6 @@
 """Records of small runs in tests/records, evaluated without FreeFEM: two discs with friction that meet
-off their centres, a quarter of a ball in space, a ball of revolution with modes, and a disc that
-falls until it rests. `python -m tests.support.records` makes them again.
+off their centres, a disc that hits the plane obliquely with friction, a quarter of a ball in space, a
+ball of revolution with modes, and a disc that falls until it rests. `python -m tests.support.records` makes them again.
 """
 
 import json
@@ -20,6 +20,7 @@ RECORDS = Path(__file__).parents[1] / "records"
 FILES = ("record.json", "scene.toml", "history.csv", "contacts.bin", "states.bin", "modes.bin")
 FALL = {"law": "neohookean", "loss": 4, "speed": 0, "gravity": 9.81, "until": "rest", "body.1.position.2": 0.06}
 RUNS = {
+    "slide": ("disc-oblique", {"fields": 3, "degree": 1}),
     "discs": ("two-discs", {"fields": 2, "contact.friction_static": 0.3}),
     "ball": ("ball", {"fields": 2, "degree": 1, "mesh_size": 0.04, "contact_mesh_size": 0.03}),
     "axisymmetric": ("ball-axisymmetric", {"fields": 3, "modes": 4}),

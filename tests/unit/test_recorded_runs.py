@@ -1,18 +1,22 @@
 """Numbers, warnings, states, pictures and reports of stored records (tests/support/records.py)."""
 
 import functools
+from importlib.util import find_spec
 
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from PIL import Image
 
 import ffimpact as ff
+from ffimpact.__main__ import main
 from ffimpact.output.results import mechanical_energy
-from ffimpact.report import contact, drawing, impacts, report
+from ffimpact.report import compare, contact, drawing, impacts, movie, report
 from tests.support import loop
 from tests.support.records import evaluated
 
 PICTURES = {
+    "slide": {"energies", "velocity", "force", "rolling", "shapes", "flight", "contact"},
     "discs": {"energies", "velocity", "force", "shapes", "contact"},
     "ball": {"energies", "velocity", "force", "shapes", "contact"},
     "axisymmetric": {"energies", "velocity", "force", "shapes", "contact", "vibration"},
@@ -112,6 +116,22 @@ def test_pictures_of_a_run(result, name):
         assert figure.get_suptitle() and any(axes.has_data() for axes in figure.findobj(plt.Axes))
 
 
+def test_friction_is_drawn_within_its_limits(result):
+    """The friction force lies between the broken lines of the static limit. Centre and rim have their
+    velocities, and the path has the outline at touch, at the lowest place and at the end."""
+    run = result("slide")
+    drawn = drawing.pictures(run.folder)
+    (axes,) = [axes for axes in drawn["force"]().axes[:3] if axes.get_ylabel().startswith("friction")]
+    limits = [line.get_ydata() for line in axes.lines if str(line.get_label()).startswith("static limit")]
+    force = axes.lines[-1].get_ydata()
+    assert np.abs(force).max() > 1 and (np.abs(force) <= 1.0001 * np.abs(limits[0]) + 1e-9).all()
+    speeds = {line.get_label(): line.get_ydata() for line in drawn["rolling"]().axes[0].lines}
+    assert speeds["centre, along x"][-1] == pytest.approx(run.history.vx.iloc[-1])
+    assert speeds["rim, −ωR"][-1] == pytest.approx(-0.05 * run.history.spin.iloc[-1])
+    words = [text.get_text().split(",")[0] for text in drawn["flight"]().axes[0].get_legend().get_texts()]
+    assert words[:4] == ["centre of mass", "touch", "lowest", "end of the run"]
+
+
 def test_a_picture_of_ones_own(result, monkeypatch):
     """It is drawn with a title where it has something to show. Its loop encloses the energy that
     translation has lost."""
@@ -183,6 +203,36 @@ def test_forces_and_velocities_by_body(result):
     assert force.get_ylabel() == "force [kN]" and [line.get_label() for line in force.lines][0] == "normal, CFC 1000"
 
 
+def test_runs_are_compared(result, tmp_path, monkeypatch, capsys):
+    """The command prints both reports and draws one figure: of a disc and a ball accelerations."""
+    monkeypatch.setattr(report, "draw", lambda record: None)
+    folders = [str(result(name).folder) for name in ("slide", "axisymmetric")]
+    assert main(["compare", *folders, "--out", str(tmp_path)]) == 0
+    assert (tmp_path / "slide-and-axisymmetric.png").stat().st_size > 20_000 and capsys.readouterr().out.count("peak force") == 2
+    history = result("discs").record.history
+    assert compare.contact_force(history) == pytest.approx(np.hypot(history["force_x_1"], history["force_y_1"]))
+    assert compare.mass_of(result("axisymmetric").record) == pytest.approx(result("axisymmetric")["mass"])
+
+
+@pytest.mark.parametrize("name", ["slide", "axisymmetric"])
+def test_a_film_of_a_run(result, tmp_path, name):
+    """Two frames of a film; the body between two states is between them."""
+    movie.write(tmp_path / "film.gif", result(name).record, 2)
+    with Image.open(tmp_path / "film.gif") as image:
+        assert image.n_frames == 2
+    motion = movie.Motion(result(name).folder / "fields.pvd", name == "axisymmetric")
+    middle = (motion.times[0] + motion.times[1]) / 2
+    assert motion.at(middle)[0].points == pytest.approx((motion.bodies[0].points + motion.bodies[1].points) / 2, abs=1e-12)
+
+
+@pytest.mark.skipif(not find_spec("k3d"), reason="k3d is not installed")
+@pytest.mark.parametrize("name", ["slide", "ball"])
+def test_a_player_of_a_run(result, tmp_path, name):
+    """One HTML page without network."""
+    text = result(name).view(tmp_path / "impact.html").read_text()
+    assert len(text) > 1e5 and "<script" in text[:10_000]
+
+
 # ---- reports
 
 @pytest.mark.parametrize("name", PICTURES)
@@ -190,7 +240,7 @@ def test_reports(result, name):
     """Table, text and HTML have the main numbers with their units; a run agrees with itself."""
     run = result(name)
     text = report.report(run.record, verbose=True)
-    assert "peak force" in text and "not estimated" in text and ("N s/m" in text) == (name in ("discs", "rest"))
+    assert "peak force" in text and "not estimated" in text and ("N s/m" in text) == (name in ("slide", "discs", "rest"))
     assert ("bounces" in report.report(run.record)) == (name == "rest") and str(run["steps"]) in text
     assert "<caption>" in run._repr_html_() and all(word in repr(run) for word in ("peak_force", "impulse"))
     assert name != "discs" or ("rebound_vx" not in run.table.index and "rebound_vx_2" in run.table.index)
