@@ -23,8 +23,9 @@ the error in 95 of 100 runs and is about four times the usual error. It covers m
 penalty, slip velocity and the growth of elements away from the contact are the same in all runs,
 except the penalty of a flat strike.
 
-Finer runs follow if the estimate of a promised result is above WORTH times the request. The former
-runs are then the levels of the new one. The contact time scatters with the vibration at the end of
+Finer runs follow if the estimate of a promised result is above WORTH times the request, unless it
+stays there with errors of the order p after all finer runs. The former runs are then the levels of
+the new one. The contact time scatters with the vibration at the end of
 contact (by 0.8 % rms in hard impacts, on any mesh and with any step that was tried). If it alone is
 above, a second finer run follows only if the gain of the first one, gained again, brings its
 estimate there. An estimate that is still above WORTH times the request is a warning. One
@@ -178,11 +179,14 @@ def settle(
             and above == [SCATTERS]
             and estimated[SCATTERS] * gain(runs) > WORTH * accuracy
         )
+        # Whether even errors of full order stay above after the finer runs that are left.
+        least = COARSER ** (-_order(runs[0]) * (MOST - refinements))
+        hopeless = any(least * estimated[name] > WORTH * accuracy for name in above)
         made = 0.0 if fixed else accuracy / 2**refinements
         exceeding = excess(estimated, accuracy, values["accuracy_of"], made, scatter)
         sentences, notes = (exceeding, []) if above else ([], exceeding)
         lost = runs[0].summary.get("ellipticity_lost_time") is not None
-        if not above or scatter or fixed or lost or refinements == MOST:
+        if not above or scatter or hopeless or fixed or lost or refinements == MOST:
             break
         if failure := failed(1 / COARSER, stage / FINE):
             sentences.append(
@@ -258,7 +262,7 @@ def error_estimates(runs: Sequence[Answers]) -> dict[str, float]:
     impact, the results OF_IMPACT have no estimate.
     """
     pairs = [_sizes(*pair) for pair in pairwise(runs)]
-    ratio = _ratio(pairs, 1 if runs[0].summary.get("front_rise") else 2)
+    ratio = _ratio(pairs, _order(runs[0]))
     factor = SAFETY[len(pairs)] / (ratio - 1)
     estimates = {
         name: factor * math.sqrt(sum(pair[name] ** 2 / ratio**k for k, pair in enumerate(pairs)))
@@ -269,6 +273,11 @@ def error_estimates(runs: Sequence[Answers]) -> dict[str, float]:
     estimates |= rest_errors(*runs[:2])
     missing = OF_IMPACT if runs[0].summary.get("later_contact_possible") else ()
     return {name: error for name, error in estimates.items() if name not in missing}
+
+
+def _order(run: Answers) -> int:
+    """Returns the order of the errors in elements and steps."""
+    return 1 if run.summary.get("front_rise") else 2
 
 
 def _sizes(fine: Answers, coarse: Answers) -> dict[str, float]:

@@ -96,12 +96,20 @@ class Onset:
         return other.gap_for_sizes(points) if isinstance(other, Obstacle) else other.gap(points)
 
 
-@progress.work("searching for the first contact of the bodies")
 def onsets_of(scene: Scene) -> list[Onset]:
     """Returns the onsets of contact of a scene: one for each body with each obstacle and for each
     two bodies that may come near each other, and those that follow because an impact turns the
-    bodies.
+    bodies. They are computed once for a scene and kept in it, as all levels of an error estimate
+    ask for them.
     """
+    kept: list[Onset] | None = vars(scene).get("_onsets")
+    if kept is None:
+        kept = vars(scene)["_onsets"] = _onsets_of(scene)
+    return kept
+
+
+@progress.work("searching for the first contact of the bodies")
+def _onsets_of(scene: Scene) -> list[Onset]:
     scene = replace(
         scene,
         bodies=[body.carried_along for body in scene.bodies],
