@@ -75,6 +75,7 @@ def frequency(t: np.ndarray, values: np.ndarray, guess: float) -> float:
 AMBIENT, EXPONENT = 1e6, 1.4
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("shape", ["ring", "shell"])
 @pytest.mark.parametrize("filled", [False, True], ids=["empty", "gas"])
 def test_thin_bodies_breathe_as_membranes(tmp_path, shape, filled):

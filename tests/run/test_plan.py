@@ -11,6 +11,7 @@ from ffimpact.__main__ import main
 from ffimpact.running import forecast, plan, run
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("name, values", [
     ("disc-rolling", {"end_time": 0.03}),
     ("block-corner", {}),
