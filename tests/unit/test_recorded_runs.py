@@ -99,6 +99,7 @@ def test_states_are_those_of_the_history(result):
     states = run.fields
     assert len(states) == 2 and len(states.times) == 2
     assert 0 < states[-1].von_mises.max() <= 1.001 * run["max_von_mises"]
+    assert states[-1].to_meshio().point_data["von_mises"].max() == states[-1].von_mises.max()
     path = run.probe(0, 0, body=1)
     centre = [np.interp(t, run.history.t, run.history.x_1) for t in states.times]
     assert path.x.to_numpy() == pytest.approx(centre, abs=2e-3) and np.ptp(path.x) > 1e-3
