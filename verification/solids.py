@@ -134,5 +134,5 @@ def entries(scene: Scene) -> Entries:
             | {"script": "bodies-3d", "symmetry_factor": scene.copies, "implicit_why": "", "front_transit": 0.0, "front_rise": 0.0}
             | table("bodies", bodies) | joined("bodies.law_numbers", [np.zeros(0)] * len(bodies)) | table("obstacles", obstacles)
             | joined("obstacles.numbers", [np.array(numbers, float) for _, numbers, _ in scene.obstacles]) | table("pairs", pairs)
-            | {name: 0 for name in ("rigid", "functions", "kinks", "drives", "supports", "loads")}
+            | {name: 0 for name in ("rigid", "functions", "kinks", "drives", "supports", "loads", "start_fields")}
             | mesh_arrays(*stack(meshes, np.zeros((len(meshes), 3))), spheres, []))

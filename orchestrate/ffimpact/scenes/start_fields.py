@@ -32,8 +32,11 @@ def start_fields(
     arcs: Sequence[Arc],
     arc_of: np.ndarray,
 ) -> Entries:
-    """Returns each field as a list of numbers, which is empty if no body has the field."""
-    arrays = {}
+    """Returns each field as a list of numbers, nothing if no body has one."""
+    given = any(getattr(body, name) for body in scene.bodies for name in FIELDS)
+    arrays: Entries = {"start_fields": int(given)}
+    if not given:
+        return arrays
     nodes = _nodes(together, arcs, arc_of, int(scene.number("degree")))
     for name in FIELDS:
         values = np.zeros_like(nodes)
@@ -47,7 +50,7 @@ def start_fields(
                 values[mine] = field(place.reshape(-1, nodes.shape[2])).reshape(place.shape)
         # of each element the components of all nodes along x, then y, z
         listed = values.transpose(0, 2, 1).ravel()
-        arrays[f"start.{name.removeprefix('initial_')}"] = listed if any(fields) else np.zeros(0)
+        arrays[f"start.{name.removeprefix('initial_')}"] = listed
     return arrays
 
 
