@@ -25,7 +25,7 @@ def names(folder: Path) -> set[str]:
     return {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
 
 
-RESULTS = {"history.csv", "contacts.csv", "summary.json"}
+RESULTS = {"history.csv", "contacts.csv", "summary.json", "last-state"}
 
 
 @pytest.mark.few(2)
@@ -119,7 +119,7 @@ def test_full_disk_of_its_own(tmp_path, files):
     error = (tmp_path / "error").read_text()
     assert (tmp_path / "code").read_text() == "14\n" and error.startswith("ffimpact: ") and error.count("\n") == 1, error
     assert "summary.json" not in (tmp_path / "left").read_text()
-    assert set((tmp_path / "finished").read_text().split()) == {"history.csv", "contacts.bin", "states.bin", "record.json"}
+    assert set((tmp_path / "finished").read_text().split()) == {"history.csv", "contacts.bin", "states.bin", "record.json", "last-state"}
 
 
 @pytest.mark.parametrize("kind, accuracy", [("disc", "0.01"), ("disc-block", "0.03")])
