@@ -33,9 +33,9 @@ def start_fields(
     arc_of: np.ndarray,
 ) -> Entries:
     """Returns each field as a list of numbers, nothing if no body has one."""
-    given = any(getattr(body, name) for body in scene.bodies for name in FIELDS)
-    arrays: Entries = {"start_fields": int(given)}
-    if not given:
+    with_fields = any(getattr(body, name) for body in scene.bodies for name in FIELDS)
+    arrays: Entries = {"start_fields": int(with_fields)}
+    if not with_fields:
         return arrays
     nodes = _nodes(together, arcs, arc_of, int(scene.number("degree")))
     for name in FIELDS:
