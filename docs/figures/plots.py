@@ -15,5 +15,4 @@ for ax, name in zip(axes.flat, ("force()", "energies()", "velocities()", "shapes
     if ax.get_legend():
         ax.legend(fontsize=6.5, ncols=2, loc="upper right")
         ax.set_ylim(top=1.45 * ax.get_ylim()[1])
-axes[1, 1].set(xlabel="", ylabel="")
 save(figure, "plots", "png")

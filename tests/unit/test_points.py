@@ -25,9 +25,9 @@ def test_points_under_the_largest_load():
     between the points, where that is more."""
     intervals = [interval(PAIR, 0, (5, 3, 1e-4, 0, 0), (9, 6, 2e-4, 0, 0)), interval(OTHER, 0, (20, 9, 5e-4, 0, 0)), interval(PAIR, 1, (7, 12, 1e-4, 0, 0))]
     first, second, third = of_pairs([PAIR, OTHER, {"body": 1, "counter_body": -1, "between": 0.0}], intervals)
-    assert (first["peak"], first["points_at_peak"], first["felt"], first["deepest"]) == (9, 6, 2e-4, 3e-4)
+    assert (first["peak"], first["points_at_peak"], first["at_points"], first["deepest"]) == (9, 6, 2e-4, 3e-4)
     assert (second["peak"], second["points_at_peak"], second["deepest"]) == (20, 9, 5e-4)
-    assert (third["peak"], third["points_at_peak"], third["felt"], third["deepest"]) == (0, 0, 0, 0)
+    assert (third["peak"], third["points_at_peak"], third["at_points"], third["deepest"]) == (0, 0, 0, 0)
     assert whole_load(intervals) == pytest.approx(0.041)
 
 

@@ -16,15 +16,15 @@ an impact runs agree by chance. So the error estimate of a result is
        fall more slowly. So q is the median of the orders of all results, by the differences of the
        two pairs, but at least SLOWEST p and at most p. The order of a single result scatters.
 
-Between errors of order q differences have the ratio r^q, between errors that scatter they are
-equal. Most errors are in between, so the second difference is divided by r^(q/2). All results of all scenes have the same
-factor SAFETY (benchmarks/promise.py lists the scenes of its calibration). The estimate contains
-the error in 95 of 100 runs and is about four times the usual error. It covers mesh and steps:
-penalty, slip velocity and the growth of elements away from the contact are the same in all runs,
-except the penalty of a flat strike.
+If errors are of order q, the two differences have the ratio r^q; if they scatter, they are about
+equal. Most errors are in between, so the second difference is divided by r^(q/2). All results of
+all scenes have the same factor SAFETY (benchmarks/promise.py lists the scenes of its calibration).
+The estimate contains the error in 95 of 100 runs and is about four times the usual error. It covers
+mesh and steps: penalty, slip velocity and the growth of elements away from the contact are the same
+in all runs, except the penalty of a flat strike.
 
-Finer runs follow if the estimate of a promised result is above WORTH times the request, unless it
-stays there with errors of the order p after all finer runs. The former runs are then the levels of
+Finer runs follow if the estimate of a requested result is above WORTH times the request, unless it
+would stay there after all of them even if errors fell with the order p. The former runs are then the levels of
 the new one. The contact time scatters with the vibration at the end of
 contact (by 0.8 % rms in hard impacts, on any mesh and with any step that was tried). If it alone is
 above, a second finer run follows only if the gain of the first one, gained again, brings its
@@ -179,9 +179,9 @@ def settle(
             and above == [SCATTERS]
             and estimated[SCATTERS] * gain(runs) > WORTH * accuracy
         )
-        # Whether even errors of full order stay above after the finer runs that are left.
-        least = COARSER ** (-_order(runs[0]) * (MOST - refinements))
-        hopeless = any(least * estimated[name] > WORTH * accuracy for name in above)
+        # Whether an error stays above after the finer runs that are left, even at full order.
+        decrease = COARSER ** (-_order(runs[0]) * (MOST - refinements))
+        hopeless = any(decrease * estimated[name] > WORTH * accuracy for name in above)
         made = 0.0 if fixed else accuracy / 2**refinements
         exceeding = excess(estimated, accuracy, values["accuracy_of"], made, scatter)
         sentences, notes = (exceeding, []) if above else ([], exceeding)

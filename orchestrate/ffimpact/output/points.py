@@ -23,18 +23,18 @@ AT_CORNER = 0.75
 
 def of_pairs(pairs: Sequence[Mapping[str, Any]], intervals: Sequence[Interval]) -> list[Table]:
     """The contact pairs of a record with their largest load `peak` [N/m], the number of points under
-    it, and the largest penetrations [m]: of contact points (`felt`), and of all that is in between,
+    it, and the largest penetrations [m]: of contact points (`at_points`), and of all that is in between,
     too (`deepest`).
     """
     result = []
     for pair in pairs:
         rows = _rows(pair, intervals)
         largest = rows[rows[:, LOAD].argmax()] if len(rows) else np.zeros(PRESSED + 1)
-        felt = float(rows[:, DEPTH].max(initial=0.0))
+        at_points = float(rows[:, DEPTH].max(initial=0.0))
         result.append(
             dict(pair)
             | {"peak": float(largest[LOAD]), "points_at_peak": int(largest[POINTS])}
-            | {"felt": felt, "deepest": max(felt, pair["between"])}
+            | {"at_points": at_points, "deepest": max(at_points, pair["between"])}
         )
     return result
 
@@ -47,8 +47,8 @@ def whole_load(intervals: Sequence[Interval]) -> float:
 def corner_share(
     pairs: Sequence[Mapping[str, Any]], intervals: Sequence[Interval], transit: float
 ) -> float | None:
-    """The share of that impulse of contacts that began at a sharp corner and press it flat; None
-    without contact. A corner is pressed flat once both its sides bear load: if the rim of a face
+    """The share of contacts that began at a sharp corner and press it flat in the impulse of all normal
+    tractions; None without contact. A corner is pressed flat once both its sides bear load: if the rim of a face
     strikes first, only one does. A contact ends after the transit time of a wave [s] without load,
     as a face that strikes flat is unloaded in between.
     """

@@ -614,14 +614,14 @@ def _pairs(e: Evidence) -> Iterator[Sentence]:
     unseen = [
         pair
         for pair in pairs
-        if pair["blunt"] <= 1 and pair["deepest"] > max(UNSEEN * e.radius(pair), 2 * pair["felt"])
+        if pair["blunt"] <= 1 and pair["deepest"] > max(UNSEEN * e.radius(pair), 2 * pair["at_points"])
     ]
     if unseen:
         worst = max(unseen, key=lambda pair: pair["deepest"])
         yield warn(
             f"unseen contact: {e.pair(worst)}{_others(len(unseen))} overlap by "
             f"{rounded(worst['deepest'])} m at a corner or an edge: the corner lies "
-            f"between the contact points, whose penetration is {rounded(worst['felt'])} m: take "
+            f"between the contact points, whose penetration is {rounded(worst['at_points'])} m: take "
             f"{e.finer('a smaller contact_mesh_size', worst)}"
         )
     tight = [pair for pair in pairs if pair["blunt"] > 1]
