@@ -614,7 +614,8 @@ def _pairs(e: Evidence) -> Iterator[Sentence]:
     unseen = [
         pair
         for pair in pairs
-        if pair["blunt"] <= 1 and pair["deepest"] > max(UNSEEN * e.radius(pair), 2 * pair["at_points"])
+        if pair["blunt"] <= 1
+        and pair["deepest"] > max(UNSEEN * e.radius(pair), 2 * pair["at_points"])
     ]
     if unseen:
         worst = max(unseen, key=lambda pair: pair["deepest"])
