@@ -1,4 +1,4 @@
-# The front door. Parameters live in orchestrate/ffimpact/input/models.py, scenes in orchestrate/ffimpact/scenes/*.toml.
+# The front door. Parameters live in orchestrate/ffimpact/input/, scenes in orchestrate/ffimpact/scenes/*.toml.
 # ARGS is handed on:  make disc-normal ARGS="--set speed=4 --out results/slow"
 PYTHON := .venv/bin/python
 READY := .venv/.ready

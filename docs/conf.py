@@ -20,7 +20,7 @@ from sphinx.util.math import get_node_equation_number  # noqa: E402
 
 import ffimpact  # noqa: E402
 import pages  # noqa: E402
-from ffimpact.input import models  # noqa: E402
+from ffimpact.input.entries import Entries  # noqa: E402
 
 project, author, copyright = "ffimpact", "the ffimpact authors", "the ffimpact authors"
 version = release = ffimpact.__version__
@@ -138,7 +138,7 @@ def signature(app, what: str, name: str, item: object, options, arguments: str, 
     For a table of a scene it lists the required entries only; the page has a table of all entries
     below.
     """
-    if inspect.isclass(item) and issubclass(item, models.Entries):
+    if inspect.isclass(item) and issubclass(item, Entries):
         needed = [entry for entry, field in item.model_fields.items() if field.is_required()]
         return f"(*, {', '.join([*needed, '...'])})", None
     if inspect.isclass(item) and issubclass(item, Exception):
@@ -153,7 +153,7 @@ def docstring(app, what: str, name: str, item: object, options, lines: list[str]
     its exit code.
     """
     lines[:] = [literal(line) for line in lines]
-    if inspect.isclass(item) and issubclass(item, models.Entries):
+    if inspect.isclass(item) and issubclass(item, Entries):
         lines += ["", *entries(item)]
     elif inspect.isclass(item) and issubclass(item, ffimpact.Failure):
         lines += ["", f"Exit code: {item.code}." if item is not ffimpact.Failure else ""]
@@ -170,7 +170,7 @@ def literal(line: str) -> str:
     )
 
 
-def entries(model: type[models.Entries]) -> list[str]:
+def entries(model: type[Entries]) -> list[str]:
     """A table of the entries of a model that differ from those of its base class, and a link to the
     base class."""
     base = model.__mro__[1]

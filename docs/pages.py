@@ -21,7 +21,16 @@ from pydantic.fields import FieldInfo
 
 import ffimpact
 from ffimpact import __main__ as command_line, failure, schema
-from ffimpact.input import models, parameters
+from ffimpact.input import (
+    bodies,
+    conditions,
+    contact,
+    materials,
+    obstacles,
+    parameters,
+    shapes,
+)
+from ffimpact.input.entries import Entries
 from ffimpact.input.parameter import Parameter, Rule
 from ffimpact.output.columns import FILES, NEEDS
 from ffimpact.places import PACKAGE, ROOT, shown
@@ -139,28 +148,28 @@ def entries() -> str:
     text += "\n## Materials\nIn Python `material = NeoHookean(...)` and so on; in a file the same "
     text += "entries in a body's table, or at the top for all bodies.\n\n"
     text += "".join(
-        f"- `{name}`, `{law.__name__}`: {first_line(law)}\n" for name, law in models.LAWS.items()
+        f"- `{name}`, `{law.__name__}`: {first_line(law)}\n" for name, law in materials.LAWS.items()
     )
     text += table_of(
-        "Bodies", "`[[body]]`, `Body` in Python: what bodies of all shapes have.", models.Body
+        "Bodies", "`[[body]]`, `Body` in Python: what bodies of all shapes have.", bodies.Body
     )
-    text += kinds("shape", models.BODIES, models.Body)
-    text += table_of("Supports", "`[[body.support]]`, `Support`.", models.Support)
+    text += kinds("shape", shapes.BODIES, bodies.Body)
+    text += table_of("Supports", "`[[body.support]]`, `Support`.", conditions.Support)
     text += table_of(
-        "Loads", "`[[body.load]]`, `Load`: one of traction, pressure and gas.", models.Load
+        "Loads", "`[[body.load]]`, `Load`: one of traction, pressure and gas.", conditions.Load
     )
-    text += table_of("Gas", "`gas = {...}` of a load, `Gas`.", models.Gas)
+    text += table_of("Gas", "`gas = {...}` of a load, `Gas`.", conditions.Gas)
     text += table_of(
         "Rigid obstacles",
         "`[[obstacle]]`, `Obstacle`: what obstacles of all kinds have.",
-        models.Obstacle,
+        obstacles.Obstacle,
     )
-    text += kinds("kind", models.OBSTACLES, models.Obstacle)
-    text += table_of("Contact", "`[contact]`, `Contact`: of the whole scene.", models.Contact)
+    text += kinds("kind", obstacles.OBSTACLES, obstacles.Obstacle)
+    text += table_of("Contact", "`[contact]`, `Contact`: of the whole scene.", contact.Contact)
     return (
         text
         + table_of(
-            "Pairs", "`[[contact.pair]]`, `Pair`: what differs between two partners.", models.Pair
+            "Pairs", "`[[contact.pair]]`, `Pair`: what differs between two partners.", contact.Pair
         )
         + "\n"
     )
@@ -171,7 +180,7 @@ def first_line(model: type) -> str:
     return (model.__doc__ or "").strip().split("\n")[0]
 
 
-def table_of(heading: str, words: str, model: type[models.Entries]) -> str:
+def table_of(heading: str, words: str, model: type[Entries]) -> str:
     """A heading with a table of the entries of a model."""
     return (
         f"\n## {heading}\n{words}\n\n| name | unit | accepted | meaning |\n|---|---|---|---|\n"
@@ -179,7 +188,7 @@ def table_of(heading: str, words: str, model: type[models.Entries]) -> str:
     )
 
 
-def rows(model: type[models.Entries], but: Collection[str] = (), first: str = "") -> str:
+def rows(model: type[Entries], but: Collection[str] = (), first: str = "") -> str:
     """The rows of a table of the entries of a model, without the entries in `but`."""
     text = ""
     for name in model.names(None):
@@ -200,7 +209,7 @@ def entry_of(name: str, field: FieldInfo) -> tuple[str, str, str] | None:
     return unit, words(rule.accepted), meaning
 
 
-def kinds(word: str, table: Mapping[str, type], common: type[models.Entries]) -> str:
+def kinds(word: str, table: Mapping[str, type], common: type[Entries]) -> str:
     """A table of the entries that each shape of a body or kind of an obstacle has in addition to
     the common entries."""
     text = f"\n| {word}, entry | unit | accepted | meaning |\n|---|---|---|---|\n"
@@ -450,7 +459,7 @@ def exports() -> dict[str, list[str]]:
             names["functions"].append(name)
         elif issubclass(item, Exception):
             names["exceptions"].append(name)
-        elif issubclass(item, models.Entries):
+        elif issubclass(item, Entries):
             kind = next((part for part, base in BASES.items() if issubclass(item, base)), "scenes")
             names[kind].append(name)
         else:
@@ -460,7 +469,7 @@ def exports() -> dict[str, list[str]]:
     return names
 
 
-BASES = {"materials": models.Material, "bodies": models.Body, "obstacles": models.Obstacle}
+BASES = {"materials": materials.Material, "bodies": bodies.Body, "obstacles": obstacles.Obstacle}
 MORE = {
     "results": ("plot.Plots", "output.states.Fields", "output.states.State")
 }  # classes of results that are not exported

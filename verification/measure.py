@@ -17,7 +17,8 @@ from ffimpact.failure import Failure, TooLong
 from ffimpact.freefem import freefem
 from ffimpact.freefem.arrays import Entries, joined, packed, unpacked
 from ffimpact.input import dimension, parameters
-from ffimpact.input.models import CONTACT, Material
+from ffimpact.input.contact import CONTACT
+from ffimpact.input.materials import Material
 from ffimpact.input.parameters import ROOT, Value
 from ffimpact.output import results
 from ffimpact.output.evaluate import evaluate

@@ -19,38 +19,48 @@ from .failure import (
     TooLong as TooLong,
     Unreadable as Unreadable,
 )
-from .input.models import (
-    Ball as Ball,
+from .input.bodies import (
     Body as Body,
-    Bowl as Bowl,
-    Box as Box,
-    Circle as Circle,
+)
+from .input.conditions import (
+    Gas as Gas,
+    Load as Load,
+    Support as Support,
+)
+from .input.contact import (
     Contact as Contact,
+    Pair as Pair,
+)
+from .input.materials import (
+    Incompressible as Incompressible,
+    Material as Material,
+    MooneyRivlin as MooneyRivlin,
+    NeoHookean as NeoHookean,
+    Ogden as Ogden,
+    SaintVenantKirchhoff as SaintVenantKirchhoff,
+)
+from .input.obstacles import (
+    Bowl as Bowl,
+    Circle as Circle,
+    Implicit as Implicit,
+    Obstacle as Obstacle,
+    Plane as Plane,
+    Polyline as Polyline,
+    Sphere as Sphere,
+    Surface as Surface,
+)
+from .input.shapes import (
+    Ball as Ball,
+    Box as Box,
     Cylinder as Cylinder,
     Disc as Disc,
     Ellipse as Ellipse,
     Ellipsoid as Ellipsoid,
-    Gas as Gas,
-    Implicit as Implicit,
-    Incompressible as Incompressible,
-    Load as Load,
-    Material as Material,
     Mesh as Mesh,
-    MooneyRivlin as MooneyRivlin,
-    NeoHookean as NeoHookean,
-    Obstacle as Obstacle,
-    Ogden as Ogden,
-    Pair as Pair,
-    Plane as Plane,
     Polygon as Polygon,
-    Polyline as Polyline,
     Rectangle as Rectangle,
     Ring as Ring,
-    SaintVenantKirchhoff as SaintVenantKirchhoff,
     Shell as Shell,
-    Sphere as Sphere,
-    Support as Support,
-    Surface as Surface,
     Torus as Torus,
     Tube as Tube,
 )

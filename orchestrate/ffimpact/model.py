@@ -24,11 +24,15 @@ from .failure import BadInput, brief
 from .geometry import place_functions
 from .geometry.time_functions import tabulated
 from .input import models
+from .input.bodies import FIELDS, Body
+from .input.contact import Contact
 from .input.dimension import AXISYMMETRIC, DIMENSIONS, PLANE_STRAIN, SOLID, Dimension
-from .input.models import FIELDS, Body, Contact, Obstacle
+from .input.entries import several
+from .input.obstacles import Obstacle
 from .input.parameter import plain
 from .input.toml_text import to_toml
-from .scenes import conditions, scene as reading
+from .scenes import scene as reading
+from .scenes.entries import files_renamed
 
 __all__ = ["Scene"]
 
@@ -39,7 +43,7 @@ def _of_tables(key: str) -> BeforeValidator:
     """
 
     def objects(value: Any) -> Any:
-        listed = models.several(value)
+        listed = several(value)
         if not isinstance(listed, list):
             return value
         made = [
@@ -161,7 +165,7 @@ class Scene(models.Top):
         def seen_from_there(label: str, name: str) -> str:
             return os.path.relpath(self.folder / name, path.parent)
 
-        path.write_text(to_toml(conditions.files_renamed(self.table(), seen_from_there)), "utf-8")
+        path.write_text(to_toml(files_renamed(self.table(), seen_from_there)), "utf-8")
         return path
 
     @classmethod

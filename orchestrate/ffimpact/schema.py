@@ -1,4 +1,4 @@
-"""The JSON schema of scene files, made from the models in input/models.py and the table of
+"""The JSON schema of scene files, made from the models in input/ and the table of
 parameters. Editors complete and check TOML files with it (`ffimpact schema`).
 """
 
@@ -10,7 +10,11 @@ from typing import Any
 
 from pydantic.json_schema import models_json_schema
 
-from .input.models import BODIES, OBSTACLES, Contact, Entries, Top
+from .input.contact import Contact
+from .input.entries import Entries
+from .input.models import Top
+from .input.obstacles import OBSTACLES
+from .input.shapes import BODIES
 
 __all__ = ["FILE", "schema", "text"]
 

@@ -37,7 +37,7 @@ def test_examples_are_scenes_and_the_same_in_python(page, pairs, tmp_path, monke
         same = names["scene"].checked()
         for name in ("values", "contact"):
             assert getattr(same, name) == getattr(written, name), (page, name)
-        assert [pair.values for pair in same.pairs] == [pair.values for pair in written.pairs]
+        assert [pair.own for pair in same.pairs] == [pair.own for pair in written.pairs]
         assert [obstacle.numbers for obstacle in same.obstacles] == [obstacle.numbers for obstacle in written.obstacles]
         assert [described(body) for body in same.bodies] == [described(body) for body in written.bodies]
         compared += 1

@@ -111,7 +111,7 @@ def test_a_python_function_of_time_is_a_table():
     table = whole.table()["body"][0]["support"][0]["motion"]
     assert set(table) == {"t", "x", "y"} and table["t"][-1] == 0.1
     for scene in (whole, single):
-        motion = scene.checked().bodies[0].supports[0].motion
+        motion = scene.checked().bodies[0].supports[0].functions
         t = np.linspace(0, 0.1, 5000)
         assert abs(motion[1](t) + 0.01 * np.sin(200 * t)).max() < 2e-7 and motion[0].is_zero
     assert ff.Scene.from_tables(whole.table()) == whole

@@ -12,7 +12,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from ..input.rules import SHORTEST
+from .limits import SHORTEST
 
 __all__ = [
     "Loop",

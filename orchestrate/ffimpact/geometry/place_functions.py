@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from ..failure import BadInput, brief
-from ..input.rules import LONGEST
 from . import implicit
+from .limits import LONGEST
 
 __all__ = ["Field", "of_entry", "tabulated"]
 

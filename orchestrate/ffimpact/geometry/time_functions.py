@@ -21,9 +21,9 @@ from typing import Any
 import numpy as np
 
 from ..failure import BadInput, brief
-from ..input.rules import LONGEST
 from . import implicit
 from .enclosures import crossing, enclosure
+from .limits import LONGEST
 
 __all__ = [
     "NOTHING",

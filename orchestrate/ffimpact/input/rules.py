@@ -7,33 +7,37 @@ units. The rules of single parameters are in parameter.py.
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ..failure import BadInput, brief, suggestion
+from ..geometry.limits import LONGEST, SHORTEST
 from .dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
 from .parameter import Parameter, Rule
 
 __all__ = [
     "ALIAS",
+    "Components",
     "Flag",
     "Function",
     "InSpace",
-    "LONGEST",
+    "MOST_TURN",
     "Name",
     "Numbers",
     "OfPlace",
     "Partners",
     "Parts",
     "Place",
+    "Placed",
     "Points",
     "Polygons",
     "REGIONS",
     "Rows",
-    "SHORTEST",
     "Text",
+    "Timed",
     "Vector",
     "Where",
     "number",
@@ -42,15 +46,18 @@ __all__ = [
     "vector",
 ]
 
-LONGEST = 1e9  # largest accepted length [m] and velocity [m/s]
 # Largest number of points of a polygon or a chain, whose sides are compared with each other.
 MOST = 2000
+MOST_TURN = 36000.0  # largest accepted angle [degrees]
 LARGEST = 2_000_000  # largest number of points, cells or sides of a mesh
-SHORTEST = 1e-9  # smallest accepted length [m]
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_.-]*")
 # The two entries of each kind of region. Points and directions have a component for each axis; a
 # radius is a number.
 REGIONS = {"half-space": ("point", "normal"), "box": ("low", "high"), "ball": ("centre", "radius")}
+# Types of entries. Arrays and tuples become lists; Python functions become tables.
+Components = list[float] | float  # one for each axis, or the only one
+Timed = float | str | list[Any] | dict[str, Any] | Callable[[float], Any]  # functions of time
+Placed = list[float | str] | dict[str, Any] | Callable[[np.ndarray], Any]  # functions of place
 ALIAS = {"half-plane": "half-space", "disc": "ball"}  # names of regions in the plane
 
 

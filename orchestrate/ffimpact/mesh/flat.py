@@ -18,8 +18,9 @@ from ..geometry.outlines import (
     polygon_loop,
     self_crossing,
 )
-from ..input.models import Body, Mesh, Polygon
+from ..input.bodies import Body
 from ..input.parameters import Table
+from ..input.shapes import Mesh, Polygon
 from . import given, mesh, plane_file
 
 __all__ = ["check_simple", "mesh_file", "mesh_outline", "motion", "shape", "velocity"]

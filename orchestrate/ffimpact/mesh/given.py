@@ -8,7 +8,7 @@ from typing import TypeVar
 import numpy as np
 
 from ..failure import BadInput
-from ..input.models import Mesh as Table
+from ..input.shapes import Mesh as Table
 from . import mesh, plane_file, solid_file
 from .mesh import AXIS, FREE, Mesh
 from .solid_mesh import SolidMesh, right_handed

@@ -21,8 +21,9 @@ from ..geometry.outlines import (
     ellipse_loop,
     signed_area,
 )
-from ..input.models import Body, Mesh, Polygon, Shell, Torus, Tube
+from ..input.bodies import Body
 from ..input.parameters import Table
+from ..input.shapes import Mesh, Polygon, Shell, Torus, Tube
 from . import flat, mesh
 
 __all__ = [

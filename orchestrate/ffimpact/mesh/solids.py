@@ -17,8 +17,9 @@ from scipy.spatial import cKDTree
 from ..failure import BadInput
 from ..geometry import outlines, tumbling
 from ..geometry.outlines import Turn
-from ..input.models import Body, Mesh
+from ..input.bodies import Body
 from ..input.parameters import Table
+from ..input.shapes import Mesh
 from . import curved, flat, given, solid_file
 from .mesh import Sizes
 from .solid_mesh import MOST_CELLS, SolidMesh, expected_cells, mesh_shape

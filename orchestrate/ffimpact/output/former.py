@@ -5,7 +5,8 @@ that take their place. So result folders of these versions are read like others.
 from collections.abc import Mapping
 from typing import Any
 
-from ..input.models import CONTACT, MATERIAL, Contact
+from ..input.contact import CONTACT, Contact
+from ..input.materials import MATERIAL
 
 __all__ = ["SCRIPTS", "tables"]
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from ..input import dimension
-from ..input.models import MATERIAL
+from ..input.materials import MATERIAL
 
 __all__ = ["KINDS", "impact_of"]
 

@@ -17,11 +17,11 @@ from .. import progress
 from ..failure import BadInput
 from ..geometry.outlines import Outline, Shape
 from ..geometry.time_functions import farthest
+from ..input.conditions import WHOLE
 from ..input.dimension import PLANE_STRAIN
 from ..input.parameters import Value
 from ..mesh import mesh
 from .bodies import Body
-from .conditions import WHOLE
 from .obstacles import Drive, Obstacle
 from .scene import Scene, gap_between
 

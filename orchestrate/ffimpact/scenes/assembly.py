@@ -23,8 +23,8 @@ from .. import progress
 from ..failure import BadInput
 from ..freefem.arrays import Entries, packed
 from ..geometry.outlines import Loop, TubeOutline, rotation
+from ..input.contact import OWN, Pair
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID
-from ..input.models import OWN
 from ..input.parameters import NOT_DECISIVE, Table, Value
 from ..input.toml_text import to_toml
 from ..mesh import mesh, revolution, solid_mesh, solids
@@ -37,7 +37,7 @@ from .front import Front, fronts, stretch_of
 from .mirror import COPIES, copies, mirror_axes
 from .needs import IMPLICIT, implicit_for
 from .parts import conditions
-from .scene import Pair, Scene, refuse_rest
+from .scene import Scene, refuse_rest
 from .sizes import Impact
 from .start_fields import start_fields
 from .unstressed import find_unstressed
@@ -296,7 +296,7 @@ class Asker:
         """Returns the front of a pair that strikes flat and whose penalty is automatic, else
         None.
         """
-        is_open = pair.values.get("penalty", self.scene.contact["penalty"]) == "auto"
+        is_open = pair.own.get("penalty", self.scene.contact["penalty"]) == "auto"
         return self.fronts.get((pair.first, pair.second)) if is_open else None
 
     def small(self, first: int, second: int) -> float:
@@ -400,16 +400,16 @@ def pair_values(pair: Pair, ask: Asker, values: dict[str, Value]) -> dict[str, V
     value of the scene; it is automatic again if it depends on one that the pair sets.
     """
     bodies = [ask.scene.bodies[k] for k in (pair.first, pair.second) if k >= 0]
-    alone = "friction_static" in pair.values  # then it sets both coefficients
+    alone = "friction_static" in pair.own  # then it sets both coefficients
     inherited = {name: values[name] for name in ask.scene.contact}
     inherited["friction_dynamic"] = "auto" if alone else ask.scene.contact["friction_dynamic"]
     small = ask.small(pair.first, pair.second)
     if 0 < small < math.inf:
         inherited["penalty"] = ask.scene.contact["penalty"]
-    own = inherited | pair.values
+    own = inherited | pair.own
     if front := ask.open_front(pair):
         own["penalty"] = front.penalty(ask.scene.bodies, ask.scene.number("exponent"))
-    own = contact_values(bodies, own, ask, pair.path, small or math.inf)
+    own = contact_values(bodies, own, ask, pair.entry, small or math.inf)
     return {name: own[name] for name in OWN}
 
 
@@ -425,7 +425,7 @@ def with_open_penalties(scene: Scene, ask: "Asker") -> list[Pair]:
     ]
     differ = dict.fromkeys([*small, *ask.fronts]) if scene.contact["penalty"] == "auto" else {}
     pairs = scene.pairs + [
-        Pair(*both, {}, f"obstacle.{-both[1]}" if both[1] < 0 else "contact")
+        Pair.between(*both, f"obstacle.{-both[1]}" if both[1] < 0 else "contact", {})
         for both in differ
         if both not in listed
     ]

@@ -15,19 +15,20 @@ import numpy as np
 
 from ..failure import BadInput, gathered
 from ..geometry import place_functions, tumbling
+from ..geometry.limits import SHORTEST
 from ..geometry.outlines import Outline, Shape, Turn
 from ..geometry.place_functions import Field
-from ..input import models, parameters
+from ..input import bodies, models, parameters
+from ..input.bodies import FIELDS
+from ..input.conditions import Load, Support, refuse_mixed_gases
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
-from ..input.models import FIELDS, Material
+from ..input.materials import Material
 from ..input.parameters import Table, Value
-from ..input.rules import SHORTEST
 from ..mesh import flat, mesh, revolution, solids
 from ..mesh.solid_file import GEOMETRIES
 from ..mesh.solid_mesh import SolidMesh
 from ..mesh.solids import Solid
 from . import material
-from .conditions import Load, Support, read_loads, read_supports
 
 __all__ = ["Body", "SIZES", "STIFF", "read", "stiffened"]
 
@@ -100,7 +101,7 @@ class Body:
     @property
     def inflated(self) -> bool:
         """Whether the given shape is that under the gases in the body."""
-        pressed = not self.rigid and any(load.gas[0] for load in self.loads)
+        pressed = not self.rigid and any(load.gas_numbers[0] for load in self.loads)
         return pressed and any(load.inflated for load in self.loads)
 
     @property
@@ -163,7 +164,7 @@ class Body:
 
 
 def read(
-    tables: list[models.Body], top: models.Top, folder: Path, dimension: Dimension
+    tables: list[bodies.Body], top: models.Top, folder: Path, dimension: Dimension
 ) -> list[Body]:
     """Returns the bodies of the [[body]] tables. `top` holds the entries at the top of the file;
     paths of mesh files are relative to `folder`.
@@ -171,7 +172,7 @@ def read(
     return gathered([partial(_body, table, top, folder, dimension) for table in tables])
 
 
-def _body(table: models.Body, top: models.Top, folder: Path, dimension: Dimension) -> Body:
+def _body(table: bodies.Body, top: models.Top, folder: Path, dimension: Dimension) -> Body:
     geometry: ModuleType = GEOMETRY[dimension]
     outline, body_mesh, drawn_centre = geometry.shape(table, folder)
     if not outline.half_thickness >= SHORTEST:
@@ -192,9 +193,12 @@ def _body(table: models.Body, top: models.Top, folder: Path, dimension: Dimensio
         if table.rigid
         else {"material": material.read(table, top)}
     )
-    end_time = top.end_time or 0.0
+    supports, loads = tuple(table.support or []), tuple(table.load or [])
+    gathered([support.check for support in supports])
+    gathered([load.check for load in loads])
+    refuse_mixed_gases(loads)
     motion = geometry.motion(table)
-    if isinstance(table, models.Drawn) and table.is_placed_as_drawn:
+    if isinstance(table, bodies.Drawn) and table.is_placed_as_drawn:
         motion["position"] = motion["position"] + drawn_centre
     motion |= {
         name: place_functions.of_entry(table.at(name), getattr(table, name), dimension.axes)
@@ -210,8 +214,8 @@ def _body(table: models.Body, top: models.Top, folder: Path, dimension: Dimensio
         mesh_size=bulk,
         contact_mesh_size=contact,
         mesh_stretch=table.mesh_stretch or 0.0,
-        supports=read_supports(table.support or [], dimension, end_time, folder),
-        loads=read_loads(table.load or [], dimension, end_time, folder),
+        supports=supports,
+        loads=loads,
     )
     return _with_mean(body, dimension) if body.has_fields else body
 
@@ -236,7 +240,7 @@ def _with_mean(body: Body, dimension: Dimension) -> Body:
     return replace(body, velocity=body.velocity + mean, initial_velocity=rest)
 
 
-def _rigid(table: models.Body, top: models.Top, dimension: Dimension, outline: Shape) -> Table:
+def _rigid(table: bodies.Body, top: models.Top, dimension: Dimension, outline: Shape) -> Table:
     """Returns the material, mass and moments of a rigid body."""
     mass = table.mass or 0.0
     if not mass and "density" not in table and "density" not in top:
@@ -254,7 +258,7 @@ def _rigid(table: models.Body, top: models.Top, dimension: Dimension, outline: S
     }
 
 
-def _moments(table: models.Body, dimension: Dimension) -> tuple[float, ...]:
+def _moments(table: bodies.Body, dimension: Dimension) -> tuple[float, ...]:
     """Returns the moments of the entry `inertia`, 0 where there is no such entry.
 
     In the plane this is the polar moment of inertia. In space the entry holds moments about the
@@ -322,7 +326,7 @@ def _refuse_size(path: str, size: float, outline: Shape, name: str) -> None:
         )
 
 
-def _sizes(table: models.Body, top: models.Top | None) -> tuple[float, float]:
+def _sizes(table: bodies.Body, top: models.Top | None) -> tuple[float, float]:
     """Returns the element sizes [m] in the bulk and where contact may occur: those of the body,
     else those at the `top`. 0 is automatic.
     """

@@ -5,16 +5,18 @@ automatic.
 import copy
 import re
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 
 from ..failure import BadInput, brief
+from ..geometry import time_functions
 from ..input import parameters
+from ..input.models import listed
 from ..input.parameters import Table
 
-__all__ = ["release", "set_entry", "toml_value"]
+__all__ = ["files_renamed", "release", "set_entry", "toml_value"]
 
 # Entries that set the size of a body, beside `radius`.
 SHAPE = (
@@ -155,3 +157,47 @@ def toml_value(value: Any) -> Any:
         return tomllib.loads(f"value = {value}")["value"] if "\n" not in value else value
     except tomllib.TOMLDecodeError:
         return value
+
+
+def files_renamed(content: Table, rename: Callable[[str, str], str]) -> Table:
+    """Returns the tables of a scene with rename(label, name) in place of the names of all files: of
+    bodies and obstacles, and of CSV files of supports, loads and driven obstacles. A label is unique
+    in the scene.
+    """
+    bodies = []
+    for b, body in enumerate(listed(content, "body"), 1):
+        changed = _with_file(f"body{b}", body, rename)
+        for key, names in (("support", ("motion",)), ("load", ("traction", "pressure"))):
+            if key in body:
+                changed[key] = [
+                    _csv_renamed(f"body-{b}-{key}-{k}", table, names, rename)
+                    for k, table in enumerate(listed(body, key), 1)
+                ]
+        bodies.append(changed)
+    obstacles = [
+        _csv_renamed(
+            f"obstacle-{k}",
+            _with_file(f"obstacle{k}", table, rename),
+            ("motion", "rotation"),
+            rename,
+        )
+        for k, table in enumerate(listed(content, "obstacle"), 1)
+    ]
+    return (
+        content
+        | ({"body": bodies} if bodies else {})
+        | ({"obstacle": obstacles} if obstacles else {})
+    )
+
+
+def _with_file(label: str, table: Table, rename: Callable[[str, str], str]) -> Table:
+    if "file" not in table:
+        return dict(table)
+    return table | {"file": rename(table.get("name", label), str(table["file"]))}
+
+
+def _csv_renamed(
+    label: str, table: Table, names: tuple[str, ...], rename: Callable[[str, str], str]
+) -> Table:
+    files = {name: table[name] for name in names if time_functions.is_csv(table.get(name))}
+    return table | {name: rename(f"{label}-{name}", file) for name, file in files.items()}

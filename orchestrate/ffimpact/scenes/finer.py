@@ -49,7 +49,7 @@ def _pairs(scene: Scene, used: list[Table], factor: float) -> list[Table]:
     strike is automatic, it changes so that the front rises in `factor` times the time. The
     estimated error is then that of elements and penalty together (front.py).
     """
-    fixed_pairs = {(pair.first, pair.second) for pair in scene.pairs if "penalty" in pair.values}
+    fixed_pairs = {(pair.first, pair.second) for pair in scene.pairs if "penalty" in pair}
     if scene.contact["penalty"] != "auto" or len(used) == len(fixed_pairs):
         return used
     onsets = [front.onset for front in fronts(scene, onsets_of(scene))]

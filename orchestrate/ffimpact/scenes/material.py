@@ -6,7 +6,8 @@ from typing import Any
 
 from ..failure import BadInput
 from ..input import models
-from ..input.models import DAMPING, LAW_ENTRIES, MATERIAL, Material
+from ..input.bodies import Body
+from ..input.materials import DAMPING, LAW_ENTRIES, MATERIAL, Material
 from ..input.parameters import PARAMETERS
 
 __all__ = ["read", "rigid"]
@@ -22,7 +23,7 @@ def rigid(density: float) -> Material:
     return Material.model_construct(law="svk", young=1.0, nu=0.0, density=density, **DEFAULTS)
 
 
-def read(table: models.Body, top: models.Top) -> Material:
+def read(table: Body, top: models.Top) -> Material:
     """Returns the material of a body: its own entries, else those at the top of the file. Raises
     BadInput if one is in neither.
 

@@ -164,7 +164,7 @@ def _of_conditions(body: Body, axis: int, plane: str) -> str:
         if not all(condition.part.is_mirrored(axis, turned) for condition in listed):
             return f"has a {kind} that is not its own mirror image in {plane}"
     moved = [
-        (support.fixed[axis] or support.normal) and not support.motion[axis].is_zero
+        (support.fixed[axis] or support.normal) and not support.functions[axis].is_zero
         for support in body.supports
     ]
     pushed = [load.kind == "traction" and not load.functions[axis].is_zero for load in body.loads]

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ..failure import BadInput
-from ..input.models import LAW_WORDS
+from ..input.materials import LAW_WORDS
 from ..input.parameters import PARAMETERS, Value
 
 if TYPE_CHECKING:

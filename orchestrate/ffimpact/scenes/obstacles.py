@@ -17,7 +17,7 @@ from ..failure import BadInput, gathered
 from ..geometry import implicit, polyline, time_functions, tumbling
 from ..geometry.outlines import Shape
 from ..geometry.time_functions import TimeFunction, displacements, farthest
-from ..input import models
+from ..input import obstacles as models
 from ..input.dimension import AXISYMMETRIC, SOLID, Dimension
 from ..input.rules import placeholder
 from ..mesh import solids, surface_file

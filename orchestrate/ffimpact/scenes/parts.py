@@ -11,13 +11,13 @@ from ..failure import BadInput, brief
 from ..freefem.arrays import Entries, joined, table
 from ..geometry.outlines import rotation
 from ..geometry.time_functions import NOTHING, TimeFunction
+from ..input.conditions import KINDS, ON_SIDE, SIDES, Load, Part, Support
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
 from ..mesh import mesh
 from ..mesh.mesh import Mesh
 from ..mesh.solid_mesh import SolidMesh
 from ..mesh.solids import Solid
 from .bodies import Body
-from .conditions import KINDS, NEVER, ON_SIDE, SIDES, Load, Part, Support
 from .mirror import mirror_axes
 from .obstacles import Drive, Obstacle
 
@@ -74,10 +74,10 @@ def _support_row(
     support: Support, fixed: tuple[bool, ...], functions: list[TimeFunction]
 ) -> Entries:
     """The row of a support: fixed components, release, functions."""
-    moved = [function if held else None for function, held in zip(support.motion, fixed)]
+    moved = [function if held else None for function, held in zip(support.functions, fixed)]
     return {
         "fixed": _padded(fixed),
-        "release": support.release,
+        "release": support.held_until,
         "motion": _numbered(functions, moved),
     }
 
@@ -89,7 +89,7 @@ def _load_row(load: Load, inflated: bool, functions: list[TimeFunction]) -> Entr
     return {
         "kind": KINDS[load.kind],
         "functions": _numbered(functions, list(load.functions)),
-        "gas": (*load.gas, 0.0, float(inflated), 0.0),
+        "gas": (*load.gas_numbers, 0.0, float(inflated), 0.0),
     }
 
 
@@ -244,14 +244,13 @@ class _Surface:
         axis = int(normals.mean(axis=0).argmax())
         if abs(normals[:, axis] - 1).max() > ALONG:
             raise BadInput(
-                f"{support.part.entry.rpartition('.')[0]}.fix: 'normal', but the part is not flat across x, y or z "
+                f"{support.at('fix')}: 'normal', but the part is not flat across x, y or z "
                 f"(accepted: all, {', '.join('xyz'[: self.dimension.axes])}, or a part that is)"
             )
-        entry = support.part.entry.rpartition(".")[0]
-        for k, function in enumerate(support.motion):
+        for k, function in enumerate(support.functions):
             if k != axis and not function.is_zero:
                 raise BadInput(
-                    f"{entry}.motion: moves along {'xyz'[k]}, which fix = 'normal' leaves free on this part "
+                    f"{support.at('motion')}: moves along {'xyz'[k]}, which fix = 'normal' leaves free on this part "
                     f"(accepted: 0 there, or fix = 'all')"
                 )
         return tuple(axis == k for k in range(self.dimension.axes))
@@ -320,16 +319,15 @@ def _refuse_opposite(body: Body, surface: _Surface) -> None:
         for first in body.supports[:j]:
             elements = [surface.elements(support.part) for support in (first, second)]
             common = np.intersect1d(elements[0], elements[1])
-            if not len(common) or second.release < first.release:
+            if not len(common) or second.held_until < first.held_until:
                 continue
             fixed = [surface.fixed(*pair) for pair in zip((first, second), elements)]
             for k, both in enumerate(zip(*fixed)):
-                if all(both) and not _alike(first.motion[k], second.motion[k]):
-                    entries = [support.part.entry.rpartition(".")[0] for support in (first, second)]
+                if all(both) and not _alike(first.functions[k], second.functions[k]):
                     raise BadInput(
-                        f"{entries[1]}.motion: moves '{body.name}' along {'xyz'[k]} otherwise than {entries[0]}, where "
+                        f"{second.at('motion')}: moves '{body.name}' along {'xyz'[k]} otherwise than {first.entry}, where "
                         f"both hold it (accepted: the same motion there, parts without common facets, or "
-                        f"an earlier release of {entries[1]})"
+                        f"an earlier release of {second.entry})"
                     )
 
 
@@ -360,7 +358,7 @@ def _refuse_without_effect(body: Body, surface: _Surface) -> None:
     """
     held = np.zeros((len(surface.made.sides), surface.dimension.axes), dtype=bool)
     for support in body.supports:
-        if support.release == NEVER:
+        if support.release is None:
             elements = surface.elements(support.part)
             held[elements] |= np.array(surface.fixed(support, elements))
     for load in body.loads:

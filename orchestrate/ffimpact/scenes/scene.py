@@ -21,18 +21,23 @@ from scipy.spatial import cKDTree
 from ..failure import BadInput, brief, gathered
 from ..geometry.outlines import Outline, Shape, normal_of
 from ..input import dimension, models, parameters
+from ..input.bodies import FIELDS
+from ..input.contact import CONTACT, Contact, Pair
 from ..input.dimension import AXISYMMETRIC, SOLID, Dimension
-from ..input.models import CONTACT, FIELDS, MATERIAL, OWN, STIFFEST, listed
+from ..input.entries import Entries
+from ..input.materials import MATERIAL, STIFFEST
+from ..input.models import listed
+from ..input.obstacles import Obstacle as ObstacleTable
 from ..input.parameters import Table, Value
 from ..mesh.solid_file import declares_unit, takes_in_others
 from ..output import former
 from ..output.columns import Features, recorded
-from . import bodies, conditions, mirror, needs, obstacles
+from . import bodies, mirror, needs, obstacles
 from .bodies import SIZES, Body
-from .entries import release, set_entry, toml_value
+from .entries import files_renamed, release, set_entry, toml_value
 from .obstacles import Obstacle
 
-__all__ = ["Pair", "RUN", "Scene", "gap_between", "gap_to_obstacle", "read", "refuse_rest"]
+__all__ = ["RUN", "Scene", "gap_between", "gap_to_obstacle", "read", "refuse_rest"]
 
 RUN = (
     "gravity",
@@ -64,20 +69,6 @@ TOUCHING = 1e-9  # overlap at the start that is round-off, over half the thickne
 # Overlap, likewise, that may be the depth at rest under weight or loads. The solver knows the penalty
 # and judges it by its force (edp/program/run/start.idp).
 SUNK = 0.05
-
-
-@dataclass(frozen=True)
-class Pair:
-    """The contact parameters `values` of one contact pair that differ from [contact].
-
-    `first` and `second` are indices: of a body from 0, of obstacle k it is -1 - k. `path` is the
-    table of the scene that sets the values.
-    """
-
-    first: int
-    second: int
-    values: dict[str, Value]
-    path: str
 
 
 @dataclass(frozen=True)
@@ -163,7 +154,7 @@ class Scene:
             files.append(name)
             return name
 
-        conditions.files_renamed(self.content, listed_file)
+        files_renamed(self.content, listed_file)
         meshes = {
             name: hashlib.sha256((self.folder / name).read_bytes()).hexdigest() for name in files
         }
@@ -188,7 +179,7 @@ class Scene:
             shutil.copyfile(path, where / copy)
             return copy.as_posix()
 
-        return conditions.files_renamed(tables, copied)
+        return files_renamed(tables, copied)
 
     def number(self, name: str) -> float:
         """The value of a parameter of the run or of [contact] that is a number."""
@@ -279,7 +270,7 @@ def read(content: Table, folder: Path, name: str) -> Scene:
             "[[obstacle]] and [contact], as in the built-in scene of its name)"
         )
     scene_dimension = dimension.of_scene(content)
-    tables = models.read(content, scene_dimension)
+    tables = models.read(content, scene_dimension, folder)
     if not tables.bodies:
         raise BadInput("body: is missing (accepted: one table [[body]] or more)")
     top = tables.top
@@ -310,9 +301,8 @@ def read(content: Table, folder: Path, name: str) -> Scene:
     index = _names(all_bodies, all_obstacles)
     pairs = _own_of_obstacles(tables.obstacles, len(all_bodies))
     for both, pair in _exceptions(tables.contact.pair or [], index).items():
-        pairs[both] = (
-            replace(pair, values=pairs[both].values | pair.values) if both in pairs else pair
-        )
+        own = pairs[both].own if both in pairs else {}
+        pairs[both] = Pair.between(*both, pair.entry, own | pair.own)
     penalties = _penalties(contact["penalty"], pairs, list(index.values()))
     all_bodies = bodies.stiffened(all_bodies, penalties, "contact.penalty")
     if all(body.rigid for body in all_bodies) and contact["penalty"] == "auto":
@@ -323,7 +313,7 @@ def read(content: Table, folder: Path, name: str) -> Scene:
         scene_dimension,
         len(all_bodies) == 1 and not all_obstacles,
     ):
-        pairs.setdefault((k, k), Pair(k, k, {}, "contact"))
+        pairs.setdefault((k, k), Pair.between(k, k, "contact", {}))
     scene = Scene(
         name,
         top.title or name,
@@ -354,7 +344,7 @@ def _refuse_friction(scene: Scene) -> None:
     pair, which inherits what it does not set.
     """
     common = scene.contact
-    for path, own in [("contact", common), *((pair.path, pair.values) for pair in scene.pairs)]:
+    for path, own in [("contact", common), *((pair.entry, pair.own) for pair in scene.pairs)]:
         static = own.get("friction_static", common["friction_static"])
         inherited = "auto" if "friction_static" in own else common["friction_dynamic"]
         dynamic = own.get("friction_dynamic", inherited)
@@ -401,7 +391,7 @@ def _refuse_start(scene: Scene) -> None:
 
 
 def _parameters(
-    table: models.Entries, keys: tuple[str, ...], scene_dimension: Dimension
+    table: Entries, keys: tuple[str, ...], scene_dimension: Dimension
 ) -> dict[str, Value]:
     """Returns the values of the parameters `keys` that the script takes; defaults where the table
     has no entry. Raises BadInput for an entry that the script does not take.
@@ -441,16 +431,15 @@ def _names(all_bodies: list[Body], all_obstacles: list[Obstacle]) -> dict[str, i
 
 
 def _own_of_obstacles(
-    tables: list[models.Obstacle], bodies_count: int
+    tables: list[ObstacleTable], bodies_count: int
 ) -> dict[tuple[int, int], Pair]:
     """Returns the contact parameters in [[obstacle]] tables, as exceptions for every body."""
     pairs: dict[tuple[int, int], Pair] = {}
     for k, table in enumerate(tables):
-        own = {key: getattr(table, key) for key in OWN if key in table}
         pairs |= {
-            (body, -1 - k): Pair(body, -1 - k, own, table.entry)
+            (body, -1 - k): Pair.between(body, -1 - k, table.entry, table.own)
             for body in range(bodies_count)
-            if own
+            if table.own
         }
     return pairs
 
@@ -462,11 +451,11 @@ def _penalties(
     has none of its own, and where there is no pair.
     """
     every = [both for both in itertools.combinations(surfaces, 2) if both[0] >= 0]
-    own = {both: pair.values["penalty"] for both, pair in pairs.items() if "penalty" in pair.values}
+    own = {both: pair.own["penalty"] for both, pair in pairs.items() if "penalty" in pair}
     return [own.get(both, common) for both in every] or [common]
 
 
-def _exceptions(tables: list[models.Pair], index: dict[str, int]) -> dict[tuple[int, int], Pair]:
+def _exceptions(tables: list[Pair], index: dict[str, int]) -> dict[tuple[int, int], Pair]:
     """Returns the exceptions in the tables [[contact.pair]] by the two indices."""
     pairs: dict[tuple[int, int], Pair] = {}
     for table in tables:
@@ -475,14 +464,12 @@ def _exceptions(tables: list[models.Pair], index: dict[str, int]) -> dict[tuple[
             raise BadInput(
                 f"{table.at('bodies')}: '{table.value_text('bodies')}' has a table already (accepted: one a pair)"
             )
-        pairs[both] = Pair(
-            *both, {key: getattr(table, key) for key in OWN if key in table}, table.entry
-        )
+        pairs[both] = Pair.between(*both, table.entry, table.own)
     return pairs
 
 
 def _touching_themselves(
-    contact: models.Contact,
+    contact: Contact,
     all_bodies: list[Body],
     scene_dimension: Dimension,
     alone: bool,

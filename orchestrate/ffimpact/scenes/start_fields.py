@@ -8,8 +8,8 @@ import numpy as np
 
 from ..freefem.arrays import Entries
 from ..geometry.outlines import rotation
+from ..input.bodies import FIELDS
 from ..input.dimension import PLANE_STRAIN
-from ..input.models import FIELDS
 from ..mesh.mesh import Mesh
 from ..mesh.solid_mesh import SolidMesh
 from .arrays import Arc

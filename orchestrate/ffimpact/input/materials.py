@@ -1,0 +1,285 @@
+"""Materials: their entries, which a body and the top of a scene have too, and one class for each
+law (docs/explanation/materials.md). Units are SI.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Annotated, Any
+
+import numpy as np
+
+from ..failure import brief
+from .dimension import Dimension
+from .entries import Entries, no_more, rule_of
+from .parameter import real, word
+from .rules import Numbers, number
+
+__all__ = [
+    "DAMPING",
+    "Incompressible",
+    "LAWS",
+    "LAW_ENTRIES",
+    "LAW_WORDS",
+    "MATERIAL",
+    "Material",
+    "MooneyRivlin",
+    "NOT_RIGID",
+    "NeoHookean",
+    "OF_BODIES",
+    "OfMaterial",
+    "Ogden",
+    "STIFFEST",
+    "SaintVenantKirchhoff",
+]
+
+OF_BODIES = ()  # of no script: entries of bodies
+# The words of the laws in edp/kernels/laws.cpp.
+LAW_WORDS = ("svk", "neohookean", "mooney-rivlin", "ogden", "incompressible")
+LAW = word(
+    "svk",
+    LAW_WORDS,
+    "constitutive law: St. Venant-Kirchhoff (5), compressible neo-Hookean (6), or another",
+    OF_BODIES,
+)
+YOUNG = real(7e6, 1e-6, 1e18, "Pa", "Young's modulus E", OF_BODIES)
+NU = real(
+    0.45,
+    0,
+    0.5,
+    "-",
+    "Poisson's ratio; the paper says only nu -> 0.5; 0.5: J = 1, of all laws but svk",
+    OF_BODIES,
+)
+DENSITY = real(1722, 1e-15, 1e12, "kg/m3", "reference density", OF_BODIES)
+DAMPING = ("viscosity", "bulk_viscosity", "relaxation_modulus", "relaxation_time")
+# Largest nu in the speed of waves. The stiffness by a larger nu acts on the volume of elements.
+STIFFEST = 0.45
+# The entries of some laws beside young and nu. Those of ogden replace young.
+LAW_ENTRIES = {"mooney-rivlin": ("share",), "ogden": ("alpha", "mu")}
+
+
+class OfMaterial(Entries):
+    """The entries of a material, which a body and the top of a scene may have, too."""
+
+    law: Annotated[str | None, LAW] = None
+    young: Annotated[float | None, YOUNG] = None
+    nu: Annotated[float | None, NU] = None
+    density: Annotated[float | None, DENSITY] = None
+    share: Annotated[
+        float | None, number(0.0, 1.0, "-", "mooney-rivlin: part of I2 in the shear modulus")
+    ] = None
+    alpha: Annotated[
+        list[float] | None, Numbers(-30.0, 30.0, 3, "ogden: exponents of one to three terms")
+    ] = None
+    mu: Annotated[
+        list[float] | None,
+        Numbers(-1e18, 1e18, 3, "ogden: moduli of the terms [Pa], in place of young"),
+    ] = None
+    viscosity: Annotated[
+        float | None,
+        real(
+            0,
+            0,
+            1e18,
+            "Pa s",
+            "viscosity eta of the material: beside the law's stress 2 eta D, D the rate of deformation",
+            OF_BODIES,
+        ),
+    ] = None
+    bulk_viscosity: Annotated[
+        float | None,
+        real(0, 0, 1e18, "Pa s", "viscosity zeta of volume: beside it zeta tr(D) I", OF_BODIES),
+    ] = None
+    relaxation_modulus: Annotated[
+        float | None,
+        real(
+            0,
+            0,
+            1e18,
+            "Pa",
+            "shear modulus G of a Maxwell branch beside the law, which relaxes in relaxation_time; 0 "
+            "= none",
+            OF_BODIES,
+        ),
+    ] = None
+    relaxation_time: Annotated[
+        float | None,
+        real(0, 0, 1e9, "s", "its time tau: G exp(-t/tau) is left of G after t", OF_BODIES),
+    ] = None
+    loss: Annotated[
+        float | None,
+        real(
+            0,
+            0,
+            10,
+            "-",
+            "loss factor tan delta of shear at the first mode of the disc or ball: sets viscosity; 0 "
+            "= by viscosity",
+            OF_BODIES,
+        ),
+    ] = None
+
+    @classmethod
+    def refused(cls, name: str, value: Any, dimension: Dimension | None) -> str:
+        if name == "law_parameters":
+            return no_more(name, value)
+        return super().refused(name, value, dimension)
+
+
+class Material(OfMaterial):
+    """The material of a body; `law` is a constitutive law, and the classes below are the laws.
+
+    The laws are in edp/program/law. The damping is of the Kelvin-Voigt type with `viscosity` and
+    `bulk_viscosity` [Pa s], or with `loss`, the loss factor at the first mode. A Maxwell branch has
+    `relaxation_modulus` [Pa] and `relaxation_time` [s].
+    """
+
+    law: Annotated[str, LAW]
+    young: Annotated[float, YOUNG]
+    nu: Annotated[float, NU]
+    density: Annotated[float, DENSITY]
+
+    @classmethod
+    def names(cls, dimension: Dimension | None) -> list[str]:
+        """The names of the entries, without those of other laws."""
+        law = cls.model_fields["law"]
+        others = set() if law.is_required() else {"share", "alpha", "mu"}
+        others -= set(LAW_ENTRIES.get(law.default, ()))
+        return [name for name in super().names(dimension) if name not in others]
+
+    def refusals(self) -> Iterator[tuple[str, str]]:
+        own, taken = type(self).model_fields["law"], LAW_ENTRIES.get(self.law, ())
+        if not own.is_required() and self.law != own.default:
+            other = LAWS[self.law].__name__ if self.law in LAWS else "Material"
+            yield "law", f": '{self.law}' is another law (accepted: {other})"
+            return
+        for law, entries in LAW_ENTRIES.items():
+            for entry in entries:
+                if entry in self and entry not in taken:
+                    yield entry, f": of law = {law}, not of {self.law} (accepted: without it)"
+                if entry not in self and entry in taken:
+                    accepted = "" if not (rule := rule_of(OfMaterial, entry)) else rule.accepted
+                    yield entry, f": is missing, of law = {self.law} (accepted: {accepted})"
+        if self.law == "incompressible" and self.nu != 0.5:
+            yield "nu", f": {self.nu:g} of law = incompressible (accepted: 0.5)"
+        elif 0.4999 < self.nu < 0.5:
+            accepted = "0 to 0.4999, or 0.5: J = 1"
+            yield "nu", f": {self.nu:g} is out of range (accepted: {accepted})"
+        limit = self.nu / (1 - 2 * self.nu) if self.nu < 0.5 else np.inf  # lambda / (2 mu)
+        if self.law == "mooney-rivlin" and (self.share or 0.0) > limit:
+            yield (
+                "share",
+                f": {self.share:g} with a Poisson's ratio that is too small (accepted: to "
+                f"lambda/(2 mu), {limit:g})",
+            )
+        if self.alpha and self.mu:
+            yield from self._of_terms(self.alpha, self.mu)
+
+    def _of_terms(self, alpha: list[float], mu: list[float]) -> Iterator[tuple[str, str]]:
+        """Yields what the terms of ogden lack."""
+        if len(alpha) != len(mu):
+            yield "mu", f": '{brief(mu)}' beside {len(alpha)} of alpha (accepted: as many)"
+            return
+        for k, (exponent, modulus) in enumerate(zip(alpha, mu), 1):
+            if exponent * modulus <= 0:
+                yield (
+                    f"mu.{k}",
+                    f": {modulus:g} with the exponent {exponent:g} (accepted: an exponent other "
+                    "than 0, and a modulus of its sign)",
+                )
+                return
+        stiffness = self.stiffness_of_terms
+        if self.young is not None and not np.isclose(self.young, stiffness, rtol=1e-6):
+            yield (
+                "young",
+                f": {self.young:g} beside alpha and mu, which make it {stiffness:.9g} (accepted: "
+                "without it)",
+            )
+
+    @property
+    def stiffness_of_terms(self) -> float:
+        """Young's modulus [Pa] of the terms of ogden: half the sum of mu alpha is the shear modulus."""
+        return float((1 + self.nu) * np.dot(self.mu or [0.0], self.alpha or [0.0]))
+
+    @property
+    def numbers(self) -> list[float]:
+        """The numbers of the law for the kernels (edp/kernels/laws.cpp): a share of the shear modulus,
+        or each exponent with such a share.
+        """
+        if self.law != "ogden":
+            return [self.share] if self.share is not None else []
+        parts = np.multiply(self.mu or [], self.alpha or [])
+        return np.column_stack([self.alpha or [], parts / parts.sum()]).ravel().tolist()
+
+    @property
+    def damped(self) -> bool:
+        """Whether it has any damping."""
+        return any((self.viscosity, self.bulk_viscosity, self.relaxation_modulus, self.loss))
+
+    @property
+    def damping(self) -> tuple[float, ...]:
+        """The values of DAMPING."""
+        return tuple(float(getattr(self, name) or 0.0) for name in DAMPING)
+
+    def moduli(self, thickness: float) -> tuple[float, float]:
+        """lambda + 2 mu and mu [Pa] in a wave across a body of this thickness [m]. Damping adds to
+        them: they are absolute values at omega = pi / transit (stiffen() of
+        edp/program/run/scales.idp).
+
+        The part of lambda above nu = STIFFEST acts on the volume of elements and not in waves.
+        """
+        nu = min(self.nu, STIFFEST)
+        mu, wave = self.young / (2 * (1 + nu)), self.young * (1 - nu) / ((1 + nu) * (1 - 2 * nu))
+        if not self.damped:
+            return wave, mu
+        viscosity, bulk_viscosity, modulus, time = self.damping
+        turn = 1j * math.pi * math.sqrt(wave / self.density) / thickness
+        branch = modulus * turn / (1 / (time or 1) + turn)
+        shear = abs(mu + turn * viscosity + branch)
+        return abs(wave - 2 * mu + turn * bulk_viscosity) + 2 * shear, shear
+
+
+class SaintVenantKirchhoff(Material):
+    """St. Venant-Kirchhoff law, S = lambda tr(E) I + 2 mu E, paper (5)."""
+
+    law: Annotated[str, LAW] = "svk"
+
+
+class NeoHookean(Material):
+    """Compressible neo-Hookean law, paper (6)."""
+
+    law: Annotated[str, LAW] = "neohookean"
+
+
+class Incompressible(Material):
+    """Incompressible neo-Hookean law, J = 1."""
+
+    law: Annotated[str, LAW] = "incompressible"
+    nu: Annotated[float, NU] = 0.5
+
+
+class MooneyRivlin(Material):
+    """Mooney-Rivlin law, W = mu/2 ((1 - s) I1 + s I2) and terms of det F; s is the `share`."""
+
+    law: Annotated[str, LAW] = "mooney-rivlin"
+
+
+class Ogden(Material):
+    """Ogden's law, W = sum of mu_k/alpha_k (l1^alpha_k + l2^alpha_k + l3^alpha_k - 3) and terms of
+    det F, with one to three terms; `young` follows from them.
+    """
+
+    law: Annotated[str, LAW] = "ogden"
+    young: Annotated[float | None, YOUNG] = None  # type: ignore[assignment]
+
+
+LAWS: dict[str, type[Material]] = {
+    model.model_fields["law"].default: model
+    for model in (SaintVenantKirchhoff, NeoHookean, Incompressible, MooneyRivlin, Ogden)
+}
+MATERIAL = tuple(OfMaterial.model_fields)
+NOT_RIGID = tuple(
+    name for name in MATERIAL if name != "density"
+)  # entries that a rigid body has not

@@ -1,0 +1,201 @@
+"""The shapes of bodies, one class for each. Units are SI."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated
+
+from pydantic import Field
+
+from .bodies import Body, Drawn, Hollow
+from .dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID
+from .rules import Parts, Points, Polygons, Rows, Text, Vector, number
+
+__all__ = [
+    "BODIES",
+    "Ball",
+    "Box",
+    "Cylinder",
+    "Disc",
+    "Ellipse",
+    "Ellipsoid",
+    "Mesh",
+    "Polygon",
+    "Rectangle",
+    "Ring",
+    "Shell",
+    "Torus",
+    "Tube",
+]
+
+
+class Disc(Body):
+    """A disc in plane strain."""
+
+    shape = "disc"
+    radius: Annotated[float, number(meaning="radius")]
+
+
+class Ellipse(Body):
+    """An ellipse in plane strain."""
+
+    shape = "ellipse"
+    semi_axes: Annotated[
+        list[float], Vector("half its width and half its height [m]", 1e-9, count=2)
+    ]
+
+
+class Rectangle(Body):
+    """A rectangle in plane strain."""
+
+    shape = "rectangle"
+    width: Annotated[float, number(meaning="width")]
+    height: Annotated[float, number(meaning="height")]
+
+
+class Ring(Hollow):
+    """A ring in plane strain."""
+
+    shape = "ring"
+
+
+class Polygon(Drawn):
+    """A polygon in plane strain, or the section of a body of revolution.
+
+    The section leads from the axis to the axis, or lies beside the axis.
+    """
+
+    shape = "polygon"
+    dimensions = (PLANE_STRAIN, AXISYMMETRIC)
+    only = Drawn.only | {"holes": (PLANE_STRAIN,)}
+    vertices: Annotated[list[list[float]], Points(3, "corners [m], each once, in order")]
+    holes: Annotated[list[list[list[float]]] | None, Polygons("holes in it")] = None
+
+
+class Ball(Body):
+    """A ball, as a body of revolution or in space."""
+
+    shape = "ball"
+    dimensions = (AXISYMMETRIC, SOLID)
+    radius: Annotated[float, number(meaning="radius")]
+
+
+class Shell(Hollow):
+    """A hollow ball, of revolution or in space."""
+
+    shape = "shell"
+    dimensions = (AXISYMMETRIC, SOLID)
+
+
+class Ellipsoid(Body):
+    """An ellipsoid of revolution, with a radius and half a height."""
+
+    shape = "ellipsoid"
+    dimensions = (AXISYMMETRIC,)
+    semi_axes: Annotated[list[float], Vector("radius and half the height [m]", 1e-9, count=2)]
+
+
+class Cylinder(Body):
+    """A cylinder about the y axis, as a body of revolution or in space."""
+
+    shape = "cylinder"
+    dimensions = (AXISYMMETRIC, SOLID)
+    radius: Annotated[float, number(meaning="radius")]
+    height: Annotated[float, number(meaning="height")]
+
+
+class Tube(Hollow):
+    """A tube about the y axis, of revolution or in space."""
+
+    shape = "tube"
+    dimensions = (AXISYMMETRIC, SOLID)
+    height: Annotated[float, number(meaning="height")]
+
+
+class Torus(Body):
+    """A torus (O-ring) of revolution; `section` is the radius of its circular section."""
+
+    shape = "torus"
+    dimensions = (AXISYMMETRIC,)
+    radius: Annotated[float, number(meaning="from the axis to the middle of the section")]
+    section: Annotated[float, number(meaning="radius of the section")]
+
+    def refusals(self) -> Iterator[tuple[str, str]]:
+        yield from super().refusals()
+        if self.section >= self.radius:
+            accepted = f"below radius, {self.radius:g} m"
+            yield "section", f": {self.section:g} m reaches the axis (accepted: {accepted})"
+
+
+class Box(Body):
+    """A box in space."""
+
+    shape = "box"
+    dimensions = (SOLID,)
+    width: Annotated[float, number(meaning="along x")]
+    height: Annotated[float, number(meaning="along y")]
+    depth: Annotated[float, number(meaning="along z")]
+
+
+class Mesh(Drawn):
+    """A body from a mesh or a CAD file, or from arrays: `points`, `cells` and `labels`.
+
+    The arrays may be those of numpy or meshio. Messages about them count vertices from 1.
+    """
+
+    shape = "mesh"
+    dimensions = (PLANE_STRAIN, AXISYMMETRIC, SOLID)
+    file: Annotated[str | None, Text("path, from the folder of the scene on")] = None
+    points: Annotated[
+        list[list[float]] | None,
+        Rows((2, 3), "points of a mesh, in place of a file"),
+        Field(repr=False),
+    ] = None
+    cells: Annotated[
+        list[list[int]] | None,
+        Rows((3, 4), "corners of its triangles or tetrahedra, as numbers of points", True),
+        Field(repr=False),
+    ] = None
+    labels: Annotated[
+        dict[str, list[list[int]]] | None,
+        Parts(
+            Rows((2, 3), whole=True),
+            "parts of its boundary, for `where`; 'contact' may come into contact (without it all), "
+            "'symmetry' is on the axis of revolution",
+        ),
+        Field(repr=False),
+    ] = None
+    scale: Annotated[
+        float | None,
+        number(1e-9, 1e9, "m", "a unit of length of the file or points; STEP declares its own"),
+    ] = None
+
+    def refusals(self) -> Iterator[tuple[str, str]]:
+        yield from super().refusals()
+        arrays = [name for name in ("points", "cells", "labels") if name in self]
+        missing = [name for name in ("points", "cells") if arrays and name not in self]
+        if arrays and self.file is not None:
+            accepted = "a file, or points and cells"
+            yield "file", f": stands beside {arrays[0]} (accepted: {accepted})"
+        elif missing:
+            yield missing[0], ": is missing (accepted: points and cells, or a file)"
+
+
+BODIES: dict[str, type[Body]] = {
+    model.shape: model
+    for model in (
+        Disc,
+        Ellipse,
+        Rectangle,
+        Ring,
+        Ball,
+        Shell,
+        Ellipsoid,
+        Box,
+        Cylinder,
+        Polygon,
+        Tube,
+        Torus,
+        Mesh,
+    )
+}
