@@ -2,6 +2,8 @@
 # ARGS is handed on:  make disc-normal ARGS="--set speed=4 --out results/slow"
 PYTHON := .venv/bin/python
 READY := .venv/.ready
+# Without stored bytecode each of a thousand processes would compile the package again.
+unexport PYTHONDONTWRITEBYTECODE
 SWEEPS := oblique friction-jump friction-steps slip-limit contact-time-svk law-comparison contact-time-neohookean closest-points calibrate calibrate-oblique calibrate-ball calibrate-ball-3d conservation
 
 .DEFAULT_GOAL := help

@@ -23,9 +23,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
+import scipy
 
 from .. import progress
 from ..failure import BadInput, NotInstalled
@@ -180,7 +178,7 @@ class Sizes:
 
 def nearest(points: np.ndarray, others: np.ndarray) -> np.ndarray:
     """Distances (n,) [m] of points (n, axes) from the nearest of the other points (m, axes)."""
-    distances: np.ndarray = cKDTree(others).query(points)[0]
+    distances: np.ndarray = scipy.spatial.cKDTree(others).query(points)[0]
     return distances
 
 
@@ -574,8 +572,8 @@ def pieces(points: int, elements: np.ndarray) -> np.ndarray:
     points.
     """
     links = elements[:, :-1].ravel(), elements[:, 1:].ravel()
-    graph = coo_array((np.ones(len(links[0])), links), (points, points))
-    piece: np.ndarray = connected_components(graph, directed=False)[1]
+    graph = scipy.sparse.coo_array((np.ones(len(links[0])), links), (points, points))
+    piece: np.ndarray = scipy.sparse.csgraph.connected_components(graph, directed=False)[1]
     return piece
 
 

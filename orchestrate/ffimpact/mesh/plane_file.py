@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy
 
 from ..failure import BadInput
 from . import gmsh_file
@@ -186,7 +186,7 @@ def _check_triangles(made: Mesh) -> None:
 
 def _check_places(made: Mesh) -> None:
     near = APART * np.ptp(made.points, axis=0).max()
-    for first, second in sorted(cKDTree(made.points).query_pairs(near)):
+    for first, second in sorted(scipy.spatial.cKDTree(made.points).query_pairs(near)):
         raise BadInput(
             f"vertices {first + 1} and {_vertex(made, second)[7:]} are at the same place"
         )

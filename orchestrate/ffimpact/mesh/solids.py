@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy
 
 from ..failure import BadInput
 from ..geometry import outlines, tumbling
@@ -302,7 +302,10 @@ def distances_from(triangles: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
     """
     centres = triangles.mean(axis=1)
     radius = np.linalg.norm(triangles - centres[:, None], axis=2).max()
-    corners, within = cKDTree(triangles.reshape(-1, 3)), cKDTree(centres)
+    corners, within = (
+        scipy.spatial.cKDTree(triangles.reshape(-1, 3)),
+        scipy.spatial.cKDTree(centres),
+    )
 
     def distances(points: np.ndarray) -> np.ndarray:
         # The nearest triangle is no farther than the nearest corner. So its centre is no farther

@@ -16,7 +16,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from ..failure import BadInput, brief, gathered
 from ..geometry.outlines import Outline, Shape, normal_of
@@ -536,18 +535,18 @@ def _apart(scene: Scene) -> None:
         np.array([shape.area_centre for shape in placed]),
         np.array([shape.reach for shape in placed]),
     )
-    for i, j in sorted(cKDTree(centres).query_pairs(2 * reaches.max())):
-        if np.linalg.norm(centres[i] - centres[j]) <= reaches[i] + reaches[j]:
-            body, other = scene.bodies[i], scene.bodies[j]
-            _refuse_overlap(
-                f"body.{i + 1}",
-                body,
-                f"body.{j + 1}",
-                other.name,
-                gap_between(placed[i], placed[j]),
-                _sinks(scene),
-                _units(scene, i + 1, body) or _units(scene, j + 1, other),
-            )
+    distances = np.linalg.norm(centres[:, None] - centres, axis=2)
+    for i, j in np.argwhere(np.triu(distances <= reaches[:, None] + reaches, 1)):
+        body, other = scene.bodies[i], scene.bodies[j]
+        _refuse_overlap(
+            f"body.{i + 1}",
+            body,
+            f"body.{j + 1}",
+            other.name,
+            gap_between(placed[i], placed[j]),
+            _sinks(scene),
+            _units(scene, i + 1, body) or _units(scene, j + 1, other),
+        )
     for (i, body), (j, other) in itertools.product(
         enumerate(scene.bodies, 1), enumerate(scene.obstacles, 1)
     ):
