@@ -19,59 +19,18 @@ from collections import Counter
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-TERMS = {
-    term: re.compile(pattern, re.IGNORECASE)
-    for term, pattern in (
-        ("slot", r"\bslots?\b"),
-        ("meeting, to meet", r"\bmeetings?\b|\bmeets?\b|\bmet\b"),
-        ("partner", r"\bpartners?\b"),
-        ("foot", r"\bfoot(arm)?\b|\bfeet\b"),
-        ("cell", r"\bcells?\b"),
-        ("window", r"\bwindows?\b"),
-        ("spring", r"\bsprings?\b"),
-        ("work excess", r"\bwork excess\b"),
-        ("defect", r"\bdefects?\b"),
-        ("learnt", r"\blearnt\b"),
-        ("togo", r"\btogo\b"),
-        ("hub", r"\bhubs?\b"),
-        ("copies, folded", r"\bfolded\b|\bmay fold\b|\bfolding\b"),
-        ("reach", r"\breach of\b|\breaches of\b"),
-        ("jolt", r"\bjolts?\b"),
-        ("hoop", r"\bhoops?\b"),
-        ("touch", r"\btouch(es|ed|ing)?\b"),
-        ("stated error", r"\bstated\b"),
-        ("promise", r"\bpromise[sd]?\b"),
-        ("told, said, named", r"\btold\b|\btells?\b|\bsaid\b|\bnamed\b"),
-        ("released, open", r"\breleased\b|\bleft open\b|\bopen again\b"),
-        ("asked for", r"\basked\b"),
-        ("asker", r"\basker\b"),
-        ("room", r"\brooms?\b"),
-        ("bowl", r"\bbowls?\b"),
-        ("march", r"\bmarch(es|ed)?\b"),
-        ("worth", r"\bworth\b"),
-        ("endless", r"\bendless\b"),
-        ("tip", r"\btips?\b"),
-    )
-}
-ORDINARY = {
-    term: re.compile(pattern, re.IGNORECASE)
-    for term, pattern in (
-        ("row", r"\brows?\b"),
-        ("place", r"\bplaces?\b"),
-        ("target", r"\btargets?\b"),
-        ("side, turns", r"\bsides?\b|\bturns\b"),
-        ("part", r"\bparts?\b"),
-        ("piece", r"\bpieces?\b"),
-        ("copies", r"\bcopies\b"),
-        ("way", r"\bways?\b"),
-        ("bar", r"(?<!error )\bbars?\b"),
-        ("hold", r"\bholds?\b"),
-        ("rule", r"\brules?\b"),
-        ("course", r"\bcourse\b"),
-        ("far", r"\bfar\b"),
-        ("says", r"\bsays?\b"),
-    )
-}
+TERMS = {term: re.compile(pattern, re.IGNORECASE) for term, pattern in (
+    ("slot", r"\bslots?\b"), ("meeting, to meet", r"\bmeetings?\b|\bmeets?\b|\bmet\b"), ("partner", r"\bpartners?\b"), ("foot", r"\bfoot(arm)?\b|\bfeet\b"),
+    ("cell", r"\bcells?\b"), ("window", r"\bwindows?\b"), ("spring", r"\bsprings?\b"), ("work excess", r"\bwork excess\b"),
+    ("defect", r"\bdefects?\b"), ("learnt", r"\blearnt\b"), ("togo", r"\btogo\b"), ("hub", r"\bhubs?\b"), ("copies, folded", r"\bfolded\b|\bmay fold\b|\bfolding\b"),
+    ("reach", r"\breach of\b|\breaches of\b"), ("jolt", r"\bjolts?\b"), ("hoop", r"\bhoops?\b"), ("touch", r"\btouch(es|ed|ing)?\b"), ("stated error", r"\bstated\b"),
+    ("promise", r"\bpromise[sd]?\b"), ("told, said, named", r"\btold\b|\btells?\b|\bsaid\b|\bnamed\b"), ("released, open", r"\breleased\b|\bleft open\b|\bopen again\b"),
+    ("asked for", r"\basked\b"), ("asker", r"\basker\b"), ("room", r"\brooms?\b"), ("bowl", r"\bbowls?\b"), ("march", r"\bmarch(es|ed)?\b"),
+    ("worth", r"\bworth\b"), ("endless", r"\bendless\b"), ("tip", r"\btips?\b"))}
+ORDINARY = {term: re.compile(pattern, re.IGNORECASE) for term, pattern in (
+    ("row", r"\brows?\b"), ("place", r"\bplaces?\b"), ("target", r"\btargets?\b"), ("side, turns", r"\bsides?\b|\bturns\b"), ("part", r"\bparts?\b"), ("piece", r"\bpieces?\b"),
+    ("copies", r"\bcopies\b"), ("way", r"\bways?\b"), ("bar", r"(?<!error )\bbars?\b"), ("hold", r"\bholds?\b"), ("rule", r"\brules?\b"), ("course", r"\bcourse\b"),
+    ("far", r"\bfar\b"), ("says", r"\bsays?\b"))}
 PAGES = ("tutorial", "how-to", "explanation")
 # These pages consist of tables of measurements.
 MEASURED = {"comparison.md"}
@@ -88,21 +47,10 @@ def messages(path: Path) -> list[tuple[int, str]]:
     """The messages of a module with their lines: strings of three words or more that are not
     docstrings."""
     tree = ast.parse(path.read_text())
-    documented = {
-        id(node.body[0].value)
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef)
-        and node.body
-        and isinstance(node.body[0], ast.Expr)
-    }
-    return [
-        (node.lineno, node.value)
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Constant)
-        and isinstance(node.value, str)
-        and id(node) not in documented
-        and len(node.value.split()) > 2
-    ]
+    documented = {id(node.body[0].value) for node in ast.walk(tree) if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and node.body
+                  and isinstance(node.body[0], ast.Expr)}
+    return [(node.lineno, node.value) for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)
+            and id(node) not in documented and len(node.value.split()) > 2]
 
 
 def comments(path: Path) -> list[tuple[int, str]]:
@@ -110,15 +58,9 @@ def comments(path: Path) -> list[tuple[int, str]]:
     their lines. `Code` in them is left out."""
     text = path.read_text()
     if path.suffix == ".py":
-        texts = [
-            (token.start[0], token.string)
-            for token in tokenize.generate_tokens(io.StringIO(text).readline)
-            if token.type == tokenize.COMMENT
-        ]
+        texts = [(token.start[0], token.string) for token in tokenize.generate_tokens(io.StringIO(text).readline) if token.type == tokenize.COMMENT]
         for node in ast.walk(ast.parse(text)):
-            if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and (
-                words := ast.get_docstring(node)
-            ):
+            if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and (words := ast.get_docstring(node)):
                 texts.append((node.body[0].lineno, words))
     else:
         texts = [(k, line.partition("//")[2]) for k, line in enumerate(text.splitlines(), 1)]
@@ -127,28 +69,16 @@ def comments(path: Path) -> list[tuple[int, str]]:
 
 def pages() -> list[Path]:
     """The handwritten pages."""
-    return [
-        ROOT / "README.md",
-        *(
-            path
-            for name in PAGES
-            for path in sorted((ROOT / "docs" / name).glob("*.md"))
-            if path.name not in MEASURED
-        ),
-    ]
+    return [ROOT / "README.md", *(path for name in PAGES for path in sorted((ROOT / "docs" / name).glob("*.md"))
+                                    if path.name not in MEASURED)]
 
 
 def lines(path: Path) -> list[tuple[str, str]]:
     """The lines of a page with their positions, without code."""
-    return [
-        (f"{path.relative_to(ROOT)}:{k}", line)
-        for k, line in enumerate(prose(path.read_text()).splitlines(), 1)
-    ]
+    return [(f"{path.relative_to(ROOT)}:{k}", line) for k, line in enumerate(prose(path.read_text()).splitlines(), 1)]
 
 
-def count(
-    texts: list[tuple[str, str]], terms: dict[str, re.Pattern], where: bool = False
-) -> Counter:
+def count(texts: list[tuple[str, str]], terms: dict[str, re.Pattern], where: bool = False) -> Counter:
     """The number of occurrences of each term in `texts`, a list of position and text."""
     total = Counter()
     for place, text in texts:
@@ -172,26 +102,12 @@ def main(where: bool) -> int:
     own = count(written, TERMS, where)
     print(f"private terms on these pages: {own.total()}  {dict(own)}")
     print(f"ordinary words to look at: {dict(count(written, ORDINARY))}")
-    printed = [
-        (f"{path.relative_to(ROOT)}:{k}", text)
-        for path in sorted((ROOT / "orchestrate").rglob("*.py"))
-        for k, text in messages(path)
-    ]
+    printed = [(f"{path.relative_to(ROOT)}:{k}", text) for path in sorted((ROOT / "orchestrate").rglob("*.py")) for k, text in messages(path)]
     theirs = count(printed, TERMS, where)
     print(f"private terms in texts of orchestrate/: {theirs.total()}  {dict(theirs)}")
-    for folder, suffixes in (
-        ("orchestrate", (".py",)),
-        ("benchmarks", (".py",)),
-        ("verification", (".py",)),
-        ("tests", (".py",)),
-        ("edp", (".edp", ".idp", ".hpp", ".cpp")),
-    ):
-        texts = [
-            (f"{path.relative_to(ROOT)}:{k}", text)
-            for path in sorted((ROOT / folder).rglob("*"))
-            if path.suffix in suffixes
-            for k, text in comments(path)
-        ]
+    for folder, suffixes in (("orchestrate", (".py",)), ("benchmarks", (".py",)), ("verification", (".py",)), ("tests", (".py",)), ("edp", (".edp", ".idp", ".hpp", ".cpp"))):
+        texts = [(f"{path.relative_to(ROOT)}:{k}", text) for path in sorted((ROOT / folder).rglob("*")) if path.suffix in suffixes
+                 for k, text in comments(path)]
         inside = count(texts, TERMS, where)
         print(f"private terms in comments of {folder}/: {inside.total()}  {dict(inside)}")
     return int(own.total() > 0)

@@ -32,16 +32,7 @@ spin(ax, (1.15, 0.46), 0.3, 70, -150)
 # After contact.
 shape(ax, circle((3.3, 1.2), 0.5))
 b = np.radians(72)
-arrow(
-    ax,
-    (3.3, 1.2),
-    (3.3 + 1.35 * np.cos(b), 1.2 + 1.35 * np.sin(b)),
-    BLUE,
-    r"$v'$",
-    at=0.95,
-    offset=(0.2, -0.05),
-    fontsize=12,
-)
+arrow(ax, (3.3, 1.2), (3.3 + 1.35 * np.cos(b), 1.2 + 1.35 * np.sin(b)), BLUE, r"$v'$", at=0.95, offset=(0.2, -0.05), fontsize=12)
 spin(ax, (3.3, 1.2), 0.3, 60, -200, RED)
 ax.text(3.95, 0.82, r"spin $\omega<0$", color=RED, ha="left")
 ax.plot([3.3 - 1.2 / np.tan(b), 3.3], [0, 1.2], color=BLUE, lw=0.8, ls=":")

@@ -5,12 +5,7 @@ from style import BODY, GREEN, GREY, OTHER, RED, arrow, box, diagram, save
 
 figure, ax = diagram(2.2)
 box(ax, 1.3, 1.75, 2.2, 1.0, "my-sweep.toml\nSnakefile", BODY)
-states = (
-    ("001", "finished: kept", GREEN),
-    ("002", "finished: kept", GREEN),
-    ("003", "killed: run again", RED),
-    ("004", "not started", GREY),
-)
+states = (("001", "finished: kept", GREEN), ("002", "finished: kept", GREEN), ("003", "killed: run again", RED), ("004", "not started", GREY))
 for k, (name, text, color) in enumerate(states):
     y = 3.05 - 0.87 * k
     box(ax, 5.1, y, 3.2, 0.62, f"job {name}  –  {text}", "white", color, color=color)

@@ -4,9 +4,7 @@ free end."""
 import numpy as np
 from style import BLUE, BODY, GREEN, GREY, INK, RED, WIDTH, arrow, ground, plt, save, shape
 
-figure, (ax, right) = plt.subplots(
-    1, 2, figsize=(WIDTH, 2.6), layout="constrained", gridspec_kw={"width_ratios": (1, 2)}
-)
+figure, (ax, right) = plt.subplots(1, 2, figsize=(WIDTH, 2.6), layout="constrained", gridspec_kw={"width_ratios": (1, 2)})
 ax.set_aspect("equal")
 ax.axis("off")
 ground(ax, -0.3, 1.5, 0, 0.14)

@@ -7,9 +7,7 @@ import ffimpact as ff
 NAMES = ("disc-oblique", "two-discs", "disc-beam", "hollow-ball", "drop-weight", "roller")
 figure, axes = plt.subplots(2, 3, figsize=(WIDTH, 3.9), layout="constrained")
 for name, ax in zip(NAMES, axes.flat):
-    result = ff.run(
-        name, accuracy=0.02, estimate=False, out=FOLDER / f".runs/{name}", progress=False
-    )
+    result = ff.run(name, accuracy=0.02, estimate=False, out=FOLDER / f".runs/{name}", progress=False)
     drawn = set(figure.axes)
     result.plot.shapes(ax)
     for bar in set(figure.axes) - drawn:

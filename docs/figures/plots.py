@@ -4,9 +4,7 @@ from style import FOLDER, WIDTH, plt, save
 
 import ffimpact as ff
 
-result = ff.run(
-    "disc-oblique", accuracy=0.02, estimate=False, out=FOLDER / ".runs/disc-oblique", progress=False
-)
+result = ff.run("disc-oblique", accuracy=0.02, estimate=False, out=FOLDER / ".runs/disc-oblique", progress=False)
 figure, axes = plt.subplots(2, 2, figsize=(WIDTH, 4.6), layout="constrained")
 result.plot.force(axes[0, 0])
 result.plot.energies(axes[0, 1])

@@ -22,26 +22,11 @@ BLUE, RED, GREEN, ORANGE = "#1f5fa8", "#b5372e", "#2f7d4f", "#c47a12"
 BODY, OTHER, SOLID = "#cfe0f3", "#f6dcc3", "#d7d7d7"
 WIDTH = 6.25  # inches: 600 px at 96 px per inch
 
-plt.rcParams.update(
-    {
-        "font.size": 10,
-        "font.family": "DejaVu Sans",
-        "axes.edgecolor": GREY,
-        "axes.labelcolor": INK,
-        "axes.spines.top": False,
-        "axes.spines.right": False,
-        "xtick.color": INK,
-        "ytick.color": INK,
-        "svg.hashsalt": "ffimpact",
-        "svg.fonttype": "path",
-        "lines.linewidth": 1.6,
-        "legend.frameon": False,
-        "figure.facecolor": "white",
-        "axes.titlesize": 10.5,
-        "mathtext.fontset": "dejavusans",
-        "path.simplify_threshold": 0.5,
-    }
-)
+plt.rcParams.update({
+    "font.size": 10, "font.family": "DejaVu Sans", "axes.edgecolor": GREY, "axes.labelcolor": INK, "axes.spines.top": False,
+    "axes.spines.right": False, "xtick.color": INK, "ytick.color": INK, "svg.hashsalt": "ffimpact", "svg.fonttype": "path",
+    "lines.linewidth": 1.6, "legend.frameon": False, "figure.facecolor": "white", "axes.titlesize": 10.5, "mathtext.fontset": "dejavusans",
+    "path.simplify_threshold": 0.5})
 
 
 def sketch(height, columns=1, **more):
@@ -58,23 +43,10 @@ def graph(height, columns=1, rows=1, **more):
     return plt.subplots(rows, columns, figsize=(WIDTH, height), layout="constrained", **more)
 
 
-def arrow(
-    ax, start, end, color=INK, text="", at=0.5, offset=(0, 0), width=1.6, style="-|>", **words
-):
+def arrow(ax, start, end, color=INK, text="", at=0.5, offset=(0, 0), width=1.6, style="-|>", **words):
     """Draws an arrow with a label at the share `at` of its length."""
-    ax.annotate(
-        "",
-        xy=end,
-        xytext=start,
-        arrowprops={
-            "arrowstyle": style,
-            "color": color,
-            "lw": width,
-            "shrinkA": 0,
-            "shrinkB": 0,
-            "mutation_scale": 13,
-        },
-    )
+    ax.annotate("", xy=end, xytext=start, arrowprops={"arrowstyle": style, "color": color, "lw": width, "shrinkA": 0, "shrinkB": 0,
+                                                      "mutation_scale": 13})
     if text:
         place = np.array(start) + at * (np.array(end) - np.array(start)) + np.array(offset)
         ax.text(*place, text, color=color, **({"ha": "center", "va": "center"} | words))
@@ -85,13 +57,8 @@ def angle(ax, centre, radius, start, end, text="", color=INK, offset=1.25, **wor
     ax.add_patch(Arc(centre, 2 * radius, 2 * radius, theta1=start, theta2=end, color=color, lw=1.2))
     middle = np.radians((start + end) / 2)
     if text:
-        ax.text(
-            centre[0] + offset * radius * np.cos(middle),
-            centre[1] + offset * radius * np.sin(middle),
-            text,
-            color=color,
-            **({"ha": "center", "va": "center"} | words),
-        )
+        ax.text(centre[0] + offset * radius * np.cos(middle), centre[1] + offset * radius * np.sin(middle), text, color=color,
+                **({"ha": "center", "va": "center"} | words))
 
 
 def spin(ax, centre, radius, start, end, color=INK, text="", offset=(0, 0)):
@@ -101,14 +68,7 @@ def spin(ax, centre, radius, start, end, color=INK, text="", offset=(0, 0)):
     ax.plot(x[:-1], y[:-1], color=color, lw=1.6)
     arrow(ax, (x[-4], y[-4]), (x[-1], y[-1]), color)
     if text:
-        ax.text(
-            centre[0] + offset[0],
-            centre[1] + offset[1],
-            text,
-            color=color,
-            ha="center",
-            va="center",
-        )
+        ax.text(centre[0] + offset[0], centre[1] + offset[1], text, color=color, ha="center", va="center")
 
 
 def ground(ax, start, end, y=0.0, depth=0.12):
@@ -119,9 +79,7 @@ def ground(ax, start, end, y=0.0, depth=0.12):
 
 def shape(ax, points, face=BODY, edge=INK, **more):
     """Draws a filled outline."""
-    ax.add_patch(
-        Polygon(points, closed=True, facecolor=face, edgecolor=edge, **({"lw": 1.4} | more))
-    )
+    ax.add_patch(Polygon(points, closed=True, facecolor=face, edgecolor=edge, **({"lw": 1.4} | more)))
 
 
 def circle(centre, radius, start=0, end=360, number=121):
@@ -140,7 +98,6 @@ def save(figure, name, kind="svg"):
         figure.savefig(path, metadata={"Date": None})
     else:
         from PIL import Image
-
         figure.savefig(path, dpi=120)
         Image.open(path).convert("RGB").quantize(256).save(path, optimize=True)
     if preview := os.environ.get("FIGURES_PNG"):
@@ -152,18 +109,8 @@ def save(figure, name, kind="svg"):
 def box(ax, x, y, width, height, text, face="white", edge=INK, size=9, **more):
     """Draws a box with text, centred at x and y, in a diagram."""
     from matplotlib.patches import FancyBboxPatch
-
-    ax.add_patch(
-        FancyBboxPatch(
-            (x - width / 2, y - height / 2),
-            width,
-            height,
-            boxstyle="round,pad=0.02,rounding_size=0.08",
-            facecolor=face,
-            edgecolor=edge,
-            lw=1.2,
-        )
-    )
+    ax.add_patch(FancyBboxPatch((x - width / 2, y - height / 2), width, height, boxstyle="round,pad=0.02,rounding_size=0.08", facecolor=face,
+                                edgecolor=edge, lw=1.2))
     ax.text(x, y, text, ha="center", va="center", fontsize=size, **more)
 
 

@@ -6,12 +6,7 @@ from style import BLUE, BODY, GREEN, GREY, INK, WIDTH, arrow, circle, ground, pl
 
 figure, axes = plt.subplots(1, 4, figsize=(WIDTH, 2.25), layout="constrained")
 titles = ("plane strain", "revolution", "space, half", "space, quarter")
-lines = (
-    "full, or half x ≥ 0\nforces per metre",
-    "section x ≥ 0\nweight 2πx",
-    "z ≥ 0, factor 2",
-    "x, z ≥ 0, factor 4",
-)
+lines = ('full, or half x ≥ 0\nforces per metre', 'section x ≥ 0\nweight 2πx', 'z ≥ 0, factor 2', 'x, z ≥ 0, factor 4')
 for ax, title, line in zip(axes, titles, lines):
     ax.set_aspect("equal")
     ax.axis("off")
