@@ -2,8 +2,7 @@
 
 import ast
 import tomllib
-
-import pytest
+from functools import cache
 
 from ffimpact.places import ROOT
 
@@ -15,13 +14,21 @@ ORDER = (("failure", "places", "progress"), ("freefem",), ("geometry", "mesh", "
 MODULES = {path.relative_to(PACKAGE).with_suffix("").parts: path for path in sorted(PACKAGE.rglob("*.py"))}
 
 
+@cache
+def parsed(module: tuple[str, ...]) -> tuple[ast.AST, ...]:
+    """The nodes of a module, without what is for types only."""
+    tree = ast.parse(MODULES[module].read_text())
+    for node in ast.walk(tree):
+        if isinstance(node, ast.If) and getattr(node.test, "id", "") == "TYPE_CHECKING":
+            node.body = [ast.Pass()]
+    return tuple(ast.walk(tree))
+
+
+@cache
 def imported(module: tuple[str, ...]) -> set[tuple[str, ...]]:
     """The modules of the package that a module imports anywhere, without imports for types only."""
-    imports, tree = set(), ast.parse(MODULES[module].read_text())
-    for node in [statement for statement in ast.walk(tree)
-                 if isinstance(statement, ast.If) and getattr(statement.test, "id", "") == "TYPE_CHECKING"]:
-        node.body = [ast.Pass()]
-    for node in ast.walk(tree):
+    imports = set()
+    for node in parsed(module):
         if isinstance(node, ast.ImportFrom) and node.level:
             place = module[:len(module) - node.level] + tuple((node.module or "").split(".") if node.module else ())
             imports |= {place + (name.name,) for name in node.names if place + (name.name,) in MODULES} or ({place} & set(MODULES)) or {place + ("__init__",)}
@@ -37,12 +44,11 @@ def test_no_import_circle():
     assert not open_ones
 
 
-@pytest.mark.parametrize("module", MODULES, ids="/".join)
-def test_a_room_imports_those_before_it(module):
+def test_a_room_imports_those_before_it():
     """Each folder can be read without the later ones. All may import the version in __init__."""
     height = {name: k for k, line in enumerate(ORDER) for name in line}
-    later = {"/".join(other) for other in imported(module) if height[other[0]] > height[module[0]] and other != ("__init__",)}
-    assert not later
+    assert not [f"{'/'.join(module)} imports {'/'.join(other)}" for module in MODULES for other in imported(module)
+                if height[other[0]] > height[module[0]] and other != ("__init__",)]
 
 
 # Messages and generated tables of the package may be longer than lines of scripts and kernels.
@@ -66,24 +72,14 @@ def test_headers_are_short():
             assert header <= 8, f"{path.relative_to(ROOT)}: {header}"
 
 
-@pytest.mark.parametrize("module", [module for module in MODULES if module[-1] != "__init__"], ids="/".join)
-def test_a_module_says_what_it_gives(module):
-    """The public names of a module are in __all__ and exist. Names that other modules use are among
-    them."""
-    tree = ast.parse(MODULES[module].read_text())
-    exports = next(ast.literal_eval(node.value) for node in tree.body if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == "__all__")
-    made = {getattr(node, "name", "") for node in tree.body}
-    assert not {name for name in made if name and not name.startswith("_")} - set(exports)
-
-
-@pytest.mark.parametrize("module", MODULES, ids="/".join)
-def test_no_private_name_of_another_module_is_taken(module):
-    """Names with a leading underscore are used in their own module only."""
-    tree = ast.parse(MODULES[module].read_text())
-    taken = [name.name for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) for name in node.names]
-    modules = {(name.asname or name.name) for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) and node.level for name in node.names}
-    taken += [node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id in modules]
-    assert not [name for name in taken if name.startswith("_") and not name.startswith("__")]
+def test_a_module_says_what_it_gives():
+    """The public names of a module are in __all__. No other module imports a private one."""
+    for module in MODULES:
+        assert not [name.name for node in parsed(module) if isinstance(node, ast.ImportFrom) and node.level for name in node.names if name.name.startswith("_") and name.name != "__version__"], module
+        if module[-1] != "__init__":
+            top = parsed(module)[0].body
+            exports = next(ast.literal_eval(node.value) for node in top if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == "__all__")
+            assert not {name for node in top if (name := getattr(node, "name", "_")) and not name.startswith("_")} - set(exports), module
 
 
 IGNORED = 12
@@ -99,15 +95,14 @@ def test_mypy_checks_every_module():
 VAGUE = {"one", "each", "given", "found", "known", "of", "most", "left", "way"}
 
 
-@pytest.mark.parametrize("module", MODULES, ids="/".join)
-def test_names_say_what_they_hold(module):
+def test_names_say_what_they_hold():
     """No variable, argument or function has a name that would suit any quantity."""
-    names = set()
-    for node in ast.walk(ast.parse(MODULES[module].read_text())):
-        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
-            names.add(node.id)
-        elif isinstance(node, ast.arg):
-            names.add(node.arg)
-        elif isinstance(node, (ast.FunctionDef, ast.ClassDef)):
-            names.add(node.name)
-    assert not names & VAGUE
+    vague = []
+    for module in MODULES:
+        for node in parsed(module):
+            name = (node.id if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
+                    else node.arg if isinstance(node, ast.arg)
+                    else node.name if isinstance(node, (ast.FunctionDef, ast.ClassDef)) else "")
+            if name in VAGUE:
+                vague.append(f"{'/'.join(module)}:{node.lineno} {name}")
+    assert not vague

@@ -108,16 +108,16 @@ def test_a_table_holds_its_last_value_and_an_expression_goes_on():
     assert float(line(1.5)) == pytest.approx(4.5) and float(line.slope(1.0)) == pytest.approx(3) and not len(line.kinks)
 
 
-def test_a_table_of_300_000_rows_is_read_in_seconds(tmp_path):
+def test_a_table_of_100_000_rows_is_read_in_seconds(tmp_path):
     """Reading, and the extremes, of a long CSV file take seconds of processor time."""
-    t = np.linspace(0, 1, 300_000)
+    t = np.linspace(0, 1, 100_000)
     rows = np.column_stack([t, np.sin(20 * t)])
     np.savetxt(tmp_path / "turn.csv", rows, "%.17g", ",", header="t,r", comments="")
     began = time.process_time()
     (turn,) = functions("rotation", "turn.csv", "r", 0.9, tmp_path)
     assert turn.largest_value == pytest.approx(1) and turn.largest_slope == pytest.approx(20, rel=1e-4)
     assert CubicHermiteSpline(*turn.knots.T).integrate(0, 0.9) == pytest.approx((1 - math.cos(18)) / 20, rel=1e-9)
-    assert len(turn.knots) == pytest.approx(300_000, abs=3) and time.process_time() - began < 10
+    assert len(turn.knots) == pytest.approx(100_000, abs=3) and time.process_time() - began < 3.3
 
 
 def test_rows_of_a_file_are_checked(tmp_path):
