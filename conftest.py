@@ -4,6 +4,7 @@ The marker few(n) keeps n cases of a test, evenly spread. The others, and all of
 with `make robustness`.
 """
 
+import os
 from collections import defaultdict
 from pathlib import Path
 
@@ -17,6 +18,21 @@ def pytest_ignore_collect(collection_path, config):
     """Leaves out tests/hostile, all of whose tests a run without robustness would drop."""
     left_out = collection_path == HOSTILE and config.option.markexpr == "not robustness"
     return left_out or None
+
+
+def _same_environment():
+    """Overwrites the name of the present test: for each new environment FreeFem++ is sought anew."""
+    os.environ["PYTEST_CURRENT_TEST"] = ""
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_fixture_setup():
+    _same_environment()
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_pyfunc_call():
+    _same_environment()
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -18,7 +18,7 @@ def fake(tmp_path, monkeypatch):
     """Replaces FreeFem++ by the substitute. fake(mode) selects its behaviour, fake.starts() counts
     its runs."""
     program, count = tmp_path / "FreeFem++", tmp_path / "starts"
-    program.write_text(f'#!/bin/sh\nexec {shlex.join([sys.executable, fake_freefem.__file__])} "$@"\n')
+    program.write_text(f'#!/bin/sh\nexec {shlex.join([sys.executable, "-I", "-S", fake_freefem.__file__])} "$@"\n')
     program.chmod(0o755)
     word = freefem.find().plugin  # the substitute has no compiler
     monkeypatch.setattr(kernels, "build", lambda *_: word)
