@@ -4,7 +4,7 @@ output of results."""
 from style import BODY, INK, LIGHT, OTHER, arrow, box, diagram, save
 
 figure, ax = diagram(2.6)
-rows = (("obstacle", "input/obstacles.py\nthe entry", "scenes/obstacles.py\nentry → numbers", "kernels/shapes.cpp\ngap and normal"),
+rows = (("obstacle", "input/obstacles.py\nentry, numbers, gap", "", "kernels/shapes.cpp\ngap and normal"),
         ("friction law", "input/contact.py\nthe word", "", "kernels/contact-law.cpp\nφ and its derivative"),
         ("law", "input/materials.py\nthe word", "", "kernels/laws.cpp\nS, tangent, energy"),
         ("figure", "", "drawing.MORE\nhistory → figure", ""))

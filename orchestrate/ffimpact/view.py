@@ -28,8 +28,8 @@ from .report.bodies import obstacles_of
 from .report.figures import is_half
 
 if TYPE_CHECKING:
+    from .input.obstacles import Obstacle
     from .result import Result
-    from .scenes.obstacles import Obstacle
 
 __all__ = ["FIELDS", "Player", "Shown", "States", "view"]
 

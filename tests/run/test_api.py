@@ -38,8 +38,8 @@ def test_a_built_in_scene_of_bodies_is_the_same_written_and_read_again(tmp_path,
         and again.contact == read.contact
         and len(again.pairs) == len(read.pairs)
     )
-    assert [(body.name, body.material, body.mesh_size) for body in again.bodies] == [
-        (body.name, body.material, body.mesh_size) for body in read.bodies
+    assert [(body.own_name, body.made_of, body.bulk_size) for body in again.bodies] == [
+        (body.own_name, body.made_of, body.bulk_size) for body in read.bodies
     ]
 
 

@@ -78,7 +78,7 @@ def test_a_body_may_be_a_mesh_file(tmp_path):
     scene = read(with_body(shape="mesh", file="disc.msh", position=[3, 4]), tmp_path)
     body = scene.bodies[0]
     assert body.outline.loops[0].radius == pytest.approx(0.05, rel=1e-9)
-    assert abs(body.mesh.points - (m.points - [0, 0.05])).max() < 1e-9
+    assert abs(body.file_mesh.points - (m.points - [0, 0.05])).max() < 1e-9
     built = assembly.assemble(scene)
     assert np.array_equal(built.mesh.labels, m.labels) and np.array_equal(built.mesh.triangles, m.triangles)
     assert built.arrays["arcs"] == 1

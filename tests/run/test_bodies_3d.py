@@ -97,7 +97,7 @@ def test_bodies_stand_apart_above_each_other():
     assert heights[0].max() < heights[1].min() and not built.centres[:, [0, 2]].any()
     made = built.arrays
     assert made["script"] == "bodies-3d" and made["symmetry_factor"] == 4 and made["arcs"] == 1 and not made["arcs.axis"].any()
-    assert made["bodies.centre"] + made["bodies.shift"] == pytest.approx(np.array([body.position for body in scene.bodies]))
+    assert made["bodies.centre"] + made["bodies.shift"] == pytest.approx(np.array([body.start_position for body in scene.bodies]))
 
 
 def test_too_many_unknowns_are_refused(monkeypatch):
@@ -153,8 +153,8 @@ def test_meshes_of_files(files, name):
     of its surface may come into contact."""
     body, = read({"shape": "mesh", "file": name, "position": [0, 0.3, 0]}, folder=files).bodies
     assert body.outline.disc[1] == pytest.approx(0.05, rel=1e-8) if name != "ball.mesh" else body.outline.reach == pytest.approx(0.05, rel=1e-3)
-    assert body.mesh.volumes.sum() == pytest.approx(4 / 3 * math.pi * 0.05**3, rel=0.05) and body.mesh.volumes.min() > 0
-    assert abs(body.mesh.centre).max() < 1e-4 and set(body.mesh.labels) == {1}
+    assert body.file_mesh.volumes.sum() == pytest.approx(4 / 3 * math.pi * 0.05**3, rel=0.05) and body.file_mesh.volumes.min() > 0
+    assert abs(body.file_mesh.centre).max() < 1e-4 and set(body.file_mesh.labels) == {1}
 
 
 def test_geometries_are_meshed_with_the_sizes_of_the_scene(files):

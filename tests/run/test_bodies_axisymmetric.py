@@ -55,7 +55,7 @@ def test_bodies_stand_above_each_other():
     circle of the ball. A number as position is the height."""
     scene = load("ball-cylinder")
     built = assembly.assemble(scene)
-    assert (built.centres[:, 0] == 0).all() and scene.bodies[0].position.tolist() == [0, 0.051]
+    assert (built.centres[:, 0] == 0).all() and scene.bodies[0].start_position.tolist() == [0, 0.051]
     tops = [built.mesh.points[np.unique(built.mesh.triangles[built.regions == k])][:, 1] for k in (0, 1)]
     assert tops[0].max() < tops[1].min()
     assert built.arrays["arcs"] == 1 and set(built.regions[(built.mesh.triangles == built.mesh.edges[built.arrays["mesh.arc_of"] == 0][0, 0]).any(axis=1)]) == {0}
@@ -77,7 +77,7 @@ def test_a_body_may_be_a_mesh_file(tmp_path):
     mesh.write(mesh.disc(0.05, 0.02, 0.01, False), tmp_path / "whole.msh")
     body, = read({"shape": "mesh", "file": "half.msh", "position": 3}, folder=tmp_path).bodies
     assert body.outline.loops[0].radius == pytest.approx(0.05, rel=1e-9) and abs(body.outline.loops[0].centre).max() < 1e-3
-    assert volumes(body.mesh)[1] == pytest.approx(0, abs=1e-9)
+    assert volumes(body.file_mesh)[1] == pytest.approx(0, abs=1e-9)
     with pytest.raises(BadInput, match="^body.1.file: it lies down to x"):
         read({"shape": "mesh", "file": "whole.msh"}, folder=tmp_path)
 

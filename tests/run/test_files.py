@@ -117,7 +117,7 @@ def test_elements_in_two_groups_are_read_once_in_the_plane(tmp_path, side):
     both = []
     for name in ("once", "twice"):
         body = {"shape": "mesh", "file": f"{name}.msh", "position": [0, 0]}
-        both.append(read(tables(body, BALL | {"position": [0, 1]}), tmp_path, "x").bodies[0].mesh)
+        both.append(read(tables(body, BALL | {"position": [0, 1]}), tmp_path, "x").bodies[0].file_mesh)
     once, twice = both
     assert len(once.triangles) == len(twice.triangles) and len(once.edges) == len(twice.edges)
     for label in np.unique(once.labels):
@@ -233,7 +233,7 @@ def test_a_disc_from_a_file_is_not_turned(tmp_path):
     body = {"shape": "mesh", "file": "disc.msh", "position": [0, 0], "angle": 90, "velocity": [1, 0]}
     problem = read(tables(body, obstacles=[wall]), tmp_path, "x")
     assert problem.bodies[0].outline.disc
-    assert approach.turned(problem).bodies[0].angle == pytest.approx(math.pi / 2)
+    assert approach.turned(problem).bodies[0].start_angle == pytest.approx(math.pi / 2)
     prepared(tables(body, obstacles=[wall]), tmp_path, tmp_path / "1")
     with pytest.raises(BadInput, match="^body.1.file: .* which is no contact boundary"):
         prepared(tables(body | {"angle": -90}, obstacles=[wall]), tmp_path, tmp_path / "2")
@@ -303,7 +303,7 @@ def test_scene_and_sweep_with_a_byte_order_mark(tmp_path):
     """Some editors write it."""
     text = assembly.to_toml(tables(BALL, obstacles=[FLOOR]))
     (tmp_path / "drop.toml").write_text("\ufeff" + text, "utf-8")
-    assert scene.load(tmp_path / "drop.toml").bodies[0].name == "ball"
+    assert scene.load(tmp_path / "drop.toml").bodies[0].own_name == "ball"
     text = 'scene = "disc-normal"\n[product]\nspeed = [1, 2]\n'
     (tmp_path / "sweep.toml").write_text("\ufeff" + text, "utf-8")
     assert len(sweep.load(str(tmp_path / "sweep.toml")).points) == 2

@@ -53,8 +53,8 @@ def test_a_disc_is_meshed_finely_where_it_touches_whatever_its_angle(tmp_path):
     for angle in (0.0, 50.0):
         problem = approach.turned(read(seen(scene.load("two-discs").content | {"body": [body | {"angle": angle} for body in scene.load("two-discs").content["body"]]}), tmp_path, "x"))
         met, = approach.onsets_of(problem)
-        touching = problem.bodies[0].position * 0 - met.normal
-        assert problem.bodies[0].angle - math.pi / 2 == pytest.approx(math.atan2(touching[1], touching[0]), abs=1e-6)
+        touching = problem.bodies[0].start_position * 0 - met.normal
+        assert problem.bodies[0].start_angle - math.pi / 2 == pytest.approx(math.atan2(touching[1], touching[0]), abs=1e-6)
         assert met.closing == pytest.approx(6 * math.sqrt(1 - 0.2**2), rel=1e-7) and met.sliding == pytest.approx(6 * 0.2, rel=1e-6)
 
 

@@ -59,6 +59,6 @@ class Answers(dict):
 
 def described(body) -> tuple:
     """What two bodies have in common if they are the same."""
-    own = body.material.young, body.material.nu, body.material.density, body.material.loss, body.angle, body.spin
+    own = body.made_of.young, body.made_of.nu, body.made_of.density, body.made_of.loss, body.start_angle, body.start_spin
     conditions = [[repr(condition.part) for condition in listed] for listed in (body.supports, body.loads)]
-    return own, list(body.position), list(body.velocity), body.outline.area, conditions
+    return own, list(body.start_position), list(body.start_velocity), body.outline.area, conditions

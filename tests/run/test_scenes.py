@@ -414,8 +414,8 @@ def test_the_parameters_of_a_law_belong_to_it(tmp_path):
     file.write_text('law = "ogden"\nalpha = [2]\nmu = [2.5e6]\nyoung = 7e6\nnu = 0.4\ndensity = 1722\n[[body]]\nshape = "disc"\nradius = 0.05\n'
                     'position = [0, 0.06]\nvelocity = [0, -2]\n[[obstacle]]\nkind = "plane"\npoint = [0, 0]\nnormal = [0, 1]\n')
     other = scene.load(str(file)).override({"law": "neohookean"})
-    assert other.bodies[0].material.numbers == [] and [line.partition(" ")[0] for line in other.released] == ["alpha", "mu"]
-    assert scene.load(str(file)).override({"density": 900}).bodies[0].material.numbers == [2, 1]
+    assert other.bodies[0].made_of.numbers == [] and [line.partition(" ")[0] for line in other.released] == ["alpha", "mu"]
+    assert scene.load(str(file)).override({"density": 900}).bodies[0].made_of.numbers == [2, 1]
 
 
 def test_what_a_scene_of_bodies_fixed_follows():
@@ -433,7 +433,7 @@ def test_what_a_scene_of_bodies_fixed_follows():
         assert stiff.override({name: value}).contact["penalty"] == "auto"
     assert (stiff.override({"young": 1e6}).values["dt"], stiff.override({"contact.exponent": 2}).values["dt"]) == (0, 1e-4)
     larger = bowl.override({"body.1.radius": 0.04})
-    assert larger.bodies[0].mesh_size == larger.bodies[0].contact_mesh_size == 0 and len(larger.released) == 2
+    assert larger.bodies[0].bulk_size == larger.bodies[0].contact_size == 0 and len(larger.released) == 2
     assert bowl.override({"body.1.radius": 0.04, "body.1.mesh_size": 0.01, "body.1.contact_mesh_size": 0.01}).released == ()
     own = read_scene(bowl.content | {"obstacle": [bowl.content["obstacle"][0] | {"friction_static": 0.2}]}, bowl.folder, "bowl")
     assert assembly.assemble(own).used["contact"]["pair"][0]["friction_dynamic"] == 0.2

@@ -171,4 +171,4 @@ def test_obstacles_are_in_the_views(ball):
     assert views.rigid[0].gap(np.array([[0.1, 0.02, 0.3]])) == pytest.approx([0.02])
     among = dict(script="bodies-3d", dimension="3d", symmetry="quarter", obstacle=[dict(kind="sphere", centre=[0, -0.1, 0], radius=0.05)])
     views = solid.Views(vtu.series(result.folder / "fields.pvd"), contact.read(result.folder), among)
-    assert [obstacle.kind for obstacle in views.rigid] == ["circle"] and views.at(views.times[1]).t == pytest.approx(views.times[1])
+    assert [obstacle.kind for obstacle in views.rigid] == ["sphere"] and views.at(views.times[1]).t == pytest.approx(views.times[1])

@@ -37,7 +37,7 @@ def test_a_drawn_body_keeps_its_coordinates(position, low):
     assert body.placed.points.min(axis=0) == pytest.approx(low)
     turned, = read(SCENE | {"body": [entries | {"angle": 90}]}).bodies
     for made in (body, turned):
-        assert made.position == pytest.approx(np.add(low, [1, 1]))
+        assert made.start_position == pytest.approx(np.add(low, [1, 1]))
     missing = {name: value for name, value in entries.items() if name not in ("placement", "position")}
     with pytest.raises(BadInput, match="body.1.position: is missing"):
         read(SCENE | {"body": [missing]})
@@ -47,22 +47,22 @@ def test_a_drawn_section_keeps_its_coordinates():
     """A cone of revolution with its base at y = 2 and its tip at y = 6: centre a quarter up."""
     cone = {"shape": "polygon", "vertices": [[0, 2], [1, 2], [0, 6]], "placement": "as-drawn"}
     body, = read(SCENE | {"dimension": "axisymmetric", "body": [cone]}).bodies
-    assert body.position == pytest.approx([0, 3])
+    assert body.start_position == pytest.approx([0, 3])
 
 
 @pytest.mark.parametrize("entries, velocity", [({"velocity": [1, -2]}, [1, -2]), ({"speed": 3, "direction": -90}, [0, -3]),
                                                ({"speed": 2, "direction": 30}, [math.sqrt(3), 1]), ({}, [0, 0])])
 def test_velocity_or_speed_and_direction(entries, velocity):
     """`direction` is measured counter-clockwise from x. Right angles are exact."""
-    assert read(with_body(shape="disc", radius=1, **entries)).bodies[0].velocity == pytest.approx(velocity, rel=1e-15, abs=0)
+    assert read(with_body(shape="disc", radius=1, **entries)).bodies[0].start_velocity == pytest.approx(velocity, rel=1e-15, abs=0)
 
 
 def test_material_comes_from_the_body_or_from_the_top():
     """Material entries that a body does not have come from the top of the file."""
     first, second = read(changed(("body.2.young", 1e9), ("body.2.law", "neohookean"))).bodies
-    soft = first.material
+    soft = first.made_of
     assert (soft.law, soft.young, soft.nu, soft.density) == ("svk", 7e6, 0.45, 1722)
-    assert second.material == soft.model_copy(update={"law": "neohookean", "young": 1e9})
+    assert second.made_of == soft.model_copy(update={"law": "neohookean", "young": 1e9})
 
 
 def test_the_radius_of_a_body_is_half_its_thickness():
@@ -129,9 +129,9 @@ def test_entries_are_set_by_name():
     not change."""
     scene = read(SCENE | {"obstacle": [FLOOR]})
     other = scene.override({"body.2.young": "2e6", "body.1.velocity.2": -5, "contact.penalty": 1e8, "gravity": 9.81, "obstacle.1.point": "[0, -2]"})
-    assert other.bodies[1].material.young == 2e6 and list(other.bodies[0].velocity) == [0, -5]
+    assert other.bodies[1].made_of.young == 2e6 and list(other.bodies[0].start_velocity) == [0, -5]
     assert other.contact["penalty"] == 1e8 and other.values["gravity"] == 9.81
-    assert scene.bodies[1].material.young == 7e6 and list(scene.bodies[0].velocity) == [0, -10] and scene.content == SCENE | {"obstacle": [FLOOR]}
+    assert scene.bodies[1].made_of.young == 7e6 and list(scene.bodies[0].start_velocity) == [0, -10] and scene.content == SCENE | {"obstacle": [FLOOR]}
 
 
 @pytest.mark.parametrize("name, words", [

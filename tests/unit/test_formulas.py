@@ -78,7 +78,7 @@ def test_half_width_of_a_slow_ball():
 def test_moduli_of_a_damped_body():
     """A wave crosses a body of the thickness h in h/c: at omega = pi c/h its modulus of shear is
     |mu + i omega eta|."""
-    damped = scene.load("disc-normal").bodies[0].material.model_copy(update={"nu": 0.0, "viscosity": 50.0})
+    damped = scene.load("disc-normal").bodies[0].made_of.model_copy(update={"nu": 0.0, "viscosity": 50.0})
     mu, omega = damped.young / 2, math.pi * math.sqrt(damped.young / damped.density) / 0.1
     wave, shear = damped.moduli(0.1)
     assert shear == pytest.approx(math.hypot(mu, omega * 50)) and wave == pytest.approx(2 * shear)

@@ -74,13 +74,13 @@ def test_a_part_is_the_place_of_a_support():
     body = ff.Mesh(points=POINTS, cells=CELLS, labels={"foot": BOTTOM}, material=RUBBER, position=(0, 1),
                    support=[ff.Support(where="foot")])  # fmt: skip
     read = ff.Scene(bodies=[body], gravity=9.81, end_time=0.01).checked()
-    made = read.bodies[0].mesh
+    made = read.bodies[0].file_mesh
     found = conditions(read.bodies, [made], [], read.dimension, 1)["supports.elements"]
     assert made.edges[found].tolist() == BOTTOM
 
 
 def test_in_space_with_both_orientations():
-    made = scene(**SOLID).checked().bodies[0].mesh
+    made = scene(**SOLID).checked().bodies[0].file_mesh
     assert made.volumes == pytest.approx([1e-3 / 6] * 2)
     assert len(made.faces) == 6
 

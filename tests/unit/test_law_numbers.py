@@ -58,7 +58,7 @@ def test_a_scene_takes_and_refuses_them():
     with pytest.raises(BadInput, match="body.1.law_parameters: '2,1' is no entry any more .accepted: share of mooney-rivlin, alpha and mu of ogden"):
         disc.override({"law": "ogden", "body.1.law_parameters": "2,1"})
     ogden = disc.override({"law": "ogden", "nu": 0.4, "alpha": [2], "mu": [2e6]})
-    assert ogden.bodies[0].material.young == pytest.approx(2 * 1.4 * 2e6) and any("young is reset" in line for line in ogden.released)
+    assert ogden.bodies[0].made_of.young == pytest.approx(2 * 1.4 * 2e6) and any("young is reset" in line for line in ogden.released)
 
 
 def test_a_body_takes_the_law_at_the_top_with_its_entries_or_another_one():
@@ -66,5 +66,5 @@ def test_a_body_takes_the_law_at_the_top_with_its_entries_or_another_one():
     discs = [{"shape": "disc", "radius": 0.05, "position": [k, 0.06], "velocity": [0, -1]} for k in (0, 1)]
     discs[1] |= {"law": "neohookean", "young": 1e6}
     first, second = ff.Scene.from_tables(top | {"body": discs, "obstacle": [{"kind": "plane"}]}).checked().bodies
-    assert first.material.numbers == [2, 1] and first.material.young == pytest.approx(5.6e6)
-    assert second.material.numbers == [] and second.material.young == 1e6
+    assert first.made_of.numbers == [2, 1] and first.made_of.young == pytest.approx(5.6e6)
+    assert second.made_of.numbers == [] and second.made_of.young == 1e6

@@ -65,10 +65,10 @@ def test_the_block_is_the_papers_with_either_law():
     no gravity. Only the law differs."""
     svk, other = (scene.load(name) for name in paper_bodies.BLOCK.values())
     assert {name for name in svk.content if svk.content[name] != other.content[name]} == {"law", "title"}
-    assert [body.material.law for body in (*svk.bodies, *other.bodies)] == ["svk", "svk", "neohookean", "neohookean"]
+    assert [body.made_of.law for body in (*svk.bodies, *other.bodies)] == ["svk", "svk", "neohookean", "neohookean"]
     (disc, block), values = svk.content["body"], svk.values
     assert (disc["radius"], disc["speed"], disc["direction"], disc["position"]) == (0.5, 10, -90, [0, 0.5])
-    assert (block["width"], block["height"], block["position"]) == (10, 2, [0, -1]) and svk.bodies[0].material.young == 7e6 and svk.bodies[1].material.density == 1722
+    assert (block["width"], block["height"], block["position"]) == (10, 2, [0, -1]) and svk.bodies[0].made_of.young == 7e6 and svk.bodies[1].made_of.density == 1722
     assert svk.contact["friction_static"] == 0 and values["gravity"] == 0
 
 

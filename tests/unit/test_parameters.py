@@ -65,8 +65,8 @@ def test_scene_file(tmp_path):
     path = tmp_path / "fast.toml"
     path.write_text((scene.SCENES / "disc-normal.toml").read_text().replace("speed = 8", "speed = 11").replace("A disc falls", "Fast"))
     loaded = scene.load(str(path))
-    assert (loaded.name, loaded.title[:4], loaded.values["degree"]) == ("fast", "Fast", 2) and loaded.bodies[0].velocity[1] == -11
-    assert loaded.override({"speed": "2"}).bodies[0].velocity[1] == -2 and loaded.bodies[0].velocity[1] == -11
+    assert (loaded.name, loaded.title[:4], loaded.values["degree"]) == ("fast", "Fast", 2) and loaded.bodies[0].start_velocity[1] == -11
+    assert loaded.override({"speed": "2"}).bodies[0].start_velocity[1] == -2 and loaded.bodies[0].start_velocity[1] == -11
 
 
 @pytest.mark.parametrize("text, words", [

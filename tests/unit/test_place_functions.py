@@ -76,9 +76,9 @@ def test_the_mean_of_the_field_is_the_velocity_of_the_body():
     field alone is accepted."""
     field = scene(velocity=None, initial_velocity=[1, "-8 - 100*x^2"])
     body = field.checked().bodies[0]
-    assert body.velocity == pytest.approx([1, -8 - 100 * 0.05**2 / 4], rel=2e-3)
+    assert body.start_velocity == pytest.approx([1, -8 - 100 * 0.05**2 / 4], rel=2e-3)
     place = np.array([[0.03, 0.06]])
-    assert body.velocity + body.initial_velocity(place)[0] == pytest.approx([1, -8.09])
+    assert body.start_velocity + body.initial_velocity(place)[0] == pytest.approx([1, -8.09])
 
 
 def test_a_function_and_its_table_are_the_same_scene(tmp_path):

@@ -5,7 +5,6 @@ import pytest
 
 from ffimpact.__main__ import main
 from ffimpact.input import dimension, models
-from ffimpact.scenes import obstacles
 from tests.support.rigid import DISC, FLOOR, ROLLER
 
 
@@ -49,7 +48,7 @@ def test_the_matrix_of_an_obstacle_takes_it_along(motion):
     """Points of the surface at the start are on the surface at a later time; at the start nothing
     has moved. Pictures and the player use the matrix."""
     scene = {"dimension": "2d", "obstacle": [{"kind": "polyline", "vertices": [[-0.1, -0.1], [-0.1, 0], [0.2, 0.05], [0.2, -0.1]], "closed": True, **motion}]}
-    (obstacle,) = obstacles.read(models.tables(scene, "obstacle", dimension.PLANE_STRAIN), dimension.PLANE_STRAIN, 0.05, None)
+    (obstacle,) = models.obstacles_of(scene | {"end_time": 0.05}, dimension.PLANE_STRAIN, None)
     side = np.linspace([-0.1, 0], [0.2, 0.05], 5)
     assert obstacle.moves and np.array_equal(obstacle.matrix(0.0), np.eye(4))
     moved = np.pad(side, [(0, 0), (0, 1)]) @ obstacle.matrix(0.02)[:3, :3].T + obstacle.matrix(0.02)[:3, 3]

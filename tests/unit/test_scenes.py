@@ -17,7 +17,7 @@ def test_an_entry_that_no_body_takes_is_refused():
     own = read_scene(tables | {"body": [tables["body"][0] | {"young": 7e6}]}, Path("."), "own")
     with pytest.raises(BadInput, match=r"young: changes nothing, as every body has its own \(accepted: body.1.young and so on\)"):
         own.override({"young": 1e6})
-    assert scene.load("disc-bowl").override({"young": 1e6}).bodies[0].material.young == 1e6
+    assert scene.load("disc-bowl").override({"young": 1e6}).bodies[0].made_of.young == 1e6
 
 
 def test_nonsense_that_is_set_is_refused_in_words():

@@ -25,8 +25,8 @@ def test_the_block_under_the_disc_has_the_stiffness_of_its_name():
     for ratio, case in users.RATIOS.items():
         opened = case.open()
         disc, *block = opened.bodies
-        discs.append((disc.material, *disc.velocity))
-        assert all(body.material.young == ratio * disc.material.young for body in block) and len(block) == math.isfinite(ratio)
+        discs.append((disc.made_of, *disc.start_velocity))
+        assert all(body.made_of.young == ratio * disc.made_of.young for body in block) and len(block) == math.isfinite(ratio)
     assert discs.count(discs[0]) == len(discs) and max(ratio for ratio in users.RATIOS if math.isfinite(ratio)) == 1e5
 
 

@@ -29,6 +29,7 @@ __all__ = [
     "Top",
     "full_name",
     "listed",
+    "obstacles_of",
     "of_table",
     "read",
     "rule_of_body",
@@ -312,6 +313,14 @@ def tables(content: dict[str, Any], key: str, dimension: Dimension) -> list[Any]
     return gathered(
         [partial(of_table, f"{key}.{k}", table, key, dimension) for k, table in listed_ones]
     )
+
+
+def obstacles_of(content: dict[str, Any], dimension: Dimension, folder: Path) -> list[Obstacle]:
+    """The obstacles of a scene whose other tables are not needed."""
+    made: list[Obstacle] = tables(content, "obstacle", dimension)
+    for obstacle in made:
+        obstacle.bind(Context(dimension, folder, content.get("end_time") or 0.0))
+    return made
 
 
 def of_table(

@@ -19,7 +19,7 @@ from ..geometry.outlines import (
     self_crossing,
 )
 from ..input.bodies import Body
-from ..input.parameters import Table
+from ..input.parameter import Table
 from ..input.shapes import Mesh, Polygon
 from . import given, mesh, plane_file
 
@@ -47,10 +47,10 @@ def shape(body: Body, folder: Path) -> tuple[Outline, mesh.Mesh | None, np.ndarr
 def motion(body: Body) -> Table:
     """The initial position (2,) [m], angle [rad], velocity (2,) [m/s] and spin [rad/s] of a body."""
     return {
-        "position": np.array(body.position or [0.0, 0.0]),
-        "angle": math.radians(body.angle or 0.0),
-        "velocity": velocity(body, 2),
-        "spin": body.spin or 0.0,
+        "start_position": np.array(body.position or [0.0, 0.0]),
+        "start_angle": math.radians(body.angle or 0.0),
+        "start_velocity": velocity(body, 2),
+        "start_spin": body.spin or 0.0,
     }
 
 

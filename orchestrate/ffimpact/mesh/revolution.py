@@ -22,7 +22,7 @@ from ..geometry.outlines import (
     signed_area,
 )
 from ..input.bodies import Body
-from ..input.parameters import Table
+from ..input.parameter import Table
 from ..input.shapes import Mesh, Polygon, Shell, Torus, Tube
 from . import flat, mesh
 
@@ -84,10 +84,10 @@ def motion(body: Body) -> Table:
             f"{body.at('direction')}: {body.direction:g} leads off the axis of revolution (accepted: 90 or -90)"
         )
     return {
-        "position": np.array(body.position or [0.0, 0.0]),
-        "angle": 0.0,
-        "velocity": velocity,
-        "spin": 0.0,
+        "start_position": np.array(body.position or [0.0, 0.0]),
+        "start_angle": 0.0,
+        "start_velocity": velocity,
+        "start_spin": 0.0,
     }
 
 

@@ -18,7 +18,7 @@ from ..failure import BadInput
 from ..geometry import outlines, tumbling
 from ..geometry.outlines import Turn
 from ..input.bodies import Body
-from ..input.parameters import Table
+from ..input.parameter import Table
 from ..input.shapes import Mesh
 from . import curved, flat, given, solid_file
 from .mesh import Sizes
@@ -476,13 +476,15 @@ def mesh_of(
     """
     solid = body.at(0.0, np.zeros(3))
     assert isinstance(solid, Solid)
-    if isinstance(body.mesh, SolidMesh):
-        return _with_curves(replace(body.mesh, points=body.mesh.points @ solid.rotation.T))
+    if isinstance(body.file_mesh, SolidMesh):
+        return _with_curves(
+            replace(body.file_mesh, points=body.file_mesh.points @ solid.rotation.T)
+        )
     assert sizes  # which a body without a mesh has
     expected = expected_cells(solid.volume, sizes) / 2 ** len(mirror_axes)
     if expected > MOST_CELLS:
         raise BadInput(
-            f"mesh_size: '{body.name}' would have about {expected:.2g} tetrahedra (accepted: up to {MOST_CELLS}; larger "
+            f"mesh_size: '{body.own_name}' would have about {expected:.2g} tetrahedra (accepted: up to {MOST_CELLS}; larger "
             f"mesh_size, contact_mesh_size or accuracy)"
         )
     if solid.geometry:
@@ -566,8 +568,8 @@ def motion(body: Body) -> Table:
     none = [0.0, 0.0, 0.0]
     turn = [0.0, 0.0, body.angle] if body.angle is not None else body.turn or none
     return {
-        "position": np.array(body.position or none),
-        "angle": np.radians(turn),
-        "velocity": flat.velocity(body, 3),
-        "spin": np.array(body.spin or none),
+        "start_position": np.array(body.position or none),
+        "start_angle": np.radians(turn),
+        "start_velocity": flat.velocity(body, 3),
+        "start_spin": np.array(body.spin or none),
     }

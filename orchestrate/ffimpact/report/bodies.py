@@ -14,11 +14,10 @@ from matplotlib.figure import Figure
 from matplotlib.transforms import AffineDeltaTransform
 
 from ..input import dimension, models
+from ..input.obstacles import Obstacle
 from ..input.parameters import Table
 from ..output import vtu
 from ..output.results import Contents, body_names, mechanical_energy, suffixes
-from ..scenes import obstacles
-from ..scenes.obstacles import Obstacle
 from .figures import (
     BAND,
     BLACK,
@@ -345,13 +344,8 @@ def shapes(series: list[tuple[float, Path]], scene: Table, field: str, label: st
 
 def obstacles_of(scene: Table) -> list[Obstacle]:
     """Returns the rigid obstacles of a scene as used. Their files are sought beside its scene.toml."""
-    scene_dimension = dimension.of_scene(scene)
-    return obstacles.read(
-        models.tables(scene, "obstacle", scene_dimension),
-        scene_dimension,
-        scene.get("end_time") or 0.0,
-        scene.path.parent if isinstance(scene, Contents) else Path(),
-    )
+    folder = scene.path.parent if isinstance(scene, Contents) else Path()
+    return models.obstacles_of(scene, dimension.of_scene(scene), folder)
 
 
 def limits(bodies: list[Body]) -> tuple[float, float, float, float]:

@@ -302,7 +302,7 @@ class Views:
                 box = pyvista.ImageData(
                     dimensions=(GRID,) * 3, origin=low, spacing=span / (GRID - 1)
                 )
-                gap = obstacle.gap(box.points - obstacle.velocity * t)
+                gap = obstacle.gap(box.points - obstacle.start_velocity * t)
                 if gap.min() < 0 < gap.max():
                     plotter.add_mesh(
                         box.contour([0.0], scalars=gap),

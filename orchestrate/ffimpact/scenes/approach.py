@@ -19,10 +19,10 @@ from ..geometry.outlines import Outline, Shape
 from ..geometry.time_functions import farthest
 from ..input.conditions import WHOLE
 from ..input.dimension import PLANE_STRAIN
+from ..input.obstacles import Drive, Obstacle
 from ..input.parameters import Value
 from ..mesh import mesh
 from .bodies import Body
-from .obstacles import Drive, Obstacle
 from .scene import Scene, gap_between
 
 __all__ = ["Onset", "loaded_pull", "onsets_of", "refuse_nothing", "refuse_sinking", "turned"]
@@ -112,8 +112,8 @@ def onsets_of(scene: Scene) -> list[Onset]:
 def _onsets_of(scene: Scene) -> list[Onset]:
     scene = replace(
         scene,
-        bodies=[body.carried_along for body in scene.bodies],
-        obstacles=[obstacle.carried_along for obstacle in scene.obstacles],
+        bodies=[body.at_mean_velocity for body in scene.bodies],
+        obstacles=[obstacle.at_mean_velocity for obstacle in scene.obstacles],
     )
     obstacles = [-1 - k for k in range(len(scene.obstacles))]
     pairs = [(i, j) for i, others in enumerate(_near(scene)) for j in [*others, *obstacles]]
@@ -143,7 +143,7 @@ def _near(scene: Scene) -> list[list[int]]:
     """
     places, ways = (
         np.array([getattr(body, name) for body in scene.bodies])
-        for name in ("position", "velocity")
+        for name in ("start_position", "start_velocity")
     )
     reaches = np.array([body.outline.reach for body in scene.bodies])
     free = np.array([not body.driven and not body.supports for body in scene.bodies])
@@ -180,13 +180,13 @@ def _is_shielded(scene: Scene, onset: Onset, k: int) -> bool:
         return _fall(scene) * free
 
     # The outlines of the onset are in a frame that moves with an obstacle and falls like `other`.
-    frame = other.velocity if isinstance(other, Obstacle) else np.zeros(len(onset.normal))
-    centre = shield.position + (shield.velocity - frame) * t
+    frame = other.start_velocity if isinstance(other, Obstacle) else np.zeros(len(onset.normal))
+    centre = shield.start_position + (shield.start_velocity - frame) * t
     centre = centre + (fall(shield) - fall(other)) * t**2 / 2
     shape = shield.at(0.0, np.zeros(len(centre)))
     before = t * np.linspace(0, 1, PARTS + 1)[:, None]
     for surface in (scene.bodies[onset.first], other):
-        velocity = surface.velocity - shield.velocity
+        velocity = surface.start_velocity - shield.start_velocity
         pull = fall(surface) - fall(shield)
         path = _middle(onset) - centre - velocity * (t - before) - pull * (t**2 - before**2) / 2
         inside = shape.gap((path[:-1] + path[1:]) / 2) < 0
@@ -219,22 +219,24 @@ def _rebound(scene: Scene, onset: Onset) -> Scene | None:
     point = _middle(onset)
     fall = _fall(scene) * onset.time
     # Velocity of the obstacle. Its position stays, so the body moves relative to it.
-    moves = scene.obstacles[-1 - onset.second].velocity if onset.second < 0 else np.zeros(len(n))
+    moves = (
+        scene.obstacles[-1 - onset.second].start_velocity if onset.second < 0 else np.zeros(len(n))
+    )
     hit, yields, closing = [], 0.0, 0.0
     for sign, k in ((1, onset.first), (-1, onset.second)):
         if k < 0:
-            closing += scene.obstacles[-1 - k].velocity @ n
+            closing += scene.obstacles[-1 - k].start_velocity @ n
             continue
         body, shape = scene.bodies[k], onset.shape(k)
         assert isinstance(shape, Outline)  # in the plane
         held = bool(body.supports)  # neither turns nor falls, as with infinite mass
         lever, mass = (
             _lever(shape, point, n),
-            math.inf if held else body.material.density * shape.area,
+            math.inf if held else body.made_of.density * shape.area,
         )
         own_fall = np.zeros(len(n)) if held else fall
         yields += (1 + lever**2 / shape.gyration) / mass
-        closing -= sign * ((body.velocity + own_fall) @ n + body.spin * lever)
+        closing -= sign * ((body.start_velocity + own_fall) @ n + body.start_spin * lever)
         hit.append((sign, k, shape, lever, mass, own_fall))
     turns = [abs(lever) / shape.reach for _, _, shape, lever, mass, _ in hit if mass < math.inf]
     turning = max(turns, default=0.0)
@@ -244,15 +246,15 @@ def _rebound(scene: Scene, onset: Onset) -> Scene | None:
     for sign, k, shape, lever, mass, own_fall in hit:
         body, push = bodies[k], sign * (1 + RESTITUTION) * closing / yields / mass
         velocity, spin = (
-            body.velocity + own_fall + push * n,
-            body.spin + push * lever / shape.gyration,
+            body.start_velocity + own_fall + push * n,
+            body.start_spin + push * lever / shape.gyration,
         )
         bodies[k] = replace(
             body,
-            position=shape.area_centre + (velocity - moves) * soon,
-            angle=body.angle + body.spin * onset.time + spin * soon,
-            velocity=velocity,
-            spin=spin,
+            start_position=shape.area_centre + (velocity - moves) * soon,
+            start_angle=body.start_angle + body.start_spin * onset.time + spin * soon,
+            start_velocity=velocity,
+            start_spin=spin,
         )
     still: dict[str, Value] = {
         name: 0.0 for name in ("gravity", "body_force_x", "body_force_y") if name in scene.values
@@ -281,12 +283,12 @@ def _onset(scene: Scene, first: int, second: int) -> Onset:
     # velocity.
     falls = [not scene.bodies[k].supports for k in (first, second) if k >= 0]
     pull = _fall(scene) * (falls[0] - (falls[1] if second >= 0 else 0))
-    start = body.velocity - other.velocity
+    start = body.start_velocity - other.start_velocity
     bodies = [surface for surface in (body, other) if isinstance(surface, Body)]
     radius = min(surface.outline.half_thickness for surface in bodies)
     loaded = max(loaded_pull(surface) for surface in bodies)
     turning = sum(
-        surface.outline.fastest(surface.angle, surface.spin) * surface.outline.reach
+        surface.outline.fastest(surface.start_angle, surface.start_spin) * surface.outline.reach
         for surface in bodies
     )
     t, never = _first_touch(body, other, start, pull, turning, radius)
@@ -331,7 +333,7 @@ def _onset(scene: Scene, first: int, second: int) -> Onset:
     for sign, k, struck in zip((1, -1), (first, second), bodies):
         shape = onset.shape(k)
         if abs(lever := _lever(shape, point, normal)) > ECCENTRIC * shape.reach:
-            spun += sign * struck.spin * lever
+            spun += sign * struck.start_spin * lever
     return replace(onset, closing=float(abs(spun)))
 
 
@@ -356,7 +358,7 @@ def loaded_pull(body: Body) -> float:
     ]
     half = body.outline.half_thickness
     width = 2 * half if isinstance(body.outline, Outline) else math.pi * half**2
-    return sum(stress) * width / (body.material.density * body.outline.content)
+    return sum(stress) * width / (body.made_of.density * body.outline.content)
 
 
 def _pressed(scene: Scene, onset: Onset) -> float:
@@ -375,7 +377,7 @@ def _pressed(scene: Scene, onset: Onset) -> float:
         moved = farthest(drive.translation)[0] - drive.shift(onset.time if met else 0.0)
         depths.append(abs(float(moved @ onset.normal)))
     share = min(0.5, max([0.0, *depths]) / onset.radius)
-    bar_speed = min(math.sqrt(body.material.young / body.material.density) for body in bodies)
+    bar_speed = min(math.sqrt(body.made_of.young / body.made_of.density) for body in bodies)
     return bar_speed * (0.4 * share if scene.dimension is PLANE_STRAIN else 0.5 * share**1.25)
 
 
@@ -397,23 +399,23 @@ def turned(scene: Scene) -> Scene:
     So the region of small elements does not depend on the frame in which the scene is written.
     """
     if scene.dimension is not PLANE_STRAIN or not any(
-        body.outline.disc and not body.mesh for body in scene.bodies
+        body.outline.disc and not body.file_mesh for body in scene.bodies
     ):
         return scene
     onsets = onsets_of(scene)
     bodies = list(scene.bodies)
     for k, body in enumerate(scene.bodies):
         mine = [onset for onset in onsets if k in (onset.first, onset.second)]
-        if body.mesh or not body.outline.disc or not mine:
+        if body.file_mesh or not body.outline.disc or not mine:
             continue
         soonest = min(onset.time for onset in mine)
         first = next(onset for onset in mine if onset.time <= soonest * (1 + 1e-9))
         outward = -first.normal if k == first.first else first.normal
         bodies[k] = replace(
             body,
-            angle=math.atan2(outward[1], outward[0])
+            start_angle=math.atan2(outward[1], outward[0])
             + math.pi / 2
-            - (body.spin * first.time if math.isfinite(first.time) else 0.0),
+            - (body.start_spin * first.time if math.isfinite(first.time) else 0.0),
         )
     return replace(scene, bodies=bodies)
 
@@ -447,12 +449,12 @@ def refuse_nothing(scene: Scene, onsets: list[Onset]) -> None:
             onset.second < 0
             and onset.time == 0
             and onset.closing == 0
-            and not np.any(body.spin)
+            and not np.any(body.start_spin)
             and _fall(scene) @ onset.normal < 0
         ):
             raise BadInput(
-                f"end_time: 0 is the end of the contact, but '{body.name}' is set down on "
-                f"'{scene.obstacles[-1 - onset.second].name}' and does not leave it (accepted: an end_time > 0)"
+                f"end_time: 0 is the end of the contact, but '{body.own_name}' is set down on "
+                f"'{scene.obstacles[-1 - onset.second].own_name}' and does not leave it (accepted: an end_time > 0)"
             )
 
 
@@ -479,11 +481,13 @@ def refuse_sinking(scene: Scene, onsets: list[Onset]) -> None:
         near = MET * first.radius if isinstance(other, Obstacle) else np.ptp(corners, axis=1).max()
         if nearest[may_touch].min() > nearest.min() + near:
             partner = first.second if k == first.first else first.first
-            name = (scene.bodies[partner] if partner >= 0 else scene.obstacles[-1 - partner]).name
+            name = (
+                scene.bodies[partner] if partner >= 0 else scene.obstacles[-1 - partner]
+            ).own_name
             position = ", ".join(f"{x:.3g}" for x in placed[gaps.argmin()])
-            entry = "labels" if body.mesh and body.mesh.groups else "file"
+            entry = "labels" if body.file_mesh and body.file_mesh.groups else "file"
             raise BadInput(
-                f"body.{k + 1}.{entry}: '{body.name}' comes to '{name}' with ({position}) "
+                f"body.{k + 1}.{entry}: '{body.own_name}' comes to '{name}' with ({position}) "
                 f"m, which is no contact boundary and would pass through the obstacle (accepted: a file whose "
                 f"label {mesh.FREE}, or physical group 'contact', is there, too)"
             )
@@ -504,10 +508,10 @@ def _at(
     another body; `pull` is the acceleration of `body` in that frame.
     """
     if isinstance(other, Body):
-        placed = body.at(t, body.position + body.velocity * t + pull * t**2 / 2)
-        return placed, other.at(t, other.position + other.velocity * t)
-    velocity = body.velocity - other.velocity
-    return body.at(t, body.position + velocity * t + pull * t**2 / 2), other
+        placed = body.at(t, body.start_position + body.start_velocity * t + pull * t**2 / 2)
+        return placed, other.at(t, other.start_position + other.start_velocity * t)
+    velocity = body.start_velocity - other.start_velocity
+    return body.at(t, body.start_position + velocity * t + pull * t**2 / 2), other
 
 
 def _first_touch(
@@ -551,7 +555,9 @@ def _within_reach(
     """
     if isinstance(other, Body) and not pull.any():
         yield from _passing(
-            body.position - other.position, start, 1.01 * (body.outline.reach + other.outline.reach)
+            body.start_position - other.start_position,
+            start,
+            1.01 * (body.outline.reach + other.outline.reach),
         )
         return
     parts = [[gate.trim() for gate in gates] for gates in _gates(body, other, start, pull)]
@@ -591,11 +597,13 @@ def _gates(
 
     def seen_from(point: np.ndarray) -> np.ndarray:
         return np.array(
-            [Polynomial([x, v, a / 2]) for x, v, a in zip(body.position - point, start, pull)]
+            [Polynomial([x, v, a / 2]) for x, v, a in zip(body.start_position - point, start, pull)]
         )
 
     if isinstance(other, Body):
-        yield [(seen_from(other.position) ** 2).sum() - (reach + 1.01 * other.outline.reach) ** 2]
+        yield [
+            (seen_from(other.start_position) ** 2).sum() - (reach + 1.01 * other.outline.reach) ** 2
+        ]
     else:
         yield from other.regions(seen_from, reach)
 

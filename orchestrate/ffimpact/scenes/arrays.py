@@ -92,7 +92,7 @@ def scene_arrays(scene: Scene, centres: np.ndarray, pairs: list[dict[str, Value]
         | table("bodies", _bodies(scene, centres))
         | joined(
             "bodies.law_numbers",
-            [np.array(body.material.numbers, dtype=float) for body in scene.bodies],
+            [np.array(body.made_of.numbers, dtype=float) for body in scene.bodies],
         )
         | _obstacles(scene)
         | table("pairs", of_pairs)
@@ -115,19 +115,19 @@ def _bodies(scene: Scene, centres: np.ndarray) -> list[Entries]:
     solid = scene.dimension is SOLID
     return [
         {
-            "name": body.name,
-            "law": body.material.law,
-            "young": float(body.material.young),
-            "nu": float(body.material.nu),
-            "density": float(body.material.density),
-            "damping": body.material.damping,
+            "name": body.own_name,
+            "law": body.made_of.law,
+            "young": float(body.made_of.young),
+            "nu": float(body.made_of.nu),
+            "density": float(body.made_of.density),
+            "damping": body.made_of.damping,
             "centre": padded(centre),
-            "shift": padded(body.position - centre),
-            "turn": 0.0 if solid else float(body.angle),
-            "velocity": padded(body.velocity),
-            "spin": padded(body.spin) if solid else np.array([0.0, 0.0, body.spin]),
+            "shift": padded(body.start_position - centre),
+            "turn": 0.0 if solid else float(body.start_angle),
+            "velocity": padded(body.start_velocity),
+            "spin": padded(body.start_spin) if solid else np.array([0.0, 0.0, body.start_spin]),
             "thickness": 2 * float(body.outline.half_thickness),
-            "of_file": 1 if body.mesh else 2 if "file" in content else 0,
+            "of_file": 1 if body.file_mesh else 2 if "file" in content else 0,
         }
         for content, body, centre in zip(scene.content["body"], scene.bodies, centres)
     ]
@@ -136,9 +136,9 @@ def _bodies(scene: Scene, centres: np.ndarray) -> list[Entries]:
 def _obstacles(scene: Scene) -> Entries:
     rows = [
         {
-            "name": obstacle.name,
-            "kind": SHAPES.index(obstacle.kind),
-            "velocity": padded(obstacle.velocity),
+            "name": obstacle.own_name,
+            "kind": SHAPES.index(obstacle.kernel),
+            "velocity": padded(obstacle.start_velocity),
         }
         for obstacle in scene.obstacles
     ]

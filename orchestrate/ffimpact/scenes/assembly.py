@@ -163,7 +163,7 @@ def assemble(
     pairs = [pair_values(pair, ask, values) for pair in scene.pairs]
     with progress.work("choosing element sizes"):
         sizes = [
-            None if body.mesh else element_sizes(k, ask) for k, body in enumerate(scene.bodies)
+            None if body.file_mesh else element_sizes(k, ask) for k, body in enumerate(scene.bodies)
         ]
     with progress.work("meshing the bodies"):
         meshes, centres, arcs = (_solids if scene.dimension is SOLID else _sections)(scene, sizes)
@@ -171,7 +171,7 @@ def assemble(
     files = [
         k
         for k, (table, body) in enumerate(zip(scene.content["body"], scene.bodies))
-        if body.mesh or "file" in table
+        if body.file_mesh or "file" in table
     ]
     penalties = {
         (pair.first, pair.second): float(own["penalty"]) for pair, own in zip(scene.pairs, pairs)
@@ -214,7 +214,7 @@ def _sections(
     """
     meshes = []
     for k, (body, size) in enumerate(zip(scene.bodies, sizes)):
-        made = body.mesh
+        made = body.file_mesh
         if size:
             made = mesh_body(boundary_curves(scene, k), size, body.outline.half_thickness)
         assert isinstance(made, mesh.Mesh)
@@ -354,10 +354,10 @@ class Asker:
         impact = Impact(
             sphere=scene.dimension is not PLANE_STRAIN,
             radius=radius,
-            young=soft.material.young / (STIFF if soft.rigid else 1),
-            nu=soft.material.nu,
-            density=soft.material.density,
-            damping=soft.material.damping,
+            young=soft.made_of.young / (STIFF if soft.rigid else 1),
+            nu=soft.made_of.nu,
+            density=soft.made_of.density,
+            damping=soft.made_of.damping,
             closing=along,
             pressing=pressing,
             exponent=scene.number("exponent"),
@@ -367,7 +367,7 @@ class Asker:
             endless=scene.values["until"] == "rest",
         )
         if slides:
-            spin = max(float(np.linalg.norm(body.spin)) for body in bodies)
+            spin = max(float(np.linalg.norm(body.start_spin)) for body in bodies)
             impact = replace(impact, sliding=across, spin=spin, pulling=pulling)
         return replace(impact, **more)
 
@@ -379,7 +379,7 @@ def contact_values(
     softest of the bodies and the smallest radius. `least` [m] is the radius of an obstacle.
     """
     radius = min([least, *(body.outline.half_thickness for body in bodies)])
-    sizes = [body.contact_mesh_size for body in bodies]
+    sizes = [body.contact_size for body in bodies]
     more: Table = {"given_contact_size": min(*sizes, radius)} if min(sizes) > 0 else {}
     values = dict(contact)
     if automatic := [name for name in ("penalty", "slip_velocity") if contact[name] == "auto"]:
@@ -441,14 +441,14 @@ def used_tables(
 
     def names(pair: Pair) -> list[str]:
         return [
-            (scene.bodies[k] if k >= 0 else scene.obstacles[-1 - k]).name
+            (scene.bodies[k] if k >= 0 else scene.obstacles[-1 - k]).own_name
             for k in (pair.first, pair.second)
         ]
 
     bodies = []
     for body_table, body, size in zip(scene.content["body"], scene.bodies, sizes):
-        used = {"name": body.name} | body_table | ({} if body.rigid else body.material.table())
-        used |= {"density": body.material.density} if body.rigid and not body.mass else {}
+        used = {"name": body.own_name} | body_table | ({} if body.rigid else body.made_of.table())
+        used |= {"density": body.made_of.density} if body.rigid and not body.mass else {}
         used |= {"mesh_size": size.bulk, "contact_mesh_size": size.contact} if size else {}
         used |= {"mesh_stretch": size.stretch} if size and size.stretch > 1 else {}
         used |= (
@@ -458,8 +458,8 @@ def used_tables(
         )
         bodies.append(used)
     obstacles = [
-        {"name": obstacle.name, "kind": obstacle.kind}
-        | obstacle.defaults(scene.dimension)
+        {"name": obstacle.own_name, "kind": obstacle.kind}
+        | obstacle.defaults()
         | {key: value for key, value in table.items() if key not in OWN}
         for table, obstacle in zip(scene.content.get("obstacle", []), scene.obstacles)
     ]
@@ -487,16 +487,16 @@ def _with_viscosity(k: int, ask: Asker) -> Body:
     another viscosity.
     """
     body = ask.scene.bodies[k]
-    material = body.material
+    material = body.made_of
     if not material.loss:
         return body
     viscosity = _disc_like(k, ask).viscosity(material.loss)
     if material.viscosity and not math.isclose(material.viscosity, viscosity):
         raise BadInput(
-            f"body.{k + 1}.loss: {material.loss:g} asks for viscosity {viscosity:g} Pa s of '{body.name}', which "
+            f"body.{k + 1}.loss: {material.loss:g} asks for viscosity {viscosity:g} Pa s of '{body.own_name}', which "
             f"is {material.viscosity:g} (accepted: one of the two)"
         )
-    return replace(body, material=material.model_copy(update={"viscosity": viscosity}))
+    return replace(body, made_of=material.model_copy(update={"viscosity": viscosity}))
 
 
 def element_sizes(k: int, ask: Asker) -> Sizes:
@@ -504,23 +504,23 @@ def element_sizes(k: int, ask: Asker) -> Sizes:
     each contact pair.
     """
     body = ask.scene.bodies[k]
-    bulk = body.mesh_size or _bulk(k, ask)
+    bulk = body.bulk_size or _bulk(k, ask)
     hits = [
         _hit(body, k, onset, ask)
         for onset in ask.onsets
         if k in (onset.first, onset.second) and not onset.shielded
     ]
     mine = [front for front in ask.fronts.values() if k in front.sizes]
-    if body.rigid and not body.mesh_size:
+    if body.rigid and not body.bulk_size:
         bulk = _bulk_of_rigid(body, min((size for size, *_ in hits), default=math.inf))
-    if not body.mesh_size:
+    if not body.bulk_size:
         bulk = min((front.sizes[k] for front in mine if k in front.crossed), default=bulk)
     plane = stretch_of(k, mine, bulk)
     if plane > 1:  # a plane front presses evenly: the bulk resolves its pressure
         hits = []
     stretch = body.mesh_stretch or plane
     along = _first_normal(k, ask) if stretch > 1 else None
-    contact = body.contact_mesh_size or min(
+    contact = body.contact_size or min(
         [bulk, *(size / stretch for size, *_ in hits), *(front.sizes[k] for front in mine)]
     )
     near = np.vstack([np.empty((0, ask.scene.dimension.axes)), *(points for _, points, _ in hits)])
@@ -535,7 +535,7 @@ def _bulk(k: int, ask: Asker) -> float:
     body = ask.scene.bodies[k]
     looser = ask.scene.number("accuracy") / UNLIMITED / _share(k, ask)
     required = _disc_like(k, ask, accuracy=UNLIMITED).mesh_size * math.sqrt(looser)
-    return max(min(required, body.outline.coarsest), body.contact_mesh_size)
+    return max(min(required, body.outline.coarsest), body.contact_size)
 
 
 def _share(k: int, ask: Asker) -> float:
@@ -567,7 +567,7 @@ def _first_normal(k: int, ask: Asker) -> np.ndarray:
     onsets = [onset for onset in ask.onsets if k in (onset.first, onset.second)]
     if not onsets:
         raise BadInput(
-            f"body.{k + 1}.mesh_stretch: {body.mesh_stretch:g}, but '{body.name}' never comes into "
+            f"body.{k + 1}.mesh_stretch: {body.mesh_stretch:g}, but '{body.own_name}' never comes into "
             f"contact (accepted: 0 or 1)"
         )
     return min(onsets, key=lambda onset: onset.time).own_normal(k, body)
@@ -681,8 +681,8 @@ def _holds(scene: Scene, k: int, inner: np.ndarray, rest: np.ndarray) -> bool:
     to the vertices `inner` (n, axes) of that outline than to those of the `rest` of the boundary.
     """
     body = scene.bodies[k]
-    turn = np.eye(3) if scene.dimension is SOLID else rotation(body.angle).T
-    own, outer = (points @ turn + body.position for points in (inner, rest))
+    turn = np.eye(3) if scene.dimension is SOLID else rotation(body.start_angle).T
+    own, outer = (points @ turn + body.start_position for points in (inner, rest))
     gaps = [other.placed.gap for j, other in enumerate(scene.bodies) if j != k]
     gaps += [obstacle.gap for obstacle in scene.obstacles]
     return any(gap(own).min() < gap(outer).min() for gap in gaps)

@@ -46,21 +46,21 @@ SIZES = ("mesh_size", "contact_mesh_size")
 class Body:
     """One body of a scene.
 
-    `outline` and `mesh` (of a mesh file, else None) are about the centre of area (or volume) and
-    not turned. `angle` [rad] is a vector in three dimensions, as is `spin` [rad/s]. A mesh size or
+    `outline` and `file_mesh` (of a mesh file, else None) are about the centre of area (or volume) and
+    not turned. `start_angle` [rad] is a vector in three dimensions, as is `start_spin` [rad/s]. A mesh size or
     stretch of 0 is automatic, or that of the mesh file.
     """
 
-    name: str
+    own_name: str
     outline: Shape
-    mesh: mesh.Mesh | SolidMesh | None
-    position: np.ndarray
-    angle: Turn
-    velocity: np.ndarray
-    spin: Turn
-    material: Material
-    mesh_size: float
-    contact_mesh_size: float
+    file_mesh: mesh.Mesh | SolidMesh | None
+    start_position: np.ndarray
+    start_angle: Turn
+    start_velocity: np.ndarray
+    start_spin: Turn
+    made_of: Material
+    bulk_size: float
+    contact_size: float
     mesh_stretch: float
     supports: tuple[Support, ...] = ()
     loads: tuple[Load, ...] = ()
@@ -75,19 +75,19 @@ class Body:
     @property
     def moduli(self) -> tuple[float, float]:
         """lambda + 2 mu and mu [Pa] in a wave across the body."""
-        return self.material.moduli(2 * self.outline.half_thickness)
+        return self.made_of.moduli(2 * self.outline.half_thickness)
 
     @property
     def stiffness(self) -> float:
         """Young's modulus [Pa] in an impact, over two, with the stiffening by damping; infinite for a
         rigid body.
         """
-        return math.inf if self.rigid else self.moduli[1] * (1 + self.material.nu)
+        return math.inf if self.rigid else self.moduli[1] * (1 + self.made_of.nu)
 
     @property
     def wave_speed(self) -> float:
         """The speed c [m/s] of a plane pressure wave, sqrt((lambda + 2 mu)/rho)."""
-        return math.sqrt(self.moduli[0] / self.material.density)
+        return math.sqrt(self.moduli[0] / self.made_of.density)
 
     @property
     def driven(self) -> bool:
@@ -110,7 +110,7 @@ class Body:
         return any(getattr(self, name) for name in FIELDS)
 
     @property
-    def carried_along(self) -> "Body":
+    def at_mean_velocity(self) -> "Body":
         """The body with the mean velocity of its support on the way to the displacement farthest
         from the start. A body without supports is unchanged.
         """
@@ -118,8 +118,8 @@ class Body:
         if not ways:
             return self
         displacement, when = max(ways, key=lambda path: float(np.linalg.norm(path[0])))
-        velocity = displacement / when if when > 0 else np.zeros_like(self.velocity)
-        return replace(self, velocity=velocity, spin=0 * self.spin)
+        velocity = displacement / when if when > 0 else np.zeros_like(self.start_velocity)
+        return replace(self, start_velocity=velocity, start_spin=0 * self.start_spin)
 
     @property
     def sides(self) -> tuple[np.ndarray, np.ndarray] | None:
@@ -127,7 +127,7 @@ class Body:
         axes), about its centre and not turned, and whether each is contact boundary (f,).
         """
         geometry = isinstance(self.outline, Solid) and self.outline.geometry
-        file_mesh = geometry.coarse if geometry else self.mesh
+        file_mesh = geometry.coarse if geometry else self.file_mesh
         if not file_mesh:
             return None
         outer = file_mesh.labels != mesh.AXIS
@@ -143,7 +143,7 @@ class Body:
     @property
     def placed(self) -> Shape:
         """The outline at its position at the start."""
-        return self.at(0.0, self.position)
+        return self.at(0.0, self.start_position)
 
     def box(self, dimension: Dimension) -> np.ndarray:
         """Two corners (2, axes) [m] of a box that holds the body at the start, of revolution its half
@@ -160,7 +160,9 @@ class Body:
         """Returns the outline with its centre at `centre`, turned as the body is at time t [s] in
         free motion.
         """
-        return self.outline.placed(centre, self.outline.turned(self.angle, self.spin, t))
+        return self.outline.placed(
+            centre, self.outline.turned(self.start_angle, self.start_spin, t)
+        )
 
 
 def read(
@@ -191,7 +193,7 @@ def _body(table: bodies.Body, top: models.Top, folder: Path, dimension: Dimensio
     made_of = (
         _rigid(table, top, dimension, outline)
         if table.rigid
-        else {"material": material.read(table, top)}
+        else {"made_of": material.read(table, top)}
     )
     supports, loads = tuple(table.support or []), tuple(table.load or [])
     gathered([support.check for support in supports])
@@ -199,7 +201,7 @@ def _body(table: bodies.Body, top: models.Top, folder: Path, dimension: Dimensio
     refuse_mixed_gases(loads)
     motion = geometry.motion(table)
     if isinstance(table, bodies.Drawn) and table.is_placed_as_drawn:
-        motion["position"] = motion["position"] + drawn_centre
+        motion["start_position"] = motion["start_position"] + drawn_centre
     motion |= {
         name: place_functions.of_entry(table.at(name), getattr(table, name), dimension.axes)
         for name in FIELDS
@@ -211,8 +213,8 @@ def _body(table: bodies.Body, top: models.Top, folder: Path, dimension: Dimensio
         body_mesh,
         **motion,
         **made_of,
-        mesh_size=bulk,
-        contact_mesh_size=contact,
+        bulk_size=bulk,
+        contact_size=contact,
         mesh_stretch=table.mesh_stretch or 0.0,
         supports=supports,
         loads=loads,
@@ -237,7 +239,7 @@ def _with_mean(body: Body, dimension: Dimension) -> Body:
     if dimension is AXISYMMETRIC:
         mean[0] = 0.0
     rest = Field(field.entry, lambda places: field.at(places) - mean)
-    return replace(body, velocity=body.velocity + mean, initial_velocity=rest)
+    return replace(body, start_velocity=body.start_velocity + mean, initial_velocity=rest)
 
 
 def _rigid(table: bodies.Body, top: models.Top, dimension: Dimension, outline: Shape) -> Table:
@@ -251,7 +253,7 @@ def _rigid(table: bodies.Body, top: models.Top, dimension: Dimension, outline: S
     # For a body of revolution with a mass this density is only a scale.
     density = mass / outline.content if mass else table.density or top.density or 0.0
     return {
-        "material": material.rigid(float(density)),
+        "made_of": material.rigid(float(density)),
         "rigid": True,
         "mass": mass,
         "moments": _moments(table, dimension),
@@ -280,7 +282,7 @@ def _moments(table: bodies.Body, dimension: Dimension) -> tuple[float, ...]:
             f"{table.at('inertia')}: '{table.value_text('inertia')}' has one that is no less than the others together "
             f"(accepted: moments about x, y, z of a body that is nowhere flat)"
         )
-    turn = tumbling.rotation(solids.motion(table)["angle"])
+    turn = tumbling.rotation(solids.motion(table)["start_angle"])
     E = turn @ np.diag(own) @ turn.T
     return (
         float(E[0, 0]),
@@ -301,7 +303,7 @@ def stiffened(bodies: list[Body], penalties: list[Value], path: str) -> list[Bod
     """
     if not any(body.rigid for body in bodies):
         return bodies
-    soft = max((body.material.young for body in bodies if not body.rigid), default=0.0)
+    soft = max((body.made_of.young for body in bodies if not body.rigid), default=0.0)
     if not soft and "auto" in penalties:
         raise BadInput(
             f"{path}: 'auto' follows from a body that deforms, and all are rigid (accepted: a number, Pa/m^m)"
@@ -309,7 +311,7 @@ def stiffened(bodies: list[Body], penalties: list[Value], path: str) -> list[Bod
     half = max(body.outline.half_thickness for body in bodies)
     young = STIFF * (soft or max(float(penalty) for penalty in penalties) * half)
     return [
-        replace(body, material=body.material.model_copy(update={"young": young}))
+        replace(body, made_of=body.made_of.model_copy(update={"young": young}))
         if body.rigid
         else body
         for body in bodies

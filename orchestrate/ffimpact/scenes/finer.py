@@ -30,7 +30,7 @@ def scaled(scene: Scene, used: Table, factor: float) -> Table:
         first_order = math.sqrt(scene.number("accuracy") * entries["accuracy"])
         strikes = fronts(scene.override({"accuracy": first_order}), onsets_of(scene))
     for k, (body, table) in enumerate(zip(scene.bodies, used["body"])):
-        if not body.mesh:
+        if not body.file_mesh:
             bulk = min(factor * table["mesh_size"], 2 * body.outline.coarsest)
             before = table.get("mesh_stretch", 1.0)
             stretch = before if body.mesh_stretch else stretch_of(k, strikes, bulk)
@@ -54,8 +54,8 @@ def _pairs(scene: Scene, used: list[Table], factor: float) -> list[Table]:
         return used
     onsets = [front.onset for front in fronts(scene, onsets_of(scene))]
     # The index -1 is obstacle 0.
-    others = [body.name for body in scene.bodies]
-    others += [obstacle.name for obstacle in reversed(scene.obstacles)]
+    others = [body.own_name for body in scene.bodies]
+    others += [obstacle.own_name for obstacle in reversed(scene.obstacles)]
     flat = [
         [others[onset.first], others[onset.second]]
         for onset in onsets

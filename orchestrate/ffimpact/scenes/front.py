@@ -78,7 +78,7 @@ class Front:
 
     def _pressure(self, bodies: list[Body]) -> float:
         """Returns rho c v [Pa], with the impedances rho c of two bodies in series."""
-        impedances = [bodies[k].material.density * bodies[k].wave_speed for k in self.sizes]
+        impedances = [bodies[k].made_of.density * bodies[k].wave_speed for k in self.sizes]
         return self.onset.closing / sum(1 / impedance for impedance in impedances)
 
 
@@ -124,7 +124,7 @@ def _front(scene: Scene, onset: Onset, plane: list[int]) -> Front | None:
     """
     bodies = {k: scene.bodies[k] for k in (onset.first, onset.second) if k >= 0}
     across = {k: _across(scene, body) if k in plane else 0.0 for k, body in bodies.items()}
-    sizes = {k: body.mesh_size or _size(scene, onset, k, across[k]) for k, body in bodies.items()}
+    sizes = {k: body.bulk_size or _size(scene, onset, k, across[k]) for k, body in bodies.items()}
     crossed = tuple(
         k
         for k, body in bodies.items()
@@ -157,7 +157,7 @@ def _stays_plane(scene: Scene, k: int, onsets: list[Onset], landings: list[Front
     may come into contact with its whole width lands, and that of the other body.
     """
     body = scene.bodies[k]
-    is_set = body.mesh or body.mesh_size or body.mesh_stretch
+    is_set = body.file_mesh or body.bulk_size or body.mesh_stretch
     if scene.dimension is SOLID or is_set or body.supports or body.loads:
         return False
     possible = [onset for onset in onsets if k in (onset.first, onset.second) and not onset.never]
@@ -199,8 +199,8 @@ def _size(scene: Scene, onset: Onset, k: int, across: float = 0.0) -> float:
     """
     body, axes = scene.bodies[k], scene.dimension.axes
     content = body.outline.content
-    if body.mesh:
-        return float((content / len(body.mesh.elements) / ELEMENT[axes]) ** (1 / axes))
+    if body.file_mesh:
+        return float((content / len(body.file_mesh.elements) / ELEMENT[axes]) ** (1 / axes))
     required = PER_ACCURACY * _accuracy(scene) * _length(onset, k)
     stretch = _stretch(required, across)
     unknowns = UNKNOWNS[axes] * content / stretch ** (axes - 1)

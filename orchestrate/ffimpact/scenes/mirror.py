@@ -10,10 +10,10 @@ import numpy as np
 from ..failure import BadInput
 from ..geometry.outlines import rotation
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
+from ..input.obstacles import Obstacle
 from ..mesh import revolution
 from ..mesh.solids import Solid
 from .bodies import Body
-from .obstacles import Obstacle
 
 if TYPE_CHECKING:
     from .scene import Scene
@@ -72,7 +72,7 @@ def _is_mirrored_in_plane(scene: "Scene", axis: int) -> bool:
     """Whether a plane scene is its own mirror image in the line normal to an axis through the centre
     of its first body. Shapes are compared by their signed distances.
     """
-    values, at = scene.values, scene.bodies[0].position[axis]
+    values, at = scene.values, scene.bodies[0].start_position[axis]
     radius = max(body.placed.reach for body in scene.bodies)
     image = np.where(np.arange(2) == axis, -1.0, 1.0)
 
@@ -82,7 +82,11 @@ def _is_mirrored_in_plane(scene: "Scene", axis: int) -> bool:
 
     def is_its_image(body: Body) -> bool:
         own = np.abs(body.placed.gap(mirrored(body.placed.points))).max() <= ALIKE * radius
-        moves = body.position[axis] != at or body.velocity[axis] != 0 or body.spin != 0
+        moves = (
+            body.start_position[axis] != at
+            or body.start_velocity[axis] != 0
+            or body.start_spin != 0
+        )
         conditions = body.supports or body.loads
         moves = moves or body.has_fields
         return (
@@ -92,12 +96,12 @@ def _is_mirrored_in_plane(scene: "Scene", axis: int) -> bool:
     pulled = values[f"body_force_{AXES[axis]}"] or axis == 1 and values["gravity"]
     if pulled or not all(is_its_image(body) for body in scene.bodies):
         return False
-    centres = np.array([body.position for body in scene.bodies])
+    centres = np.array([body.start_position for body in scene.bodies])
     points = np.random.default_rng(1).uniform(
         centres.min(axis=0) - 2 * radius, centres.max(axis=0) + 2 * radius, (SAMPLES, 2)
     )
     return all(
-        obstacle.velocity[axis] == 0
+        obstacle.start_velocity[axis] == 0
         and obstacle.drive is None
         and np.abs(obstacle.gap(points) - obstacle.gap(mirrored(points))).max() <= ALIKE * radius
         for obstacle in scene.obstacles
@@ -106,15 +110,17 @@ def _is_mirrored_in_plane(scene: "Scene", axis: int) -> bool:
 
 def _broken_in_plane(scene: "Scene") -> str:
     """Returns why the half x >= 0 of a plane scene does not represent all of it, "" if it does."""
-    if scene.bodies[0].position[0] != 0 or not _is_mirrored_in_plane(scene, 0):
+    if scene.bodies[0].start_position[0] != 0 or not _is_mirrored_in_plane(scene, 0):
         return "the scene is not its own mirror image in x = 0"
     for k, body in enumerate(scene.bodies):
-        if body.mesh or body.angle or any(body.moments):
-            return f"'{body.name}' is a file's, is turned, or has a moment of inertia of its own"
+        if body.file_mesh or body.start_angle or any(body.moments):
+            return (
+                f"'{body.own_name}' is a file's, is turned, or has a moment of inertia of its own"
+            )
         if not revolution.crossing_axis(body.section):
-            return f"'{body.name}' has parts that do not cross x = 0"
+            return f"'{body.own_name}' has parts that do not cross x = 0"
         if any(pair.first == pair.second == k for pair in scene.pairs):
-            return f"'{body.name}' may come into contact with itself"
+            return f"'{body.own_name}' may come into contact with itself"
     return ""
 
 
@@ -127,27 +133,29 @@ def _broken(scene: "Scene", axis: int) -> str:
         return "body_force_x pushes along x"
     for body in scene.bodies:
         if why := _of_body(body, axis, plane):
-            return f"'{body.name}' {why}"
+            return f"'{body.own_name}' {why}"
     for obstacle in scene.obstacles:
         if _of_obstacle(obstacle, axis):
-            return f"'{obstacle.name}' is not its own mirror image in {plane}"
+            return f"'{obstacle.own_name}' is not its own mirror image in {plane}"
     return ""
 
 
 def _of_body(body: Body, axis: int, plane: str) -> str:
     normal = np.eye(3)[axis]
-    if body.position[axis] != 0:
+    if body.start_position[axis] != 0:
         return f"has its centre off {plane}"
-    if body.velocity[axis] != 0:
+    if body.start_velocity[axis] != 0:
         return f"moves along {AXES[axis]}"
     if body.has_fields:
         return "has a field at the start"
-    if np.delete(body.spin, axis).any():  # a reflection keeps an axial vector along the normal
+    if np.delete(
+        body.start_spin, axis
+    ).any():  # a reflection keeps an axial vector along the normal
         return f"spins out of {plane}"
     if any(body.moments):
         return "has moments of inertia of its own"
     placed = body.placed
-    if body.mesh or not isinstance(placed, Solid) or placed.geometry:
+    if body.file_mesh or not isinstance(placed, Solid) or placed.geometry:
         return "is a file's"
     if not placed.shape.is_mirrored(placed.rotation.T @ normal):
         return f"is not its own mirror image in {plane}"
@@ -159,7 +167,7 @@ def _of_conditions(body: Body, axis: int, plane: str) -> str:
     none.
     """
     placed = body.placed
-    turned = placed.rotation if isinstance(placed, Solid) else rotation(body.angle)
+    turned = placed.rotation if isinstance(placed, Solid) else rotation(body.start_angle)
     for kind, listed in (("support", body.supports), ("load", body.loads)):
         if not all(condition.part.is_mirrored(axis, turned) for condition in listed):
             return f"has a {kind} that is not its own mirror image in {plane}"
@@ -178,4 +186,4 @@ def _of_obstacle(obstacle: Obstacle, axis: int) -> bool:
         not obstacle.drive.translation[axis].is_zero or not obstacle.drive.turn.is_zero
     ):
         return True
-    return obstacle.velocity[axis] != 0 or not obstacle.is_mirrored(axis)
+    return obstacle.start_velocity[axis] != 0 or not obstacle.is_mirrored(axis)

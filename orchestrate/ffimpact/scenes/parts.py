@@ -13,13 +13,13 @@ from ..geometry.outlines import rotation
 from ..geometry.time_functions import NOTHING, TimeFunction
 from ..input.conditions import KINDS, ON_SIDE, SIDES, Load, Part, Support
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
+from ..input.obstacles import Drive, Obstacle
 from ..mesh import mesh
 from ..mesh.mesh import Mesh
 from ..mesh.solid_mesh import SolidMesh
 from ..mesh.solids import Solid
 from .bodies import Body
 from .mirror import mirror_axes
-from .obstacles import Drive, Obstacle
 
 __all__ = ["conditions"]
 
@@ -156,7 +156,7 @@ class _Surface:
     def __init__(self, body: Body, made: Mesh | SolidMesh, dimension: Dimension, copies: int):
         self.body, self.made, self.dimension, self.copies = body, made, dimension, copies
         # `axes` transforms the mesh to the body's own axes, `turn` to its orientation at the start.
-        turn = rotation(body.angle) if dimension is PLANE_STRAIN else np.eye(dimension.axes)
+        turn = rotation(body.start_angle) if dimension is PLANE_STRAIN else np.eye(dimension.axes)
         solid = body.at(0.0, np.zeros(dimension.axes))
         self.axes = solid.rotation if isinstance(solid, Solid) else np.eye(2)
         self.turn = turn
@@ -164,7 +164,7 @@ class _Surface:
 
     def placed(self, elements: np.ndarray) -> np.ndarray:
         """Returns the corners (f, axes, axes) [m] of boundary elements at the start."""
-        corners: np.ndarray = (self.made.points @ self.turn.T + self.body.position)[
+        corners: np.ndarray = (self.made.points @ self.turn.T + self.body.start_position)[
             self.made.sides[elements]
         ]
         return corners
@@ -178,7 +178,7 @@ class _Surface:
             own: np.ndarray = self.made.labels != mesh.AXIS
             return own
         own = np.ones(len(self.made.sides), dtype=bool)
-        corners = self.made.points[self.made.sides] + self.body.position
+        corners = self.made.points[self.made.sides] + self.body.start_position
         for axis in mirror_axes(self.dimension, self.copies):
             own &= abs(corners[:, :, axis]).max(axis=1) > ON_SIDE * np.ptp(self.own)
         return own
@@ -192,14 +192,14 @@ class _Surface:
             inside = on & part.contains(self.placed(np.arange(len(on))).mean(axis=1))
             if not inside.any():
                 raise BadInput(
-                    f"{part.entry}: no boundary element of '{self.body.name}' has its middle in the region "
+                    f"{part.entry}: no boundary element of '{self.body.own_name}' has its middle in the region "
                     f"(accepted: a region that holds a part of its boundary at the start)"
                 )
             return np.flatnonzero(inside)
         sides = self.sides()
         if part.name not in sides:
             raise BadInput(
-                f"{part.entry}: '{self.body.name}' has no side or group '{brief(part.name)}' "
+                f"{part.entry}: '{self.body.own_name}' has no side or group '{brief(part.name)}' "
                 f"(accepted: {', '.join(sides)}, or a region)"
             )
         return sides[part.name]
@@ -267,7 +267,7 @@ class _Surface:
         )
         once = ends.ravel() if self.dimension is not SOLID else ends
         rims, count = np.unique(once, axis=0, return_counts=True)
-        open_rims = self.made.points[rims[count == 1]] + self.body.position
+        open_rims = self.made.points[rims[count == 1]] + self.body.start_position
         extent = np.ptp(self.own)
         closed = np.zeros(len(open_rims), dtype=bool)
         for axis in mirror_axes(self.dimension, self.copies):
@@ -276,7 +276,7 @@ class _Surface:
         inner = self.sides().get("inner", np.array([], dtype=int))
         if not closed.all() or not np.isin(elements, inner).all():
             raise BadInput(
-                f"{part.entry}: is no closed cavity of '{self.body.name}', which a gas is in "
+                f"{part.entry}: is no closed cavity of '{self.body.own_name}', which a gas is in "
                 f"(accepted: 'inner' of a body with a hole or cavity, or a closed part of it)"
             )
 
@@ -294,7 +294,7 @@ def _refuse_touching(
         gap = other.placed.gap(points) if isinstance(other, Body) else other.gap(points)
         if gap.min() <= near:
             raise BadInput(
-                f"{part.entry}: the part is in contact with '{other.name}' at the start (accepted: a part without contact)"
+                f"{part.entry}: the part is in contact with '{other.own_name}' at the start (accepted: a part without contact)"
             )
 
 
@@ -307,7 +307,7 @@ def _refuse_all_held(body: Body, surface: _Surface) -> None:
     on = surface.own_labels
     if body.supports and held[on].all():
         raise BadInput(
-            f"{body.supports[0].part.entry}: the whole boundary of '{body.name}' is held (accepted: a part of it)"
+            f"{body.supports[0].part.entry}: the whole boundary of '{body.own_name}' is held (accepted: a part of it)"
         )
 
 
@@ -325,7 +325,7 @@ def _refuse_opposite(body: Body, surface: _Surface) -> None:
             for k, both in enumerate(zip(*fixed)):
                 if all(both) and not _alike(first.functions[k], second.functions[k]):
                     raise BadInput(
-                        f"{second.at('motion')}: moves '{body.name}' along {'xyz'[k]} otherwise than {first.entry}, where "
+                        f"{second.at('motion')}: moves '{body.own_name}' along {'xyz'[k]} otherwise than {first.entry}, where "
                         f"both hold it (accepted: the same motion there, parts without common facets, or "
                         f"an earlier release of {second.entry})"
                     )
@@ -346,7 +346,7 @@ def _refuse_two_gases(body: Body, surface: _Surface) -> None:
         surface.refuse_open(load.part, elements)
         if filled & set(elements.tolist()):
             raise BadInput(
-                f"{load.part.entry}: there is a gas in this cavity of '{body.name}' already "
+                f"{load.part.entry}: there is a gas in this cavity of '{body.own_name}' already "
                 f"(accepted: one gas a cavity)"
             )
         filled |= set(elements.tolist())
@@ -364,6 +364,6 @@ def _refuse_without_effect(body: Body, surface: _Surface) -> None:
     for load in body.loads:
         if load.kind != "gas" and held[surface.elements(load.part)].all():
             raise BadInput(
-                f"{load.part.entry}: supports hold this part of '{body.name}' until the end, so the {load.kind} has no effect "
+                f"{load.part.entry}: supports hold this part of '{body.own_name}' until the end, so the {load.kind} has no effect "
                 f"(accepted: a part that is free)"
             )

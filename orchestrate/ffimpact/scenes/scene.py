@@ -26,15 +26,14 @@ from ..input.dimension import AXISYMMETRIC, SOLID, Dimension
 from ..input.entries import Entries
 from ..input.materials import MATERIAL, STIFFEST
 from ..input.models import listed
-from ..input.obstacles import Obstacle as ObstacleTable
+from ..input.obstacles import Obstacle
 from ..input.parameters import Table, Value
 from ..mesh.solid_file import declares_unit, takes_in_others
 from ..output import former
 from ..output.columns import Features, recorded
-from . import bodies, mirror, needs, obstacles
+from . import bodies, mirror, needs
 from .bodies import SIZES, Body
 from .entries import files_renamed, release, set_entry, toml_value
-from .obstacles import Obstacle
 
 __all__ = ["RUN", "Scene", "gap_between", "gap_to_obstacle", "read", "refuse_rest"]
 
@@ -215,14 +214,14 @@ class Scene:
     @property
     def damped(self) -> bool:
         """Whether any body is damped."""
-        return any(body.material.damped for body in self.bodies)
+        return any(body.made_of.damped for body in self.bodies)
 
     @property
     def _projected(self) -> bool:
         """Whether the volume of the elements is projected. This needs quadratic elements, a
         `volume` that is not "plain" and a body with nu above STIFFEST.
         """
-        stiffest = max(body.material.nu for body in self.bodies)
+        stiffest = max(body.made_of.nu for body in self.bodies)
         return (
             self.values["volume"] != "plain" and self.values["degree"] == 2 and stiffest > STIFFEST
         )
@@ -230,7 +229,7 @@ class Scene:
     @property
     def of_files(self) -> bool:
         """Whether a body has the mesh of a file. Other runs cannot refine this mesh."""
-        return any(bool(body.mesh) for body in self.bodies)
+        return any(bool(body.file_mesh) for body in self.bodies)
 
     @property
     def mesh_name(self) -> str:
@@ -240,7 +239,9 @@ class Scene:
     @property
     def sizes(self) -> dict[str, float]:
         """The largest element sizes [m] that bodies set, 0 where none does."""
-        return {name: max(getattr(body, name) for body in self.bodies) for name in SIZES}
+        bulk = max(body.bulk_size for body in self.bodies)
+        contact = max(body.contact_size for body in self.bodies)
+        return dict(zip(SIZES, (bulk, contact)))
 
 
 def _shortened(value: Any) -> Any:
@@ -278,16 +279,16 @@ def read(content: Table, folder: Path, name: str) -> Scene:
             f"script: '{top.value_text('script')}' is not that of [[body]] tables in "
             f"dimension = '{scene_dimension.name}' (accepted: {scene_dimension.script})"
         )
-    all_bodies, all_obstacles, contact, values = gathered(
+    all_bodies, _, contact, values = gathered(
         (
             lambda: bodies.read(tables.bodies, top, folder, scene_dimension),
-            lambda: obstacles.read(tables.obstacles, scene_dimension, top.end_time or 0.0, folder),
+            lambda: gathered([obstacle.check for obstacle in tables.obstacles]),
             lambda: _parameters(tables.contact, CONTACT, scene_dimension),
             lambda: _parameters(top, RUN, scene_dimension),
         )
     )
     for key in SIZES:
-        if getattr(top, key) and all(body.mesh for body in all_bodies):
+        if getattr(top, key) and all(body.file_mesh for body in all_bodies):
             raise BadInput(
                 f"{key}: '{brief(content[key])}' changes nothing, as the mesh of every body is "
                 f"that of its file, with its own element sizes (accepted: 0)"
@@ -296,7 +297,8 @@ def read(content: Table, folder: Path, name: str) -> Scene:
     half = float(
         np.ptp(centres, axis=0).max() / 2 + 2 * max(body.placed.reach for body in all_bodies)
     )
-    all_obstacles = obstacles.settled(all_obstacles, centres.mean(axis=0), half)
+    middle = centres.mean(axis=0)
+    all_obstacles = [obstacle.within(middle, half) for obstacle in tables.obstacles]
     index = _names(all_bodies, all_obstacles)
     pairs = _own_of_obstacles(tables.obstacles, len(all_bodies))
     for both, pair in _exceptions(tables.contact.pair or [], index).items():
@@ -310,7 +312,7 @@ def read(content: Table, folder: Path, name: str) -> Scene:
         tables.contact,
         all_bodies,
         scene_dimension,
-        len(all_bodies) == 1 and not all_obstacles,
+        len(all_bodies) == 1 and not tables.obstacles,
     ):
         pairs.setdefault((k, k), Pair.between(k, k, "contact", {}))
     scene = Scene(
@@ -332,7 +334,7 @@ def read(content: Table, folder: Path, name: str) -> Scene:
     _refuse_start(scene)
     for k, body in enumerate(all_bodies, 1):
         prefix = f"body.{k}." if len(all_bodies) > 1 else ""
-        for entry, text in body.material.refusals():
+        for entry, text in body.made_of.refusals():
             raise BadInput(f"{prefix}{entry}{text}")
     mirror.copies(scene)
     return scene
@@ -358,8 +360,8 @@ def refuse_rest(scene: Scene) -> None:
     """Raises BadInput if nothing ever moves."""
     surfaces: list[Body | Obstacle] = [*scene.bodies, *scene.obstacles]
     moving = [
-        *(surface.velocity for surface in surfaces),
-        *(body.spin for body in scene.bodies),
+        *(surface.start_velocity for surface in surfaces),
+        *(body.start_spin for body in scene.bodies),
         *(scene.values.get(name, 0.0) for name in ("gravity", "body_force_x", "body_force_y")),
     ]
     if (
@@ -415,8 +417,8 @@ def _names(all_bodies: list[Body], all_obstacles: list[Obstacle]) -> dict[str, i
     index: dict[str, int] = {}
     where: dict[str, str] = {}
     for path, number, name in [
-        *((f"body.{k + 1}", k, body.name) for k, body in enumerate(all_bodies)),
-        *((f"obstacle.{k + 1}", -1 - k, other.name) for k, other in enumerate(all_obstacles)),
+        *((f"body.{k + 1}", k, body.own_name) for k, body in enumerate(all_bodies)),
+        *((f"obstacle.{k + 1}", -1 - k, other.own_name) for k, other in enumerate(all_obstacles)),
     ]:
         if name in index:
             raise BadInput(
@@ -429,9 +431,7 @@ def _names(all_bodies: list[Body], all_obstacles: list[Obstacle]) -> dict[str, i
 # ---- contact
 
 
-def _own_of_obstacles(
-    tables: list[ObstacleTable], bodies_count: int
-) -> dict[tuple[int, int], Pair]:
+def _own_of_obstacles(tables: list[Obstacle], bodies_count: int) -> dict[tuple[int, int], Pair]:
     """Returns the contact parameters in [[obstacle]] tables, as exceptions for every body."""
     pairs: dict[tuple[int, int], Pair] = {}
     for k, table in enumerate(tables):
@@ -542,7 +542,7 @@ def _apart(scene: Scene) -> None:
             f"body.{i + 1}",
             body,
             f"body.{j + 1}",
-            other.name,
+            other.own_name,
             gap_between(placed[i], placed[j]),
             _sinks(scene),
             _units(scene, i + 1, body) or _units(scene, j + 1, other),
@@ -554,7 +554,7 @@ def _apart(scene: Scene) -> None:
             f"body.{i}",
             body,
             f"obstacle.{j}",
-            other.name,
+            other.own_name,
             gap_to_obstacle(body.placed, other),
             _sinks(scene),
             _units(scene, i, body),
@@ -582,7 +582,7 @@ def _refuse_overlap(
 ) -> None:
     if gap < -sinks * body.outline.half_thickness:
         raise BadInput(
-            f"{path}.position: '{body.name}' overlaps '{other}' ({other_path}) by {-gap:.3g} m at the start "
+            f"{path}.position: '{body.own_name}' overlaps '{other}' ({other_path}) by {-gap:.3g} m at the start "
             f"(accepted: apart or touching{'' if other_path.startswith('body') else ', on the side that its normal points to'})"
             f"{hint}"
         )

@@ -44,9 +44,9 @@ def start_fields(
         for k, (body, field) in enumerate(zip(scene.bodies, fields)):
             if field:
                 plane = scene.dimension is PLANE_STRAIN
-                turn = rotation(body.angle) if plane else np.eye(nodes.shape[2])
+                turn = rotation(body.start_angle) if plane else np.eye(nodes.shape[2])
                 mine = regions == k
-                place = (nodes[mine] - centres[k]) @ turn.T + body.position
+                place = (nodes[mine] - centres[k]) @ turn.T + body.start_position
                 values[mine] = field(place.reshape(-1, nodes.shape[2])).reshape(place.shape)
         # of each element the components of all nodes along x, then y, z
         listed = values.transpose(0, 2, 1).ravel()
