@@ -42,7 +42,7 @@ ALTERATIONS = (
     ("report/report.py", '"peak force", f"kN{per}", 1e-3', '"peak force", f"kN{per}", 1e3'),
     ("running/forecast.py", "(1 - at.share) / (at.share - since.share)", "1 / (at.share - since.share)"),
     ("scenes/approach.py", "arm[0] * n[1] - arm[1] * n[0]", "arm[0] * n[1] + arm[1] * n[0]"),
-    ("scenes/bodies.py", "math.sqrt(wave / self.density) / (2 * self", "math.sqrt(wave / self.density) / (self"),
+    ("input/materials.py", "math.sqrt(wave / self.density) / thickness", "math.sqrt(wave / self.density) / (2 * thickness)"),
     ("scenes/front.py", "min(self.tau / STEEPNESS, LONGEST", "max(self.tau / STEEPNESS, LONGEST"),
     ("scenes/sizes.py", "1.31 * share**0.4", "1.31 * share**0.2"),
     ("scenes/sizes.py", "0.01 * max(self._speed_along", "0.1 * max(self._speed_along"),

@@ -143,7 +143,7 @@ class Scene(models.Top):
             reading.read(tables | {"body": others}, self.folder, "scene").bodies
         ):
             for name in [name for other, name in places if other == k]:
-                low, high = body.box(self.kind)
+                low, high = body.box()
                 entry, table = f"body.{k + 1}.{name}", tables["body"][k]
                 table[name] = place_functions.tabulated(entry, table[name], low, high)
 

@@ -179,7 +179,8 @@ def test_element_sizes_of_a_mesh_from_a_file_are_its_own(plane, key, value):
     with pytest.raises(BadInput, match=f"^{key}: '{value}' changes nothing"):
         read(tables(body, obstacles=[low], gravity=9.81, **{key: value}), plane, "x")
     both = read(tables(body | {key: 0}, BALL, **{key: value}), plane, "x")
-    assert getattr(both.bodies[0], key) == 0 and getattr(both.bodies[1], key) == value
+    size = {"mesh_size": "bulk_size", "contact_mesh_size": "contact_size"}[key]
+    assert getattr(both.bodies[0], size) == 0 and getattr(both.bodies[1], size) == value
     used = assembly.assemble(read(tables(body, BALL), plane, "x")).used["body"]
     assert key not in used[0] and used[1][key] > 0
 
@@ -327,7 +328,7 @@ def test_a_file_in_millimetres_has_a_scale(tmp_path):
             "velocity": [0, -1]}
     built_body = read(tables(body, obstacles=[FLOOR]), tmp_path, "x").bodies[0]
     assert built_body.outline.disc[1] == pytest.approx(0.05, rel=1e-9)
-    assert np.ptp(built_body.mesh.points, axis=0) == pytest.approx([0.1, 0.1], rel=0.05)
+    assert np.ptp(built_body.file_mesh.points, axis=0) == pytest.approx([0.1, 0.1], rel=0.05)
     assert abs(built_body.outline.disc[0]).max() < 1e-12
     revolved = body | {"file": "half.msh", "position": 0.06, "velocity": -1}
     entries = tables(revolved, obstacles=[FLOOR], dimension="axisymmetric")

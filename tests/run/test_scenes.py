@@ -204,7 +204,7 @@ def test_bodies_are_drawn_where_they_are(mine):
     x_min, x_max, *_ = bodies.limits([figures.deformed(vtu.read(path), False)])
     xs = [np.interp(t, result.history["t"], result.history[f"x_{b}"]) for b in (1, 2)]
     assert points[:, 0].min() == pytest.approx(xs[0] - 0.05, abs=0.004) and x_min < points[:, 0].min() < points[:, 0].max() < x_max
-    assert bodies.obstacles_of(result.scene)[0].velocity.tolist() == [-1, 0]
+    assert bodies.obstacles_of(result.scene)[0].start_velocity.tolist() == [-1, 0]
 
 
 # ---- what is refused

@@ -78,7 +78,7 @@ def test_the_mean_of_the_field_is_the_velocity_of_the_body():
     body = field.checked().bodies[0]
     assert body.start_velocity == pytest.approx([1, -8 - 100 * 0.05**2 / 4], rel=2e-3)
     place = np.array([[0.03, 0.06]])
-    assert body.start_velocity + body.initial_velocity(place)[0] == pytest.approx([1, -8.09])
+    assert body.start_velocity + body.fields["initial_velocity"](place)[0] == pytest.approx([1, -8.09])
 
 
 def test_a_function_and_its_table_are_the_same_scene(tmp_path):

@@ -1,18 +1,42 @@
-"""Bodies: the entries that all shapes have. The shapes are in shapes.py. Units are SI."""
+"""Bodies: what all shapes have (docs/how-to/scenes.md). The shapes are in shapes.py. Units are SI.
+
+A body in a scene has an outline or a mesh about its centre, a material, a place and a motion at the
+start.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
-from typing import Annotated, Any, ClassVar
+from functools import cached_property
+from typing import Annotated, Any, ClassVar, Self
 
+import numpy as np
 from pydantic import BeforeValidator, model_validator
 
-from ..failure import BadInput, brief
-from ..geometry.limits import LONGEST
-from .conditions import Load, Support
+from ..failure import BadInput, brief, gathered
+from ..geometry import place_functions, tumbling
+from ..geometry.limits import LONGEST, SHORTEST
+from ..geometry.outlines import Loop, Outline, Shape, Turn
+from ..geometry.place_functions import Field
+from ..mesh import mesh, revolution, solids
+from ..mesh.solid_file import GEOMETRIES
+from ..mesh.solid_mesh import SolidMesh
+from ..mesh.solids import Solid
+from .conditions import Load, Support, refuse_mixed_gases
 from .dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
 from .entries import several
-from .materials import LAWS, MATERIAL, NOT_RIGID, OF_BODIES, Material, OfMaterial
+from .materials import (
+    LAWS,
+    MATERIAL,
+    NOT_RIGID,
+    OF_BODIES,
+    Material,
+    OfMaterial,
+    accepted,
+    completed,
+    rigid,
+)
 from .parameter import Parameter, real
 from .rules import (
     MOST_TURN,
@@ -27,9 +51,13 @@ from .rules import (
     number,
 )
 
-__all__ = ["Body", "Drawn", "FIELDS", "Hollow"]
+__all__ = ["Body", "Drawn", "FIELDS", "Hollow", "SIZES"]
 
 PLACEMENTS = ("centroid", "as-drawn")
+SIZES = ("mesh_size", "contact_mesh_size")
+MEAN = 24  # number of points along an axis from which the mean of a field follows
+BESIDE = 0.01  # distance of the box of a body from its sampled points, over its extents
+FINEST = 1 / 20000  # smallest element size over the half thickness of a body
 MOST_STRETCH = 20.0  # largest accepted ratio of the lengths of an element
 FIELDS = ("initial_velocity", "initial_displacement")  # entries that are functions of place
 
@@ -163,16 +191,326 @@ class Body(OfMaterial):
         needed = {name for name in MATERIAL if law.model_fields[name].is_required()}
         return law(**own) if needed | {"law", "nu"} <= set(own) else None
 
-    @property
-    def sizes(self) -> list[Any]:
-        """The values of the shape's own entries, in the order of the model."""
-        return [
-            getattr(self, name) for name in type(self).model_fields if name not in Body.model_fields
-        ]
-
     def table(self) -> dict[str, Any]:
         """The table `[[body]]`."""
         return {"shape": self.shape} | super().table()
+
+    # ---- in a scene
+
+    @property
+    def own_name(self) -> str:
+        """Its name, body2 without one."""
+        return self.name or self.entry.replace(".", "")
+
+    @property
+    def dimension(self) -> Dimension:
+        """The dimension of its scene."""
+        return self.context.dimension
+
+    @property
+    def supports(self) -> list[Support]:
+        """Its supports."""
+        return self.support or []
+
+    @property
+    def loads(self) -> list[Load]:
+        """Its loads."""
+        return self.load or []
+
+    def loops(self) -> tuple[Loop, ...]:
+        """The loops of its outline in the plane, or of its section to the right of the axis of
+        revolution or over it, in the coordinates of the drawing.
+        """
+        raise NotImplementedError
+
+    def solid(self) -> solids.Shape:
+        """Its shape in space, about its centre of volume."""
+        raise NotImplementedError
+
+    @cached_property
+    def drawn(self) -> tuple[Shape, mesh.Mesh | SolidMesh | None, np.ndarray]:
+        """Its outline, the mesh if a file or arrays contain one, and the centre (axes,) [m] of area or
+        volume in the coordinates of the drawing. Outline and mesh are about this centre.
+        """
+        if self.dimension is SOLID:
+            return Solid(self.solid(), np.zeros(3), np.eye(3)), None, np.zeros(3)
+        loops = self.loops()
+        if self.dimension is AXISYMMETRIC and len(loops) == 1:
+            outline, centre = revolution.section(loops[0])
+            return outline, None, centre
+        centre = np.zeros(2) if self.dimension is AXISYMMETRIC else Outline(loops).area_centre
+        return Outline(loops).placed(-centre, 0.0), None, centre
+
+    @property
+    def outline(self) -> Shape:
+        """Its outline, or its surface, about its centre and not turned."""
+        return self.drawn[0]
+
+    @property
+    def file_mesh(self) -> mesh.Mesh | SolidMesh | None:
+        """The mesh that a file or arrays contain, about its centre and not turned."""
+        return self.drawn[1]
+
+    @cached_property
+    def start_position(self) -> np.ndarray:
+        """The position (axes,) [m] of its centre at the start."""
+        return np.array(self.position or [0.0] * self.dimension.axes)
+
+    @cached_property
+    def start_angle(self) -> Turn:
+        """The angle [rad] at the start, in space a vector."""
+        if self.dimension is SOLID:
+            about_z = None if self.angle is None else [0.0, 0.0, self.angle]
+            return np.radians(about_z or self.turn or [0.0, 0.0, 0.0])
+        return math.radians(self.angle or 0.0)
+
+    @cached_property
+    def start_spin(self) -> Turn:
+        """The angular velocity [rad/s] at the start, in space a vector."""
+        return np.array(self.spin or [0.0] * 3) if self.dimension is SOLID else self.spin or 0.0
+
+    @cached_property
+    def start_velocity(self) -> np.ndarray:
+        """The velocity (axes,) [m/s] at the start, with the mean of the entry initial_velocity."""
+        axes = self.dimension.axes
+        velocity = np.array(self.velocity or [0.0] * axes)
+        if self.speed is not None and self.direction is not None:
+            along = [_sin(self.direction + 90), _sin(self.direction), 0.0]
+            velocity = self.speed * np.array(along[:axes])
+            if self.dimension is AXISYMMETRIC and velocity[0]:
+                raise BadInput(
+                    f"{self.at('direction')}: {self.direction:g} leads off the axis of revolution (accepted: 90 or -90)"
+                )
+        return velocity + self._mean_of_field if self._entered_fields else velocity
+
+    @cached_property
+    def _entered_fields(self) -> dict[str, Field]:
+        axes = self.dimension.axes
+        return {
+            name: place_functions.of_entry(self.at(name), getattr(self, name), axes)
+            for name in FIELDS
+            if name in self
+        }
+
+    @cached_property
+    def _mean_of_field(self) -> np.ndarray:
+        """The mean (axes,) [m/s] of the entry initial_velocity, for the estimate of when and how the
+        body comes into contact. Raises BadInput if a field of the body is not finite.
+        """
+        mean = np.zeros(self.dimension.axes)
+        low, high = self.box()
+        grid = np.meshgrid(*(np.linspace(*ends, MEAN) for ends in zip(low, high)))
+        points = np.stack(grid, axis=-1).reshape(-1, len(low))
+        points = points[self.placed.gap(points) < 0]
+        values = {name: field(points) for name, field in self._entered_fields.items()}
+        if "initial_velocity" in values:
+            of_revolution = self.dimension is AXISYMMETRIC
+            weight = points[:, 0] if of_revolution else np.ones(len(points))
+            mean = np.average(values["initial_velocity"], axis=0, weights=weight)
+            if of_revolution:
+                mean[0] = 0.0
+        return mean
+
+    @cached_property
+    def fields(self) -> dict[str, Field]:
+        """The velocity [m/s] of its points beside start_velocity, and their displacement [m], at the
+        start, by the names of the entries.
+        """
+        fields = dict(self._entered_fields)
+        if entered := fields.get("initial_velocity"):
+            mean = self._mean_of_field
+            rest = Field(entered.entry, lambda places: entered.at(places) - mean)
+            fields["initial_velocity"] = rest
+        return fields
+
+    @cached_property
+    def made_of(self) -> Material:
+        """Its material: its own entries, else those at the top of the scene, else defaults."""
+        top = self.context.top
+        assert isinstance(top, OfMaterial)
+        if not self.rigid:
+            return completed(self, top)
+        if not self.mass and "density" not in self and "density" not in top:
+            raise BadInput(
+                f"{self.at('density')}: is missing, here and at the top of the file (accepted: "
+                f"{accepted('density')}, or mass)"
+            )
+        # For a body of revolution with a mass this density is only a scale.
+        by_mass = self.mass / self.outline.content if self.mass else None
+        return rigid(float(by_mass or self.density or top.density or 0.0))
+
+    def _size(self, name: str) -> float:
+        """An element size [m] of the body, else that at the top of the scene; 0 is automatic."""
+        own = getattr(self, name)
+        if own is None and not self.file_mesh:
+            own = getattr(self.context.top, name)
+        return float(own or 0.0)
+
+    @property
+    def bulk_size(self) -> float:
+        """The element size [m] in the bulk; 0 if it is automatic or that of a file."""
+        return self._size("mesh_size")
+
+    @property
+    def contact_size(self) -> float:
+        """The element size [m] where contact may occur; 0 if it is automatic or that of a file."""
+        return self._size("contact_mesh_size")
+
+    @property
+    def moments(self) -> tuple[float, ...]:
+        """The moments of the entry `inertia` of a rigid body, 0 without one, ordered as in
+        edp/program/input/conditions.idp.
+
+        In the plane this is the polar moment of inertia. In space the entry holds moments about the
+        body's own axes, and the result holds the integrals of rho X_i X_j about the centre, in the
+        scene's axes: 11, 22, 33, 12, 23, 13.
+        """
+        if "inertia" not in self:
+            return (0.0,) * 6
+        if self.dimension is AXISYMMETRIC:
+            raise BadInput(
+                f"{self.at('inertia')}: no body of revolution turns in its scene (accepted: without inertia)"
+            )
+        if self.dimension is PLANE_STRAIN:
+            return (float(np.array(self.inertia)), *(0.0,) * 5)
+        about = np.array(self.inertia)
+        own = about.sum() / 2 - about
+        if not (own > 0).all():
+            raise BadInput(
+                f"{self.at('inertia')}: '{self.value_text('inertia')}' has one that is no less than the others together "
+                f"(accepted: moments about x, y, z of a body that is nowhere flat)"
+            )
+        turn = tumbling.rotation(np.asarray(self.start_angle))
+        E = turn @ np.diag(own) @ turn.T
+        return tuple(float(E[pair]) for pair in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)))
+
+    @property
+    def moduli(self) -> tuple[float, float]:
+        """lambda + 2 mu and mu [Pa] in a wave across the body."""
+        return self.made_of.moduli(2 * self.outline.half_thickness)
+
+    @property
+    def stiffness(self) -> float:
+        """Young's modulus [Pa] in an impact, over two, with the stiffening by damping; infinite for a
+        rigid body.
+        """
+        return math.inf if self.rigid else self.moduli[1] * (1 + self.made_of.nu)
+
+    @property
+    def wave_speed(self) -> float:
+        """The speed c [m/s] of a plane pressure wave, sqrt((lambda + 2 mu)/rho)."""
+        return math.sqrt(self.moduli[0] / self.made_of.density)
+
+    @property
+    def driven(self) -> bool:
+        """Whether a support moves the body, or a prescribed stress loads it (a gas does not
+        count).
+        """
+        return any(support.moves for support in self.supports) or any(
+            load.kind != "gas" and load.largest > 0 for load in self.loads
+        )
+
+    @property
+    def inflated(self) -> bool:
+        """Whether the given shape is that under the gases in the body."""
+        pressed = not self.rigid and any(load.gas_numbers[0] for load in self.loads)
+        return pressed and any(load.inflated for load in self.loads)
+
+    @property
+    def has_fields(self) -> bool:
+        """Whether its points have velocities or displacements of their own at the start."""
+        return bool(self.fields)
+
+    @property
+    def at_mean_velocity(self) -> Self:
+        """The body with the mean velocity of its support on the way to the displacement farthest
+        from the start. A body without supports is unchanged.
+        """
+        ways = [support.path() for support in self.supports]
+        if not ways:
+            return self
+        displacement, when = max(ways, key=lambda path: float(np.linalg.norm(path[0])))
+        velocity = displacement / when if when > 0 else np.zeros_like(self.start_velocity)
+        still = {"start_velocity": velocity, "start_spin": 0 * self.start_spin}
+        return self.model_copy(update=still)
+
+    @property
+    def sides(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """The boundary edges or faces of a body from a file, None without a file: corners (f, axes,
+        axes), about its centre and not turned, and whether each is contact boundary (f,).
+        """
+        geometry = isinstance(self.outline, Solid) and self.outline.geometry
+        file_mesh = geometry.coarse if geometry else self.file_mesh
+        if not file_mesh:
+            return None
+        outer = file_mesh.labels != mesh.AXIS
+        corners = file_mesh.faces if isinstance(file_mesh, SolidMesh) else file_mesh.edges
+        return file_mesh.points[corners[outer]], file_mesh.labels[outer] == mesh.FREE
+
+    @property
+    def flat_outline(self) -> Outline:
+        """The outline of a body in the plane or of revolution."""
+        assert isinstance(self.outline, Outline)
+        return self.outline
+
+    @property
+    def placed(self) -> Shape:
+        """The outline at its position at the start."""
+        return self.placed_at(0.0, self.start_position)
+
+    def box(self) -> np.ndarray:
+        """Two corners (2, axes) [m] of a box that holds the body at the start, of revolution its half
+        x >= 0.
+        """
+        points = self.placed.points
+        corners = np.array([points.min(axis=0), points.max(axis=0)])
+        corners += np.outer([-1, 1], BESIDE * np.ptp(points, axis=0))
+        if self.dimension is AXISYMMETRIC:
+            corners[0, 0] = max(corners[0, 0], 0.0)
+        return corners
+
+    def placed_at(self, t: float, centre: np.ndarray) -> Shape:
+        """Returns the outline with its centre at `centre`, turned as the body is at time t [s] in
+        free motion.
+        """
+        return self.outline.placed(
+            centre, self.outline.turned(self.start_angle, self.start_spin, t)
+        )
+
+    def check(self) -> None:
+        """Raises BadInput if its entries do not agree with each other in the scene."""
+        self._check_sizes()
+        _ = self.made_of, self.moments
+        _ = self.start_velocity
+        gathered([support.check for support in self.supports])
+        gathered([load.check for load in self.loads])
+        refuse_mixed_gases(self.loads)
+
+    def _check_sizes(self) -> None:
+        half = self.outline.half_thickness
+        if not half >= SHORTEST:
+            raise BadInput(
+                f"{self.entry}: is {2 * half:.3g} m thick (accepted: from {2 * SHORTEST:g} m)"
+            )
+        sizes = (self.bulk_size, self.contact_size)
+        if 0 < sizes[0] < sizes[1]:
+            raise BadInput(
+                f"{self.at('contact_mesh_size')}: {sizes[1]:g} is larger than mesh_size {sizes[0]:g}"
+            )
+        low, high = half * FINEST, 2 * self.outline.coarsest
+        for name, size in zip(SIZES, sizes):
+            if size and not low <= size <= high * (1 + 1e-9):
+                raise BadInput(
+                    f"{self.at(name)}: {size:g} does not fit the thickness of '{self.own_name}' (accepted: 0, or from "
+                    f"{low:.3g} to {high:.3g})"
+                )
+        own = [name for name in (*SIZES, "mesh_stretch") if getattr(self, name)]
+        if self.file_mesh and own:
+            raise BadInput(
+                f"{self.at(own[0])}: '{self.value_text(own[0])}' for a mesh from a file, "
+                f"which has its own element sizes (accepted: {', '.join(SIZES)} where gmsh makes "
+                f"the mesh: of a shape, or of a geometry, {', '.join(GEOMETRIES)})"
+            )
 
 
 class Drawn(Body):
@@ -190,6 +528,11 @@ class Drawn(Body):
     def is_placed_as_drawn(self) -> bool:
         """Whether `position` is that of the drawing's origin."""
         return self.placement == "as-drawn"
+
+    @cached_property
+    def start_position(self) -> np.ndarray:
+        position = np.array(self.position or [0.0] * self.dimension.axes)
+        return position + self.drawn[2] if self.is_placed_as_drawn else position
 
     def refusals(self) -> Iterator[tuple[str, str]]:
         yield from super().refusals()
@@ -209,3 +552,12 @@ class Hollow(Body):
         if self.inner_radius >= self.radius:
             inner, outer = self.inner_radius, self.radius
             yield "inner_radius", f": {inner:g} is not less than the radius {outer:g}"
+
+
+def _sin(degrees: float) -> float:
+    """The sine of an angle in degrees, exact at multiples of a right angle."""
+    return (
+        (0.0, 1.0, 0.0, -1.0)[int(degrees // 90) % 4]
+        if degrees % 90 == 0
+        else math.sin(math.radians(degrees))
+    )

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from ..failure import brief
+from ..failure import BadInput, brief
 from .dimension import Dimension
 from .entries import Entries, no_more, rule_of
 from .parameter import real, word
@@ -32,6 +32,9 @@ __all__ = [
     "Ogden",
     "STIFFEST",
     "SaintVenantKirchhoff",
+    "accepted",
+    "completed",
+    "rigid",
 ]
 
 OF_BODIES = ()  # of no script: entries of bodies
@@ -160,13 +163,11 @@ class Material(OfMaterial):
                 if entry in self and entry not in taken:
                     yield entry, f": of law = {law}, not of {self.law} (accepted: without it)"
                 if entry not in self and entry in taken:
-                    accepted = "" if not (rule := rule_of(OfMaterial, entry)) else rule.accepted
-                    yield entry, f": is missing, of law = {self.law} (accepted: {accepted})"
+                    yield entry, f": is missing, of law = {self.law} (accepted: {accepted(entry)})"
         if self.law == "incompressible" and self.nu != 0.5:
             yield "nu", f": {self.nu:g} of law = incompressible (accepted: 0.5)"
         elif 0.4999 < self.nu < 0.5:
-            accepted = "0 to 0.4999, or 0.5: J = 1"
-            yield "nu", f": {self.nu:g} is out of range (accepted: {accepted})"
+            yield "nu", f": {self.nu:g} is out of range (accepted: 0 to 0.4999, or 0.5: J = 1)"
         limit = self.nu / (1 - 2 * self.nu) if self.nu < 0.5 else np.inf  # lambda / (2 mu)
         if self.law == "mooney-rivlin" and (self.share or 0.0) > limit:
             yield (
@@ -283,3 +284,60 @@ MATERIAL = tuple(OfMaterial.model_fields)
 NOT_RIGID = tuple(
     name for name in MATERIAL if name != "density"
 )  # entries that a rigid body has not
+
+
+def accepted(name: str) -> str:
+    """Returns the accepted values of an entry, as messages print them."""
+    rule = rule_of(OfMaterial, name)
+    return rule.accepted if rule else ""
+
+
+NEEDED = ("law", "young", "nu", "density")
+UNDAMPED: dict[str, Any] = dict.fromkeys((*DAMPING, "loss"), 0.0)
+
+
+def rigid(density: float) -> Material:
+    """Returns the material of a rigid body [kg/m3]. Its `young` follows from the other bodies."""
+    return Material.model_construct(law="svk", young=1.0, nu=0.0, density=density, **UNDAMPED)
+
+
+def completed(table: OfMaterial, top: OfMaterial) -> Material:
+    """Returns the material of a body: its own entries, else those at the top of the scene, else
+    defaults. Raises BadInput if one without a default is in neither.
+
+    A viscosity of the body replaces a loss at the top of the file, and a loss of the body a
+    viscosity there; the law of a body replaces the entries of another law there.
+    """
+    law = table.law or top.law
+    of_law = LAW_ENTRIES.get(law or "", ())
+    has_terms = law == "ogden" and all(name in table or name in top for name in of_law)
+    needed = [name for name in NEEDED if not (name == "young" and has_terms)]
+    missing = [name for name in needed if name not in table and name not in top]
+    if missing:
+        raise BadInput(
+            *(
+                f"{table.at(name)}: is missing, here and at the top of the file (accepted: "
+                f"{accepted(name)})"
+                for name in missing
+            )
+        )
+    values: dict[str, Any] = dict.fromkeys(MATERIAL) | UNDAMPED
+    for name in MATERIAL:
+        other = {"viscosity": "loss", "loss": "viscosity"}.get(name)
+        of_another_law = table.law not in (None, top.law) and name in ("share", "alpha", "mu")
+        if name in table:
+            values[name] = getattr(table, name)
+        elif name in top and not (other and other in table) and not of_another_law:
+            values[name] = getattr(top, name)
+    if values["relaxation_modulus"] == 0 and "relaxation_modulus" in table:
+        values["relaxation_time"] = 0.0
+    if (values["relaxation_modulus"] > 0) != (values["relaxation_time"] > 0):
+        raise BadInput(
+            f"{table.at('relaxation_time')}: {values['relaxation_time']:g} s with relaxation_modulus "
+            f"{values['relaxation_modulus']:g} Pa (accepted: both above 0, or none)"
+        )
+    if has_terms and "mu" in table and "young" not in table:
+        values["young"] = None  # that at the top is of other bodies
+    if has_terms and values["young"] is None:
+        values["young"] = Material.model_construct(**values).stiffness_of_terms
+    return Material.model_construct(**values)

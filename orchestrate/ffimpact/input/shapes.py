@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cached_property
 from typing import Annotated
 
+import numpy as np
 from pydantic import Field
 
+from ..geometry.outlines import Loop, Shape, circle_loop, ellipse_loop
+from ..mesh import flat, mesh, revolution, solids
+from ..mesh.solid_mesh import SolidMesh
 from .bodies import Body, Drawn, Hollow
 from .dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID
 from .rules import Parts, Points, Polygons, Rows, Text, Vector, number
@@ -35,6 +40,9 @@ class Disc(Body):
     shape = "disc"
     radius: Annotated[float, number(meaning="radius")]
 
+    def loops(self) -> tuple[Loop, ...]:
+        return (circle_loop(self.radius),)
+
 
 class Ellipse(Body):
     """An ellipse in plane strain."""
@@ -44,6 +52,9 @@ class Ellipse(Body):
         list[float], Vector("half its width and half its height [m]", 1e-9, count=2)
     ]
 
+    def loops(self) -> tuple[Loop, ...]:
+        return (ellipse_loop(*self.semi_axes),)
+
 
 class Rectangle(Body):
     """A rectangle in plane strain."""
@@ -52,11 +63,18 @@ class Rectangle(Body):
     width: Annotated[float, number(meaning="width")]
     height: Annotated[float, number(meaning="height")]
 
+    def loops(self) -> tuple[Loop, ...]:
+        half = np.array([self.width, self.height]) / 2
+        return (Loop(half * [[-1, -1], [1, -1], [1, 1], [-1, 1]]),)
+
 
 class Ring(Hollow):
     """A ring in plane strain."""
 
     shape = "ring"
+
+    def loops(self) -> tuple[Loop, ...]:
+        return circle_loop(self.radius), circle_loop(self.inner_radius)
 
 
 class Polygon(Drawn):
@@ -71,6 +89,14 @@ class Polygon(Drawn):
     vertices: Annotated[list[list[float]], Points(3, "corners [m], each once, in order")]
     holes: Annotated[list[list[list[float]]] | None, Polygons("holes in it")] = None
 
+    def loops(self) -> tuple[Loop, ...]:
+        path, outer = self.at("vertices"), np.array(self.vertices)
+        if self.dimension is AXISYMMETRIC:
+            return (revolution.polygon_section(path, outer),)
+        holes = enumerate(self.holes or [], 1)
+        named = [(f"{self.at('holes')}.{k}", np.array(hole)) for k, hole in holes]
+        return flat.polygon_loops([(path, outer), *named])
+
 
 class Ball(Body):
     """A ball, as a body of revolution or in space."""
@@ -79,12 +105,24 @@ class Ball(Body):
     dimensions = (AXISYMMETRIC, SOLID)
     radius: Annotated[float, number(meaning="radius")]
 
+    def loops(self) -> tuple[Loop, ...]:
+        return (circle_loop(self.radius),)
+
+    def solid(self) -> solids.Shape:
+        return solids.ball(self.radius)
+
 
 class Shell(Hollow):
     """A hollow ball, of revolution or in space."""
 
     shape = "shell"
     dimensions = (AXISYMMETRIC, SOLID)
+
+    def loops(self) -> tuple[Loop, ...]:
+        return circle_loop(self.radius), circle_loop(self.inner_radius)
+
+    def solid(self) -> solids.Shape:
+        return solids.shell(self.radius, self.inner_radius)
 
 
 class Ellipsoid(Body):
@@ -93,6 +131,9 @@ class Ellipsoid(Body):
     shape = "ellipsoid"
     dimensions = (AXISYMMETRIC,)
     semi_axes: Annotated[list[float], Vector("radius and half the height [m]", 1e-9, count=2)]
+
+    def loops(self) -> tuple[Loop, ...]:
+        return (ellipse_loop(*self.semi_axes),)
 
 
 class Cylinder(Body):
@@ -103,6 +144,13 @@ class Cylinder(Body):
     radius: Annotated[float, number(meaning="radius")]
     height: Annotated[float, number(meaning="height")]
 
+    def loops(self) -> tuple[Loop, ...]:
+        corners = [[0, -1], [1, -1], [1, 1], [0, 1], [-1, 1], [-1, -1]]
+        return (Loop(np.array([self.radius, self.height / 2]) * corners),)
+
+    def solid(self) -> solids.Shape:
+        return solids.cylinder(self.radius, self.height)
+
 
 class Tube(Hollow):
     """A tube about the y axis, of revolution or in space."""
@@ -110,6 +158,13 @@ class Tube(Hollow):
     shape = "tube"
     dimensions = (AXISYMMETRIC, SOLID)
     height: Annotated[float, number(meaning="height")]
+
+    def loops(self) -> tuple[Loop, ...]:
+        inner, outer, half = self.inner_radius, self.radius, self.height / 2
+        return (Loop(np.array([[inner, -half], [outer, -half], [outer, half], [inner, half]])),)
+
+    def solid(self) -> solids.Shape:
+        return solids.tube(self.radius, self.inner_radius, self.height)
 
 
 class Torus(Body):
@@ -126,6 +181,9 @@ class Torus(Body):
             accepted = f"below radius, {self.radius:g} m"
             yield "section", f": {self.section:g} m reaches the axis (accepted: {accepted})"
 
+    def loops(self) -> tuple[Loop, ...]:
+        return (circle_loop(self.section).placed(np.array([self.radius, 0.0]), 0.0),)
+
 
 class Box(Body):
     """A box in space."""
@@ -135,6 +193,9 @@ class Box(Body):
     width: Annotated[float, number(meaning="along x")]
     height: Annotated[float, number(meaning="along y")]
     depth: Annotated[float, number(meaning="along z")]
+
+    def solid(self) -> solids.Shape:
+        return solids.box(np.array([self.width, self.height, self.depth]))
 
 
 class Mesh(Drawn):
@@ -179,6 +240,18 @@ class Mesh(Drawn):
             yield "file", f": stands beside {arrays[0]} (accepted: {accepted})"
         elif missing:
             yield missing[0], ": is missing (accepted: points and cells, or a file)"
+
+    @cached_property
+    def drawn(self) -> tuple[Shape, mesh.Mesh | SolidMesh | None, np.ndarray]:
+        folder = self.context.folder
+        if self.dimension is SOLID:
+            return solids.file_solid(self, folder)
+        if self.dimension is AXISYMMETRIC:
+            return revolution.file_section(self, folder)
+        made = flat.mesh_file(self, folder)
+        outline = flat.mesh_outline(made)
+        centre = outline.area_centre
+        return outline.placed(-centre, 0.0), made.moved(-centre), centre
 
 
 BODIES: dict[str, type[Body]] = {

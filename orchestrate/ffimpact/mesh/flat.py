@@ -1,11 +1,7 @@
-"""Shapes of bodies in the plane: outlines, or meshes of files, from `[[body]]` tables, in SI units.
+"""Outlines of bodies in the plane, and meshes of files, in SI units."""
 
-Outlines and meshes are given about the centroids of the bodies.
-"""
-
-import math
-from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,99 +10,39 @@ from ..geometry.outlines import (
     Loop,
     Outline,
     circle_loop,
-    ellipse_loop,
     polygon_loop,
     self_crossing,
 )
-from ..input.bodies import Body
-from ..input.parameter import Table
-from ..input.shapes import Mesh, Polygon
 from . import given, mesh, plane_file
 
-__all__ = ["check_simple", "mesh_file", "mesh_outline", "motion", "shape", "velocity"]
+if TYPE_CHECKING:
+    from ..input.shapes import Mesh
 
-LOOPS: dict[str, Callable[..., tuple[Loop, ...]]] = {
-    "disc": lambda radius: (circle_loop(radius),),
-    "ring": lambda radius, inner: (circle_loop(radius), circle_loop(inner)),
-    "ellipse": lambda semi_axes: (ellipse_loop(*semi_axes),),
-    "rectangle": lambda *sides: (Loop(np.array(sides) / 2 * [[-1, -1], [1, -1], [1, 1], [-1, 1]]),),
-}
+__all__ = ["check_simple", "mesh_file", "mesh_outline", "polygon_loops"]
 
 
-def shape(body: Body, folder: Path) -> tuple[Outline, mesh.Mesh | None, np.ndarray]:
-    """The outline of a body, its mesh if a file contains one, and the centroid (2,) [m].
-
-    Outline and mesh are about the centroid, which is in the coordinates of the drawing.
-    """
-    body_mesh = mesh_file(body, folder) if isinstance(body, Mesh) else None
-    outline = mesh_outline(body_mesh) if body_mesh else _outline(body)
-    centre = outline.area_centre
-    return outline.placed(-centre, 0.0), body_mesh and body_mesh.moved(-centre), centre
-
-
-def motion(body: Body) -> Table:
-    """The initial position (2,) [m], angle [rad], velocity (2,) [m/s] and spin [rad/s] of a body."""
-    return {
-        "start_position": np.array(body.position or [0.0, 0.0]),
-        "start_angle": math.radians(body.angle or 0.0),
-        "start_velocity": velocity(body, 2),
-        "start_spin": body.spin or 0.0,
-    }
-
-
-def velocity(body: Body, axes: int) -> np.ndarray:
-    """The initial velocity (axes,) [m/s] of a body, by velocity or by speed and direction."""
-    speed, degrees = body.speed, body.direction
-    if speed is None or degrees is None:
-        return np.array(body.velocity or [0.0] * axes)
-    return speed * np.array([_sin(degrees + 90), _sin(degrees), 0.0][:axes])
-
-
-def _sin(degrees: float) -> float:
-    """The sine of an angle in degrees, exact at multiples of a right angle."""
-    return (
-        (0.0, 1.0, 0.0, -1.0)[int(degrees // 90) % 4]
-        if degrees % 90 == 0
-        else math.sin(math.radians(degrees))
-    )
-
-
-# ---- shapes
-
-
-def _outline(body: Body) -> Outline:
-    if isinstance(body, Polygon):
-        return _polygon(body)
-    return Outline(LOOPS[body.shape](*body.sizes))
-
-
-def _polygon(body: Polygon) -> Outline:
-    """The outline of a polygon with holes.
+def polygon_loops(entries: list[tuple[str, np.ndarray]]) -> tuple[Loop, ...]:
+    """The loops of a polygon with holes: the entry and the corners of each, the outer one first.
 
     Raises BadInput if a polygon crosses itself, or if a hole is not inside the outer polygon and
     apart from the other holes.
     """
     import shapely  # imported here: other bodies do not need it
 
-    outer, holes = np.array(body.vertices), [np.array(hole) for hole in body.holes or []]
-    named = [
-        (body.at("vertices"), outer),
-        *((f"{body.at('holes')}.{k}", hole) for k, hole in enumerate(holes, 1)),
-    ]
-    for path, corners in named:
+    for path, corners in entries:
         check_simple(path, corners)
-    areas = [shapely.Polygon(corners) for _, corners in named]
-    for k, (path, _) in enumerate(named[1:], 1):
+    areas = [shapely.Polygon(corners) for _, corners in entries]
+    for k, (path, _) in enumerate(entries[1:], 1):
         if not areas[0].contains_properly(areas[k]):
             raise BadInput(
-                f"{path}: is not inside {named[0][0]} (accepted: holes that neither cross nor touch the outline)"
+                f"{path}: is not inside {entries[0][0]} (accepted: holes that neither cross nor touch the outline)"
             )
         for other in range(1, k):
             if areas[k].intersects(areas[other]):
                 raise BadInput(
-                    f"{path}: overlaps {named[other][0]} (accepted: holes apart from each other)"
+                    f"{path}: overlaps {entries[other][0]} (accepted: holes apart from each other)"
                 )
-    return Outline(tuple(polygon_loop(corners) for _, corners in named))
+    return tuple(polygon_loop(corners) for _, corners in entries)
 
 
 def check_simple(path: str, corners: np.ndarray) -> None:
@@ -129,7 +65,7 @@ def check_simple(path: str, corners: np.ndarray) -> None:
 # ---- mesh files
 
 
-def mesh_file(body: Mesh, folder: Path, of_revolution: bool = False) -> mesh.Mesh:
+def mesh_file(body: "Mesh", folder: Path, of_revolution: bool = False) -> mesh.Mesh:
     """The mesh of a body's file in m, with the centres of the circles on which its edges lie.
 
     The mesh is a whole body in the plane, half a meridian section with edges on the axis, or a
@@ -150,7 +86,7 @@ def mesh_file(body: Mesh, folder: Path, of_revolution: bool = False) -> mesh.Mes
     return _of_whole_body(body, body_mesh, of_revolution)
 
 
-def _of_whole_body(body: Mesh, body_mesh: mesh.Mesh, of_revolution: bool) -> mesh.Mesh:
+def _of_whole_body(body: "Mesh", body_mesh: mesh.Mesh, of_revolution: bool) -> mesh.Mesh:
     """The mesh in m. Raises BadInput if it is half a body and not `of_revolution`."""
     if not of_revolution and (body_mesh.labels == mesh.AXIS).any():
         raise BadInput(

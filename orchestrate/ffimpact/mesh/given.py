@@ -3,15 +3,17 @@ name. The part `contact` may come into contact (by default all of the boundary),
 is on the axis of revolution; all parts can have supports and loads.
 """
 
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
 from ..failure import BadInput
-from ..input.shapes import Mesh as Table
 from . import mesh, plane_file, solid_file
 from .mesh import AXIS, FREE, Mesh
 from .solid_mesh import SolidMesh, right_handed
+
+if TYPE_CHECKING:
+    from ..input.shapes import Mesh as Table
 
 __all__ = ["is_given", "plane", "solid"]
 
@@ -19,12 +21,12 @@ CONTACT, SYMMETRY = "contact", "symmetry"
 Made = TypeVar("Made", Mesh, SolidMesh)
 
 
-def is_given(body: Table) -> bool:
+def is_given(body: "Table") -> bool:
     """Whether a body has its mesh as arrays."""
     return body.points is not None
 
 
-def plane(body: Table) -> Mesh:
+def plane(body: "Table") -> Mesh:
     """The mesh of triangles of a body, lengths as given. Raises BadInput if it cannot be used."""
     points, triangles = _used(body, 3)
     triangles = mesh.counter_clockwise(points, triangles)
@@ -36,7 +38,7 @@ def plane(body: Table) -> Mesh:
         raise BadInput(f"{body.at('cells')}: {error}") from None
 
 
-def solid(body: Table) -> SolidMesh:
+def solid(body: "Table") -> SolidMesh:
     """The mesh of tetrahedra of a body, lengths as given. Raises BadInput if it cannot be used."""
     points, cells = _used(body, 4)
     cells = right_handed(points, cells)
@@ -49,7 +51,7 @@ def solid(body: Table) -> SolidMesh:
     return SolidMesh(points, cells, faces, labels, groups=groups)
 
 
-def _used(body: Table, corners: int) -> tuple[np.ndarray, np.ndarray]:
+def _used(body: "Table", corners: int) -> tuple[np.ndarray, np.ndarray]:
     """The points that cells use and the cells, whose numbers count these points."""
     points, cells = np.array(body.points), np.array(body.cells)
     axes, width = points.shape[1], cells.shape[1]
@@ -66,7 +68,9 @@ def _used(body: Table, corners: int) -> tuple[np.ndarray, np.ndarray]:
     return points[used], numbers.reshape(cells.shape)
 
 
-def _labels(body: Table, sides: np.ndarray, never: int) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+def _labels(
+    body: "Table", sides: np.ndarray, never: int
+) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     """The label of each boundary side, and the numbers of the sides of each part by name."""
     number = {frozenset(side): k for k, side in enumerate(_given_numbers(body)[sides].tolist())}
     groups = {}
@@ -85,6 +89,6 @@ def _labels(body: Table, sides: np.ndarray, never: int) -> tuple[np.ndarray, dic
     return labels, groups
 
 
-def _given_numbers(body: Table) -> np.ndarray:
+def _given_numbers(body: "Table") -> np.ndarray:
     """The number in the scene of each point that cells use."""
     return np.unique(np.array(body.cells))

@@ -1,13 +1,12 @@
 """Bodies of revolution about the axis x = 0: their meridian sections, in SI units.
 
-The sections are made from the `[[body]]` tables of a scene (docs: scenes). x is the radius, y the
-coordinate along the axis. A section is an Outline about the centre of volume that is symmetric
+x is the radius, y the coordinate along the axis. A section is an Outline about the centre of volume that is symmetric
 about x = 0; its half x >= 0 is meshed.
 """
 
-from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,97 +17,61 @@ from ..geometry.outlines import (
     TubeOutline,
     circle_loop,
     cross,
-    ellipse_loop,
     signed_area,
 )
-from ..input.bodies import Body
-from ..input.parameter import Table
-from ..input.shapes import Mesh, Polygon, Shell, Torus, Tube
 from . import flat, mesh
+
+if TYPE_CHECKING:
+    from ..input.shapes import Mesh
 
 __all__ = [
     "boundary",
     "closed_over_axis",
     "crossing_axis",
+    "file_section",
     "image",
     "mirrored",
-    "motion",
+    "polygon_section",
     "right_half",
-    "shape",
+    "section",
     "whole",
 ]
 
-LOOPS: dict[str, Callable[..., Loop]] = {
-    "ball": circle_loop,
-    "ellipsoid": lambda semi_axes: ellipse_loop(*semi_axes),
-    "cylinder": lambda r, height: Loop(
-        np.array([r, height / 2]) * [[0, -1], [1, -1], [1, 1], [0, 1], [-1, 1], [-1, -1]]
-    ),
-}
 
-
-def shape(body: Body, folder: Path) -> tuple[Outline, mesh.Mesh | None, np.ndarray]:
-    """The section of a body, the mesh of its half x >= 0 if a file contains one, and the centre.
+def file_section(body: "Mesh", folder: Path) -> tuple[Outline, mesh.Mesh, np.ndarray]:
+    """The section of a body from a file, the mesh of its half x >= 0, and the centre.
 
     Both are about the centre of volume (2,) [m], which is in the coordinates of the drawing.
     Raises BadInput if the body is not accepted.
     """
-    if isinstance(body, Mesh):
-        half = flat.mesh_file(body, folder, of_revolution=True)
-        centre = np.array([0.0, _centre_of_volume(half.points[half.triangles])])
-        if not (half.labels == mesh.AXIS).any():
-            return *_tube_mesh(body, half.moved(-centre)), centre
-        # Vertices on the axis get x = 0 exactly; in a file they lie there to round-off.
-        half.points[np.unique(half.edges[half.labels == mesh.AXIS]), 0] = 0.0
-        half = half.moved(-centre)
-        return flat.mesh_outline(whole(half)), half, centre
-    if isinstance(body, Shell):
-        loops = (circle_loop(body.radius), circle_loop(body.inner_radius))
-        return Outline(loops), None, np.zeros(2)
-    loop = _tube_loop(body) or _loop(body)
+    half = flat.mesh_file(body, folder, of_revolution=True)
+    centre = np.array([0.0, _centre_of_volume(half.points[half.triangles])])
+    if not (half.labels == mesh.AXIS).any():
+        return *_tube_mesh(body, half.moved(-centre)), centre
+    # Vertices on the axis get x = 0 exactly; in a file they lie there to round-off.
+    half.points[np.unique(half.edges[half.labels == mesh.AXIS]), 0] = 0.0
+    half = half.moved(-centre)
+    return flat.mesh_outline(whole(half)), half, centre
+
+
+def section(loop: Loop) -> tuple[Outline, np.ndarray]:
+    """The section of a body with a loop to the right of the axis, or one over the axis, about its
+    centre of volume, and this centre (2,) [m].
+    """
     centre = np.array([0.0, _loop_centre(loop)])
     if loop.polygon[:, 0].min() > 0:
-        both = (loop.placed(-centre, 0.0), image(loop).placed(-centre, 0.0))
-        return TubeOutline(both), None, centre
-    return Outline((loop.placed(-centre, 0.0),)), None, centre
+        return TubeOutline((loop.placed(-centre, 0.0), image(loop).placed(-centre, 0.0))), centre
+    return Outline((loop.placed(-centre, 0.0),)), centre
 
 
-def motion(body: Body) -> Table:
-    """The initial position (2,) [m] and velocity (2,) [m/s] of a body; angle and spin are 0.
-
-    Raises BadInput if the velocity is not along the axis.
+def polygon_section(path: str, right: np.ndarray) -> Loop:
+    """The loop of a chain (n, 2) [m] of the entry `path`: to the right of the axis, or from the axis
+    to the axis, with its mirror image.
     """
-    velocity = flat.velocity(body, 2)
-    if velocity[0]:
-        raise BadInput(
-            f"{body.at('direction')}: {body.direction:g} leads off the axis of revolution (accepted: 90 or -90)"
-        )
-    return {
-        "start_position": np.array(body.position or [0.0, 0.0]),
-        "start_angle": 0.0,
-        "start_velocity": velocity,
-        "start_spin": 0.0,
-    }
-
-
-def _loop(body: Body) -> Loop:
-    """The outline of a section that reaches the axis, with corners where it crosses the axis."""
-    if isinstance(body, Polygon):
-        return Loop(closed_over_axis(body.at("vertices"), np.array(body.vertices)))
-    return LOOPS[body.shape](*body.sizes)
-
-
-def _tube_loop(body: Body) -> Loop | None:
-    """The loop to the right of the axis, of a section that does not reach the axis; else None."""
-    if isinstance(body, Torus):
-        return circle_loop(body.section).placed(np.array([body.radius, 0.0]), 0.0)
-    if isinstance(body, Tube):
-        inner, outer, half = body.inner_radius, body.radius, body.height / 2
-        return Loop(np.array([[inner, -half], [outer, -half], [outer, half], [inner, half]]))
-    if isinstance(body, Polygon) and (right := np.array(body.vertices))[:, 0].min() > 0:
-        flat.check_simple(body.at("vertices"), right)
-        return Loop(right if signed_area(right) > 0 else right[::-1])
-    return None
+    if right[:, 0].min() <= 0:
+        return Loop(closed_over_axis(path, right))
+    flat.check_simple(path, right)
+    return Loop(right if signed_area(right) > 0 else right[::-1])
 
 
 def image(loop: Loop) -> Loop:
@@ -118,7 +81,7 @@ def image(loop: Loop) -> Loop:
     return Loop(loop.corners[::-1] * [-1, 1])
 
 
-def _tube_mesh(body: Mesh, half: mesh.Mesh) -> tuple[TubeOutline, mesh.Mesh]:
+def _tube_mesh(body: "Mesh", half: mesh.Mesh) -> tuple[TubeOutline, mesh.Mesh]:
     """The section and the mesh of a body that does not reach the axis, from a file.
 
     Raises BadInput if the mesh is not wholly to the right of the axis, or if it has a hole.

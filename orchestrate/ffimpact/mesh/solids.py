@@ -1,7 +1,6 @@
 """Bodies in three dimensions: solids with signed distances, positions, motions and meshes.
 
-The solids are made from the `[[body]]` tables of a scene (docs: scenes), in SI units. y points up;
-x, y and z are right-handed.
+Units are SI. y points up; x, y and z are right-handed.
 """
 
 import math
@@ -17,15 +16,12 @@ import scipy
 from ..failure import BadInput
 from ..geometry import outlines, tumbling
 from ..geometry.outlines import Turn
-from ..input.bodies import Body
-from ..input.parameter import Table
-from ..input.shapes import Mesh
-from . import curved, flat, given, solid_file
+from . import curved, given, solid_file
 from .mesh import Sizes
 from .solid_mesh import MOST_CELLS, SolidMesh, expected_cells, mesh_shape
 
 if TYPE_CHECKING:
-    from ..scenes import bodies
+    from ..input.shapes import Mesh
 
 __all__ = [
     "Shape",
@@ -35,21 +31,13 @@ __all__ = [
     "cylinder",
     "distance_to_triangles",
     "distances_from",
+    "file_solid",
     "mesh_of",
-    "motion",
-    "shape",
     "shell",
     "surface",
     "tube",
 ]
 
-MADE: dict[str, Callable[..., "Shape"]] = {
-    "ball": lambda radius: ball(radius),
-    "box": lambda *extent: box(np.array(extent)),
-    "cylinder": lambda radius, height: cylinder(radius, height),
-    "shell": lambda radius, inner: shell(radius, inner),
-    "tube": lambda radius, inner, height: tube(radius, inner, height),
-}
 SAMPLES = 1500  # smallest number of points that represent a surface
 # Largest relative change of the volume of a geometry by flat elements on its roundings, relative to
 # the accuracy.
@@ -465,26 +453,27 @@ class Solid(outlines.Shape):
 
 
 def mesh_of(
-    body: "bodies.Body", sizes: Sizes | None, mirror_axes: tuple[int, ...], accuracy: float
+    name: str,
+    solid: Solid,
+    made: SolidMesh | None,
+    sizes: Sizes | None,
+    mirror_axes: tuple[int, ...],
+    accuracy: float,
 ) -> SolidMesh:
-    """The mesh of a body about its centre of volume, turned as at the start.
+    """The mesh of the body `name` about its centre of volume, turned as at the start.
 
-    The mesh is that of the body's file, or gmsh generates one with the element sizes `sizes`, which
+    The mesh is that of the body's file, `made`, or gmsh generates one with the element sizes `sizes`, which
     refer to the body before its rotation. `mirror_axes` contains the axes that are normal to planes of
     symmetry: only the part on the positive side of these planes is meshed. Raises BadInput if the
     mesh would have more than MOST_CELLS tetrahedra.
     """
-    solid = body.at(0.0, np.zeros(3))
-    assert isinstance(solid, Solid)
-    if isinstance(body.file_mesh, SolidMesh):
-        return _with_curves(
-            replace(body.file_mesh, points=body.file_mesh.points @ solid.rotation.T)
-        )
+    if made:
+        return _with_curves(replace(made, points=made.points @ solid.rotation.T))
     assert sizes  # which a body without a mesh has
     expected = expected_cells(solid.volume, sizes) / 2 ** len(mirror_axes)
     if expected > MOST_CELLS:
         raise BadInput(
-            f"mesh_size: '{body.own_name}' would have about {expected:.2g} tetrahedra (accepted: up to {MOST_CELLS}; larger "
+            f"mesh_size: '{name}' would have about {expected:.2g} tetrahedra (accepted: up to {MOST_CELLS}; larger "
             f"mesh_size, contact_mesh_size or accuracy)"
         )
     if solid.geometry:
@@ -509,20 +498,15 @@ def _with_curves(made: SolidMesh) -> SolidMesh:
     )
 
 
-# ---- tables
+# ---- files
 
 
-def shape(body: Body, folder: Path) -> tuple[Solid, SolidMesh | None, np.ndarray]:
-    """The solid of a body, the mesh if a file contains one, and the centre of volume (3,) [m].
+def file_solid(body: "Mesh", folder: Path) -> tuple[Solid, SolidMesh | None, np.ndarray]:
+    """The solid of a body from a file, the mesh if the file contains one, and the centre of volume
+    (3,) [m].
 
     Solid and mesh are about this centre, which is in the coordinates of the file.
     """
-    if isinstance(body, Mesh):
-        return _of_file(body, folder)
-    return Solid(MADE[body.shape](*body.sizes), np.zeros(3), np.eye(3)), None, np.zeros(3)
-
-
-def _of_file(body: Mesh, folder: Path) -> tuple[Solid, SolidMesh | None, np.ndarray]:
     name, scale = body.file, body.scale or 1.0
     if given.is_given(body):
         return _of_mesh(given.solid(body).scaled(scale))
@@ -561,15 +545,3 @@ def _of_mesh(made: SolidMesh) -> tuple[Solid, SolidMesh, np.ndarray]:
     centred = made.moved(-centre)
     shape = ball(sphere.radius) if sphere else surface(centred.points[centred.faces])
     return Solid(shape, np.zeros(3), np.eye(3)), centred, centre
-
-
-def motion(body: Body) -> Table:
-    """The initial position [m], rotation vector [rad], velocity [m/s] and spin [rad/s], each (3,)."""
-    none = [0.0, 0.0, 0.0]
-    turn = [0.0, 0.0, body.angle] if body.angle is not None else body.turn or none
-    return {
-        "start_position": np.array(body.position or none),
-        "start_angle": np.radians(turn),
-        "start_velocity": flat.velocity(body, 3),
-        "start_spin": np.array(body.spin or none),
-    }

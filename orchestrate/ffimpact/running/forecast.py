@@ -10,11 +10,11 @@ from itertools import chain
 
 from ..failure import Failure
 from ..freefem import freefem
+from ..input.bodies import SIZES
 from ..input.parameters import Value
 from ..output import estimate as estimates
 from ..progress import Line, muted
 from ..scene import Scene
-from ..scenes.bodies import SIZES
 from .plan import COST, LONG, Plan, duration, levels, measure
 
 __all__ = ["Display", "between", "cure", "forecast", "runs"]

@@ -17,12 +17,12 @@ from .. import progress
 from ..failure import BadInput
 from ..geometry.outlines import Outline, Shape
 from ..geometry.time_functions import farthest
+from ..input.bodies import Body
 from ..input.conditions import WHOLE
 from ..input.dimension import PLANE_STRAIN
 from ..input.obstacles import Drive, Obstacle
 from ..input.parameters import Value
 from ..mesh import mesh
-from .bodies import Body
 from .scene import Scene, gap_between
 
 __all__ = ["Onset", "loaded_pull", "onsets_of", "refuse_nothing", "refuse_sinking", "turned"]
@@ -183,7 +183,7 @@ def _is_shielded(scene: Scene, onset: Onset, k: int) -> bool:
     frame = other.start_velocity if isinstance(other, Obstacle) else np.zeros(len(onset.normal))
     centre = shield.start_position + (shield.start_velocity - frame) * t
     centre = centre + (fall(shield) - fall(other)) * t**2 / 2
-    shape = shield.at(0.0, np.zeros(len(centre)))
+    shape = shield.placed_at(0.0, np.zeros(len(centre)))
     before = t * np.linspace(0, 1, PARTS + 1)[:, None]
     for surface in (scene.bodies[onset.first], other):
         velocity = surface.start_velocity - shield.start_velocity
@@ -249,13 +249,13 @@ def _rebound(scene: Scene, onset: Onset) -> Scene | None:
             body.start_velocity + own_fall + push * n,
             body.start_spin + push * lever / shape.gyration,
         )
-        bodies[k] = replace(
-            body,
-            start_position=shape.area_centre + (velocity - moves) * soon,
-            start_angle=body.start_angle + body.start_spin * onset.time + spin * soon,
-            start_velocity=velocity,
-            start_spin=spin,
-        )
+        state = {
+            "start_position": shape.area_centre + (velocity - moves) * soon,
+            "start_angle": body.start_angle + body.start_spin * onset.time + spin * soon,
+            "start_velocity": velocity,
+            "start_spin": spin,
+        }
+        bodies[k] = body.model_copy(update=state)
     still: dict[str, Value] = {
         name: 0.0 for name in ("gravity", "body_force_x", "body_force_y") if name in scene.values
     }
@@ -411,12 +411,9 @@ def turned(scene: Scene) -> Scene:
         soonest = min(onset.time for onset in mine)
         first = next(onset for onset in mine if onset.time <= soonest * (1 + 1e-9))
         outward = -first.normal if k == first.first else first.normal
-        bodies[k] = replace(
-            body,
-            start_angle=math.atan2(outward[1], outward[0])
-            + math.pi / 2
-            - (body.start_spin * first.time if math.isfinite(first.time) else 0.0),
-        )
+        before = body.start_spin * first.time if math.isfinite(first.time) else 0.0
+        angle = math.atan2(outward[1], outward[0]) + math.pi / 2 - before
+        bodies[k] = body.model_copy(update={"start_angle": angle})
     return replace(scene, bodies=bodies)
 
 
@@ -508,10 +505,10 @@ def _at(
     another body; `pull` is the acceleration of `body` in that frame.
     """
     if isinstance(other, Body):
-        placed = body.at(t, body.start_position + body.start_velocity * t + pull * t**2 / 2)
-        return placed, other.at(t, other.start_position + other.start_velocity * t)
+        placed = body.placed_at(t, body.start_position + body.start_velocity * t + pull * t**2 / 2)
+        return placed, other.placed_at(t, other.start_position + other.start_velocity * t)
     velocity = body.start_velocity - other.start_velocity
-    return body.at(t, body.start_position + velocity * t + pull * t**2 / 2), other
+    return body.placed_at(t, body.start_position + velocity * t + pull * t**2 / 2), other
 
 
 def _first_touch(

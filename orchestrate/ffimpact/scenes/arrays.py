@@ -82,7 +82,7 @@ def scene_arrays(scene: Scene, centres: np.ndarray, pairs: list[dict[str, Value]
         for pair, own in zip(scene.pairs, pairs)
     ]
     rigid = [
-        {"body": k, "mass": float(body.mass), "moments": np.array(body.moments, dtype=float)}
+        {"body": k, "mass": float(body.mass or 0.0), "moments": np.array(body.moments, dtype=float)}
         for k, body in enumerate(scene.bodies)
         if body.rigid
     ]

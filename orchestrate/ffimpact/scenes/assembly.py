@@ -23,6 +23,7 @@ from .. import progress
 from ..failure import BadInput
 from ..freefem.arrays import Entries, packed
 from ..geometry.outlines import Loop, TubeOutline, rotation
+from ..input.bodies import Body
 from ..input.contact import OWN, Pair
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID
 from ..input.parameters import NOT_DECISIVE, Table, Value
@@ -32,12 +33,11 @@ from ..mesh.mesh import AXIS, FREE, Curve, Sizes, mesh_body, nearest
 from ..mesh.solids import Solid
 from .approach import Onset, loaded_pull, onsets_of, refuse_nothing, refuse_sinking, turned
 from .arrays import Arc, mesh_arrays, padded, parameter_arrays, scene_arrays
-from .bodies import STIFF, Body
 from .front import Front, fronts, stretch_of
 from .mirror import COPIES, copies, mirror_axes
 from .needs import IMPLICIT, implicit_for
 from .parts import conditions
-from .scene import Scene, refuse_rest
+from .scene import STIFF, Scene, refuse_rest
 from .sizes import Impact
 from .start_fields import start_fields
 from .unstressed import find_unstressed
@@ -224,7 +224,7 @@ def _sections(
     circles = [
         Arc(k, padded(centre + at), np.zeros(3), float(radius))
         for k, (body, centre) in enumerate(zip(scene.bodies, centres))
-        for loop in body.section.loops
+        for loop in body.flat_outline.loops
         for at, radius in loop.circles
         if not halved or at[0] >= 0
     ]
@@ -239,9 +239,11 @@ def _solids(
     """
     normals = mirror_axes(SOLID, copies(scene))
     accuracy, degree = scene.number("accuracy"), int(scene.number("degree"))
-    meshes = [
-        solids.mesh_of(body, size, normals, accuracy) for body, size in zip(scene.bodies, sizes)
-    ]
+    meshes = []
+    for body, size in zip(scene.bodies, sizes):
+        solid, made = body.placed_at(0.0, np.zeros(3)), body.file_mesh
+        assert isinstance(solid, Solid) and (made is None or isinstance(made, solid_mesh.SolidMesh))
+        meshes.append(solids.mesh_of(body.own_name, solid, made, size, normals, accuracy))
     meshes = [_reached(scene, k, made) for k, made in enumerate(meshes)]
     count = sum(
         0 if body.rigid else solid_mesh.unknowns(made.cells, degree)
@@ -496,7 +498,7 @@ def _with_viscosity(k: int, ask: Asker) -> Body:
             f"body.{k + 1}.loss: {material.loss:g} asks for viscosity {viscosity:g} Pa s of '{body.own_name}', which "
             f"is {material.viscosity:g} (accepted: one of the two)"
         )
-    return replace(body, made_of=material.model_copy(update={"viscosity": viscosity}))
+    return body.model_copy(update={"made_of": material.model_copy(update={"viscosity": viscosity})})
 
 
 def element_sizes(k: int, ask: Asker) -> Sizes:
@@ -567,7 +569,7 @@ def _first_normal(k: int, ask: Asker) -> np.ndarray:
     onsets = [onset for onset in ask.onsets if k in (onset.first, onset.second)]
     if not onsets:
         raise BadInput(
-            f"body.{k + 1}.mesh_stretch: {body.mesh_stretch:g}, but '{body.own_name}' never comes into "
+            f"body.{k + 1}.mesh_stretch: {body.mesh_stretch or 0.0:g}, but '{body.own_name}' never comes into "
             f"contact (accepted: 0 or 1)"
         )
     return min(onsets, key=lambda onset: onset.time).own_normal(k, body)
@@ -635,7 +637,7 @@ def boundary_curves(scene: Scene, k: int) -> list[list[tuple[Curve, float, int]]
     """Returns the closed curves that bound the mesh of body k, the outer one first,
     counter-clockwise. Each is a list of pieces with the largest element size [m] and the label.
     """
-    outline, finest = scene.bodies[k].section, math.sqrt(scene.number("accuracy"))
+    outline, finest = scene.bodies[k].flat_outline, math.sqrt(scene.number("accuracy"))
     loops = outline.loops
 
     def largest(loop: Loop) -> float:

@@ -2,10 +2,10 @@
 
 import math
 
+from ..input.bodies import SIZES
 from ..input.parameters import Table
 from ..output import estimate
 from .approach import onsets_of
-from .bodies import SIZES
 from .front import fronts, stretch_of
 from .scene import Scene
 

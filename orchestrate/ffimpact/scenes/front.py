@@ -16,9 +16,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..geometry.outlines import Outline, TubeOutline
+from ..input.bodies import Body
 from ..input.dimension import SOLID
 from .approach import Onset
-from .bodies import Body
 from .scene import Scene
 
 __all__ = ["Front", "fronts", "stretch_of"]
@@ -174,7 +174,7 @@ def _stays_plane(scene: Scene, k: int, onsets: list[Onset], landings: list[Front
         return False
     normals = np.array([front.onset.own_normal(k, body) for front in mine])
     alike = abs(normals @ normals[0]) > 1 - ALIKE
-    return bool(alike.all()) and _fills_box(body.section, normals[0])
+    return bool(alike.all()) and _fills_box(body.flat_outline, normals[0])
 
 
 def _fills_box(outline: Outline, normal: np.ndarray) -> bool:

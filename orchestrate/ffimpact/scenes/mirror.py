@@ -9,11 +9,11 @@ import numpy as np
 
 from ..failure import BadInput
 from ..geometry.outlines import rotation
+from ..input.bodies import Body
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
 from ..input.obstacles import Obstacle
 from ..mesh import revolution
 from ..mesh.solids import Solid
-from .bodies import Body
 
 if TYPE_CHECKING:
     from .scene import Scene
@@ -117,7 +117,7 @@ def _broken_in_plane(scene: "Scene") -> str:
             return (
                 f"'{body.own_name}' is a file's, is turned, or has a moment of inertia of its own"
             )
-        if not revolution.crossing_axis(body.section):
+        if not revolution.crossing_axis(body.flat_outline):
             return f"'{body.own_name}' has parts that do not cross x = 0"
         if any(pair.first == pair.second == k for pair in scene.pairs):
             return f"'{body.own_name}' may come into contact with itself"

@@ -11,6 +11,7 @@ from ..failure import BadInput, brief
 from ..freefem.arrays import Entries, joined, table
 from ..geometry.outlines import rotation
 from ..geometry.time_functions import NOTHING, TimeFunction
+from ..input.bodies import Body
 from ..input.conditions import KINDS, ON_SIDE, SIDES, Load, Part, Support
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
 from ..input.obstacles import Drive, Obstacle
@@ -18,7 +19,6 @@ from ..mesh import mesh
 from ..mesh.mesh import Mesh
 from ..mesh.solid_mesh import SolidMesh
 from ..mesh.solids import Solid
-from .bodies import Body
 from .mirror import mirror_axes
 
 __all__ = ["conditions"]
@@ -157,7 +157,7 @@ class _Surface:
         self.body, self.made, self.dimension, self.copies = body, made, dimension, copies
         # `axes` transforms the mesh to the body's own axes, `turn` to its orientation at the start.
         turn = rotation(body.start_angle) if dimension is PLANE_STRAIN else np.eye(dimension.axes)
-        solid = body.at(0.0, np.zeros(dimension.axes))
+        solid = body.placed_at(0.0, np.zeros(dimension.axes))
         self.axes = solid.rotation if isinstance(solid, Solid) else np.eye(2)
         self.turn = turn
         self.own = made.points @ self.axes

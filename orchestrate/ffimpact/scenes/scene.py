@@ -20,7 +20,7 @@ import numpy as np
 from ..failure import BadInput, brief, gathered
 from ..geometry.outlines import Outline, Shape, normal_of
 from ..input import dimension, models, parameters
-from ..input.bodies import FIELDS
+from ..input.bodies import FIELDS, SIZES, Body
 from ..input.contact import CONTACT, Contact, Pair
 from ..input.dimension import AXISYMMETRIC, SOLID, Dimension
 from ..input.entries import Entries
@@ -31,11 +31,10 @@ from ..input.parameters import Table, Value
 from ..mesh.solid_file import declares_unit, takes_in_others
 from ..output import former
 from ..output.columns import Features, recorded
-from . import bodies, mirror, needs
-from .bodies import SIZES, Body
+from . import mirror, needs
 from .entries import files_renamed, release, set_entry, toml_value
 
-__all__ = ["RUN", "Scene", "gap_between", "gap_to_obstacle", "read", "refuse_rest"]
+__all__ = ["RUN", "STIFF", "Scene", "gap_between", "gap_to_obstacle", "read", "refuse_rest"]
 
 RUN = (
     "gravity",
@@ -58,6 +57,8 @@ RUN = (
     "checkpoint_every",
     "without",
 )
+# `young` of a rigid body over the largest of the others. Its strain is smaller by this factor.
+STIFF = 1e5
 # Bending strain (Outline.folding) up to which a body may come into contact with itself: that of a
 # ring as thick as its inner radius.
 FOLDING = 0.2
@@ -279,14 +280,15 @@ def read(content: Table, folder: Path, name: str) -> Scene:
             f"script: '{top.value_text('script')}' is not that of [[body]] tables in "
             f"dimension = '{scene_dimension.name}' (accepted: {scene_dimension.script})"
         )
-    all_bodies, _, contact, values = gathered(
+    _, _, contact, values = gathered(
         (
-            lambda: bodies.read(tables.bodies, top, folder, scene_dimension),
+            lambda: gathered([body.check for body in tables.bodies]),
             lambda: gathered([obstacle.check for obstacle in tables.obstacles]),
             lambda: _parameters(tables.contact, CONTACT, scene_dimension),
             lambda: _parameters(top, RUN, scene_dimension),
         )
     )
+    all_bodies = tables.bodies
     for key in SIZES:
         if getattr(top, key) and all(body.file_mesh for body in all_bodies):
             raise BadInput(
@@ -305,7 +307,7 @@ def read(content: Table, folder: Path, name: str) -> Scene:
         own = pairs[both].own if both in pairs else {}
         pairs[both] = Pair.between(*both, pair.entry, own | pair.own)
     penalties = _penalties(contact["penalty"], pairs, list(index.values()))
-    all_bodies = bodies.stiffened(all_bodies, penalties, "contact.penalty")
+    all_bodies = _stiffened(all_bodies, penalties, "contact.penalty")
     if all(body.rigid for body in all_bodies) and contact["penalty"] == "auto":
         contact |= {"penalty": max(penalties)}  # no pair uses it, and no body would determine it
     for k in _touching_themselves(
@@ -426,6 +428,30 @@ def _names(all_bodies: list[Body], all_obstacles: list[Obstacle]) -> dict[str, i
             )
         index[name], where[name] = number, path
     return index
+
+
+def _stiffened(bodies: list[Body], penalties: list[Value], path: str) -> list[Body]:
+    """Returns the bodies of a scene with `young` of the rigid ones.
+
+    It is STIFF times the largest `young` of the other bodies. If all bodies are rigid it is STIFF
+    times the largest of the `penalties` times the largest half thickness. Raises BadInput if one of
+    the penalties is automatic then.
+    """
+    if not any(body.rigid for body in bodies):
+        return bodies
+    soft = max((body.made_of.young for body in bodies if not body.rigid), default=0.0)
+    if not soft and "auto" in penalties:
+        raise BadInput(
+            f"{path}: 'auto' follows from a body that deforms, and all are rigid (accepted: a number, Pa/m^m)"
+        )
+    half = max(body.outline.half_thickness for body in bodies)
+    young = STIFF * (soft or max(float(penalty) for penalty in penalties) * half)
+    return [
+        body.model_copy(update={"made_of": body.made_of.model_copy(update={"young": young})})
+        if body.rigid
+        else body
+        for body in bodies
+    ]
 
 
 # ---- contact

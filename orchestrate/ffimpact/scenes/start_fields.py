@@ -33,14 +33,14 @@ def start_fields(
     arc_of: np.ndarray,
 ) -> Entries:
     """Returns each field as a list of numbers, nothing if no body has one."""
-    with_fields = any(getattr(body, name) for body in scene.bodies for name in FIELDS)
+    with_fields = any(body.has_fields for body in scene.bodies)
     arrays: Entries = {"start_fields": int(with_fields)}
     if not with_fields:
         return arrays
     nodes = _nodes(together, arcs, arc_of, int(scene.number("degree")))
     for name in FIELDS:
         values = np.zeros_like(nodes)
-        fields = [getattr(body, name) for body in scene.bodies]
+        fields = [body.fields.get(name) for body in scene.bodies]
         for k, (body, field) in enumerate(zip(scene.bodies, fields)):
             if field:
                 plane = scene.dimension is PLANE_STRAIN
