@@ -22,6 +22,7 @@ def write_step(path, radius: float = 0.0) -> None:
     """Writes a STEP file of a box of 100 x 60 x 40 mm, with edges rounded by fillets of this radius
     [mm]."""
     with mesh.gmsh_session() as gmsh:
+        gmsh.option.setString("Geometry.OCCTargetUnit", "MM")  # the unit of the file
         occ = gmsh.model.occ
         box = occ.addBox(0, 0, 0, 100, 60, 40)
         occ.synchronize()
