@@ -93,12 +93,12 @@ def _minus(a: Jet) -> Jet:
 
 def _times(a: Jet, b: Jet) -> Jet:
     """c_k = sum over i of a_i b_(k-i)."""
-    corners = np.array([x[:, None] * y[None] for x in a for y in b])
-    corners[np.isnan(corners)] = 0.0  # 0 times infinity
-    low, high = (
-        np.array([sum(bound[i, k - i] for i in range(k + 1)) for k in range(ORDER + 1)])
-        for bound in (corners.min(axis=0), corners.max(axis=0))
-    )
+    low, high = np.zeros_like(a[0]), np.zeros_like(a[0])
+    for i in range(ORDER + 1):
+        corners = np.array([x[i] * y[: ORDER + 1 - i] for x in a for y in b])
+        np.copyto(corners, 0.0, where=np.isnan(corners))  # 0 times infinity
+        low[i:] += corners.min(axis=0)
+        high[i:] += corners.max(axis=0)
     return low, high
 
 

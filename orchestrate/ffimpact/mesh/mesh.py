@@ -7,6 +7,7 @@ the plane y = 0.
 """
 
 import atexit
+import hashlib
 import math
 import os
 import pickle
@@ -79,6 +80,8 @@ GROWTH = 0.3  # increase of the element size per length of distance from the con
 # Decimals of the coordinates and sizes that gmsh gets, relative to the size of the body. Without
 # rounding, round-off would decide ties, and the mesh would depend on the unit of length.
 DIGITS = 10
+KEPT = 8  # number of results of gmsh's process that are kept
+_kept: dict[bytes, Any] = {}  # the results by their contents; see in_own_process
 Curve = Callable[[np.ndarray], np.ndarray]  # points (n, 2) [m] at parameters (n,) in [0, 1]
 Gmsh = Any  # the module gmsh or a part of it, such as gmsh.model, which have no types
 T = TypeVar("T")
@@ -403,10 +406,29 @@ def _initialize(gmsh: Gmsh) -> None:
 
 
 def in_own_process(read: Callable[..., T], path: Path, *arguments: object) -> T:
-    """Returns read(path, *given) from a separate process, because some broken files crash gmsh.
+    """Returns read(path, *arguments) from a separate process, because some broken files crash gmsh.
+    The last results are kept for files of the same content, except for .geo files, which are
+    scripts that may read other files.
 
     Raises the BadInput of `read`, or BadInput with the signal or exit code of the process.
     """
+    try:
+        content = path.read_bytes()
+    except OSError:
+        content = b""
+    if not content or path.suffix.lower() == ".geo":
+        return _of_process(read, path, *arguments)
+    made_of = pickle.dumps((read, path.suffix, content, arguments))
+    key = hashlib.sha256(made_of).digest()
+    result: T = _kept[key] if key in _kept else _of_process(read, path, *arguments)
+    _kept[key] = result
+    for old in list(_kept)[:-KEPT]:
+        _kept.pop(old, None)
+    return result
+
+
+def _of_process(read: Callable[..., T], path: Path, *arguments: object) -> T:
+    """Returns read(path, *arguments) from a separate process; see in_own_process."""
     modules = os.pathsep.join([str(PACKAGE.parent), *filter(None, [os.environ.get("PYTHONPATH")])])
     command = [sys.executable, "-P", "-c", f"from {__name__} import _answer; _answer()"]
     # The process keeps the working folder, so relative paths stay valid.

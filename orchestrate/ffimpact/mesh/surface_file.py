@@ -3,7 +3,6 @@
 The files are STL files, and meshes of surfaces or volumes in gmsh's and Medit's formats.
 """
 
-from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -30,18 +29,13 @@ def read(path: Path) -> tuple[np.ndarray, np.ndarray]:
     if path.suffix.lower() not in FILES:
         raise BadInput(f"'{path.name}' is no surface (accepted: {', '.join(FILES)})")
     try:
-        stamp = path.stat().st_mtime_ns
+        path.stat()
         if not path.is_file():
             raise BadInput(f"'{path.name}' is no file (accepted: {', '.join(FILES)})")
     except (OSError, ValueError) as error:
         raise BadInput(
             f"'{path.name}' cannot be read: {getattr(error, 'strerror', None) or error}"
         ) from None
-    return _read(path.resolve(), stamp)
-
-
-@cache
-def _read(path: Path, changed: int) -> tuple[np.ndarray, np.ndarray]:
     try:
         return in_own_process(_taken, path)
     except BadInput as error:
