@@ -135,6 +135,7 @@ class Mesh:
         return replace(self, points=self.points * factor, arc_centres=arc_centres)
 
 
+PAIRS = 1_000_000  # of points, from which on a tree is worth the time in which scipy loads
 MOST_ON_CURVE = 50_000  # largest number of samples of a curve; no run could use a mesh so fine
 
 
@@ -181,7 +182,11 @@ class Sizes:
 
 def nearest(points: np.ndarray, others: np.ndarray) -> np.ndarray:
     """Distances (n,) [m] of points (n, axes) from the nearest of the other points (m, axes)."""
-    distances: np.ndarray = scipy.spatial.cKDTree(others).query(points)[0]
+    distances: np.ndarray
+    if len(points) * len(others) > PAIRS:
+        distances = scipy.spatial.cKDTree(others).query(points)[0]
+    else:
+        distances = np.sqrt(((points[:, None] - others) ** 2).sum(axis=2).min(axis=1))
     return distances
 
 
@@ -593,10 +598,14 @@ def pieces(points: int, elements: np.ndarray) -> np.ndarray:
     Elements (n, corners) are connected if they have a point in common. `points` is the number of
     points.
     """
-    links = elements[:, :-1].ravel(), elements[:, 1:].ravel()
-    graph = scipy.sparse.coo_array((np.ones(len(links[0])), links), (points, points))
-    piece: np.ndarray = scipy.sparse.csgraph.connected_components(graph, directed=False)[1]
-    return piece
+    piece, before = np.arange(points), np.full(points, -1)
+    while (piece != before).any():
+        before = piece.copy()
+        # The piece of each point of an element becomes the one with the smallest number among them.
+        np.minimum.at(piece, piece[elements], piece[elements].min(axis=1, keepdims=True))
+        while (piece != piece[piece]).any():
+            piece = piece[piece]
+    return np.unique(piece, return_inverse=True)[1]
 
 
 def inner_outlines(points: np.ndarray, sides: np.ndarray) -> list[np.ndarray]:
