@@ -16,6 +16,9 @@ from ffimpact.output import results, vtu
 from ffimpact.output.fields import write_fields
 from ffimpact.places import ROOT
 
+PLACE = r"In `([\w./-]+)`, (before|after|instead of) `([^`]+)`:"
+ADDED = re.compile(PLACE + r"\n```\w+\n(.*?)```", re.DOTALL)
+CHANGED = re.compile(PLACE + r" `([^`]+)`")
 NEW = re.compile(r"`([\w./-]+)`, new\b[^`]*?(?:`[^`]+`[^`]*?)?:\n```\w*\n(.*?)```", re.DOTALL)
 YOUNG, NU = 7e6, 0.3
 F = np.array([[1.2, 0.3, 0], [-0.1, 0.7, 0], [0, 0, 1]])  # as in verification/homogeneous.edp
@@ -30,17 +33,25 @@ def extended(tmp_path):
             shutil.copytree(ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__"))
         for path, text in NEW.findall(section):
             (tmp_path / path).write_text(text)
-        for change in re.findall(r"```diff\n(.*?)```", section, re.DOTALL):
-            go(tmp_path, "git", "apply", "-", text=change)
+        for name, place, line, text in ADDED.findall(section) + CHANGED.findall(section):
+            insert(tmp_path / name, place, line, text)
         for command in re.findall(r"```sh\n(.*?)```", section, re.DOTALL):
             go(tmp_path, "sh", "-c", command)
         return tmp_path
     return apply
 
 
-def go(folder: Path, *words: str, text: str | None = None) -> str:
+def insert(file: Path, place: str, line: str, text: str) -> None:
+    """Puts text before or after the line that contains `line`, or instead of it. There is one such line."""
+    whole = file.read_text()
+    (at,) = [found for found in re.finditer(r"[^\n]*\n", whole) if line in found[0]]
+    first, last = {"before": (at.start(), at.start()), "after": (at.end(), at.end()), "instead of": at.span()}[place]
+    file.write_text(whole[:first] + (at[0].replace(line, text) if place == "instead of" else text) + whole[last:])
+
+
+def go(folder: Path, *words: str) -> str:
     """The output of a command in the folder. Asserts that it succeeds."""
-    ended = subprocess.run(words, cwd=folder, input=text, capture_output=True, text=True, env=os.environ | {"GIT_CEILING_DIRECTORIES": str(folder.parent), "PYTHONPATH": str(folder / "orchestrate")})
+    ended = subprocess.run(words, cwd=folder, capture_output=True, text=True, env=os.environ | {"GIT_CEILING_DIRECTORIES": str(folder.parent), "PYTHONPATH": str(folder / "orchestrate")})
     assert ended.returncode == 0, ended.stderr
     return ended.stdout
 
