@@ -78,10 +78,10 @@ BALLS = {"dimension": "axisymmetric", "accuracy": 0.2, "end_time": 6e-3, "checkp
 # A rigid disc on a pad that is moved from below, beside a ring with air inside, and a rotating
 # roller.
 DRIVEN = SOFT | {"accuracy": 0.2, "end_time": 4e-3, "checkpoint_every": 4, "gravity": 9.81, "contact": {"friction_static": 0.4}, "body": [
-    {"shape": "disc", "radius": 0.03, "rigid": True, "position": [0.0, 0.0502], "velocity": [0.5, -1.0]},
-    {"shape": "rectangle", "width": 0.3, "height": 0.04, "position": [0.0, 0.0],
+    {"shape": "disc", "radius": 0.03, "rigid": True, "position": [0.0, 0.0502], "velocity": [0.5, -1.0], "mesh_size": 0.01, "contact_mesh_size": 0.005},
+    {"shape": "rectangle", "width": 0.3, "height": 0.04, "position": [0.0, 0.0], "mesh_size": 0.02, "contact_mesh_size": 0.01,
      "support": [{"where": "bottom", "motion": [0, "0.002*sin(500*t)"]}]},
-    {"shape": "ring", "radius": 0.03, "inner_radius": 0.02, "position": [0.09, 0.052], "velocity": [0.0, -1.0],
+    {"shape": "ring", "radius": 0.03, "inner_radius": 0.02, "position": [0.09, 0.052], "velocity": [0.0, -1.0], "mesh_size": 0.01, "contact_mesh_size": 0.006,
      "load": [{"where": "inner", "gas": {"gauge_pressure": 2e4, "exponent": 1.4}}]}],
     "obstacle": [{"kind": "circle", "centre": [-0.1, 0.0402], "radius": 0.02, "rotation": "-3000*t", "motion": [0, "-0.1*t"]}]}
 

@@ -8,7 +8,7 @@ import pytest
 
 from examples import gallery
 
-CHEAP = {"01_disc_normal", "12_hertz"}
+CHEAP = {"12_hertz"}
 MARKED = [
     pytest.param(page, id=page.stem, marks=[] if page.stem in CHEAP else pytest.mark.robustness)
     for page in gallery.pages()

@@ -15,8 +15,10 @@ def test_a_slab_is_a_plane(tmp_path):
     """They agree to the accuracy of the solver. The file is beside the scene, in mm, and is copied
     to the results."""
     slab(tmp_path / "slab.stl")
-    summary = run(tmp_path, 'kind = "surface"\nfile = "slab.stl"\nscale = 0.001')
-    plane = run(tmp_path, 'kind = "plane"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]', name="plane")
+    sizes = {"mesh_size": 0.03, "contact_mesh_size": 0.02}
+    summary = run(tmp_path, 'kind = "surface"\nfile = "slab.stl"\nscale = 0.001', **sizes)
+    plane = run(tmp_path, 'kind = "plane"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]', name="plane", **sizes)
+    assert plane["sliding_time"] > 0 < plane["sticking_time"]
     for name in ("impulse", "rebound_vx", "rebound_vy", "rebound_spin", "friction_work"):
         assert summary[name] == pytest.approx(plane[name], rel=1e-6), name
     assert summary["energy_drift"] < 1e-9

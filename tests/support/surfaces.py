@@ -59,9 +59,10 @@ def sphere(path: Path, radius: float, splits: int) -> Path:
     return stl(path, (radius * corners - [0, radius, 0]).reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3))
 
 
-def run(tmp_path, obstacle: str, position="[0.01, 0.0501, 0.003]", name="scene") -> dict:
-    """The summary of a ball that hits the obstacle."""
+def run(tmp_path, obstacle: str, position="[0.01, 0.0501, 0.003]", name="scene", **sizes: float) -> dict:
+    """The summary of a ball, with these element sizes, that hits the obstacle."""
     file, out = tmp_path / f"{name}.toml", tmp_path / name
     file.write_text(SCENE.format(obstacle=obstacle, position=position))
-    assert main(["run", str(file), "--out", str(out), "--quiet", "--no-figures", "--no-estimate"]) == 0
+    assert main(["run", str(file), "--out", str(out), "--quiet", "--no-figures", "--no-estimate",
+                 *(word for size, value in sizes.items() for word in ("--set", f"{size}={value}"))]) == 0
     return json.loads((out / "summary.json").read_text())
