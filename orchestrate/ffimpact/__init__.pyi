@@ -64,14 +64,14 @@ from .input.shapes import (
     Torus as Torus,
     Tube as Tube,
 )
-from .model import (
-    Scene as Scene,
-)
 from .result import (
     Progress as Progress,
     Result as Result,
     compare as compare,
     load as load,
+)
+from .scene import (
+    Scene as Scene,
 )
 
 __version__: str

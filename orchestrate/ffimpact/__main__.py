@@ -281,7 +281,7 @@ def _list(options: argparse.Namespace) -> None:
     names = scene.built_in()
     for name in names:
         loaded = scene.load(name)
-        print(f"{name:<{2 + max(map(len, names))}}{loaded.script:<19}{loaded.title}")
+        print(f"{name:<{2 + max(map(len, names))}}{loaded.kind.script:<19}{loaded.title}")
 
 
 def _parameters(options: argparse.Namespace) -> None:

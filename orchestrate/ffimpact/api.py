@@ -16,16 +16,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
-from . import scene as files
 from .failure import BadInput, brief, unknown
 from .freefem import freefem
 from .input.parameter import plain
-from .model import Scene
 from .places import RESULTS
 from .progress import muted
 from .result import Progress, Result, of_run
 from .running import run as running
 from .running.plan import Plan
+from .scene import Scene
 from .sweeps.study import place, study
 
 if TYPE_CHECKING:
@@ -108,9 +107,9 @@ def _loaded(scene: Scene | str | Path, overrides: dict[str, Any]) -> tuple[Any, 
     states to keep to `overrides`. Raises BadInput if `scene` is not a scene.
     """
     if isinstance(scene, Scene):
-        loaded = scene.checked(_word(scene.title or "scene"))
+        loaded = scene.ready(_word(scene.title or "scene"))
     elif isinstance(scene, str | Path):
-        loaded = files.load(scene)
+        loaded = Scene.load(scene)
     else:
         raise BadInput(
             f"scene: '{scene}' is none (accepted: a Scene, the name of a built-in one, the path of a TOML file)"

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from ffimpact.mesh import rounding, solid_mesh
+from ffimpact.scene import read
 from ffimpact.scenes import assembly
-from ffimpact.scenes.scene import read
 from tests.support.files import solid, write_step
 
 # ---- fillets

@@ -32,10 +32,10 @@ def test_a_built_in_scene_of_bodies_is_the_same_written_and_read_again(tmp_path,
     """The scene as objects has the same bodies, obstacles and parameters as read from its file."""
     scene, read = ff.Scene.load(name), files.load(name)
     assert ff.Scene.load(scene.save(tmp_path / "scene.toml")) == scene
-    again = scene.checked()
+    again = scene.ready()
     assert (
         again.values == read.values
-        and again.contact == read.contact
+        and again.contact_values == read.contact_values
         and len(again.pairs) == len(read.pairs)
     )
     assert [(body.own_name, body.made_of, body.bulk_size) for body in again.bodies] == [

@@ -60,7 +60,7 @@ def test_scene_as_used_is_a_scene_again(result):
     """scene.toml has the symmetry that was found, and is the same run again."""
     assert result.scene["symmetry"] == "quarter"
     again = scene.load(str(result.folder / "scene.toml"))
-    assert again.contact["penalty"] == result.scene["contact"]["penalty"]
+    assert again.contact_values["penalty"] == result.scene["contact"]["penalty"]
 
 
 def test_snapshots_are_cuts_through_the_middle(result, oblique):

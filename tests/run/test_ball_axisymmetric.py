@@ -66,7 +66,7 @@ def test_a_disc_beside_a_ball(result, tmp_path, monkeypatch):
 def test_scene_as_used_is_a_scene_again(result):
     """scene.toml is the same run again."""
     again = scene.load(str(result.folder / "scene.toml"))
-    assert again.script == "bodies-axisymmetric" and again.contact["penalty"] == result.scene["contact"]["penalty"]
+    assert again.kind.script == "bodies-axisymmetric" and again.contact_values["penalty"] == result.scene["contact"]["penalty"]
 
 
 def test_fields_are_those_of_a_meridian_plane(result):

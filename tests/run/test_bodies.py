@@ -212,7 +212,7 @@ def test_the_scene_as_used_is_the_same_scene(name, tmp_path):
     for folder, source in ((first, name), (second, str(first / "scene.toml"))):
         folder.mkdir()
         built = assembly.assemble(load(source))
-        assert built.mesh.volumes.min() > 0 if scene.dimension.axes == 3 else areas(built.mesh).min() > 0 and smallest_angle(built.mesh) > 20
+        assert built.mesh.volumes.min() > 0 if scene.kind.axes == 3 else areas(built.mesh).min() > 0 and smallest_angle(built.mesh) > 20
         assert set(built.regions) == set(range(len(scene.bodies)))
         assert "auto" not in {name: value for name, value in built.values.items() if name != "volume"}.values()
         built.write(folder)

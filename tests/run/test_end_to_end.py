@@ -20,8 +20,8 @@ from ffimpact.output import results, vtu
 from ffimpact.output.columns import FILES
 from ffimpact.report import literature, report
 from ffimpact.running import run
+from ffimpact.scene import RUN
 from ffimpact.scenes import assembly
-from ffimpact.scenes.scene import RUN
 from tests.support.end_to_end import COARSE, call, direct
 
 

@@ -15,8 +15,8 @@ from ffimpact.failure import BadInput
 from ffimpact.mesh import mesh, solid_file
 from ffimpact.report import report
 from ffimpact.running import run
+from ffimpact.scene import read
 from ffimpact.scenes import approach, assembly
-from ffimpact.scenes.scene import read
 from ffimpact.sweeps import sweep
 from tests.support.files import FLOOR, solid, tables, write_step
 

@@ -34,7 +34,7 @@ def test_examples_are_scenes_and_the_same_in_python(page, pairs, tmp_path, monke
             continue
         text = re.sub(r"(?m)^(ff\.Scene\()", r"scene = \1", text)
         exec(text, names)  # noqa: S102
-        same = names["scene"].checked()
+        same = names["scene"].ready()
         for name in ("values", "contact"):
             assert getattr(same, name) == getattr(written, name), (page, name)
         assert [pair.own for pair in same.pairs] == [pair.own for pair in written.pairs]

@@ -99,8 +99,8 @@ def test_the_control_differs_in_the_jump_alone():
     """friction-jump has the same runs with equal coefficients, for both laws, on two meshes."""
     plan = sweep.load("friction-jump")
     used = [scene.load(plan.scene).override(plan.base | point) for point in plan.points]
-    assert {(run.bodies[0].made_of.law, run.contact["friction_static"], run.contact["friction_dynamic"]) for run in used} == {(law, static, 0.5) for law in ("svk", "neohookean") for static in (0.7, 0.5)}
-    assert plan.refine.keys() == {"mesh_size", "contact_mesh_size"} and {run.contact["regularization"] for run in used} == {"linear"}
+    assert {(run.bodies[0].made_of.law, run.contact_values["friction_static"], run.contact_values["friction_dynamic"]) for run in used} == {(law, static, 0.5) for law in ("svk", "neohookean") for static in (0.7, 0.5)}
+    assert plan.refine.keys() == {"mesh_size", "contact_mesh_size"} and {run.contact_values["regularization"] for run in used} == {"linear"}
 
 
 def test_page_holds_everything_itself(tmp_path):

@@ -426,7 +426,7 @@ def test_what_a_scene_of_bodies_fixed_follows():
     """
     bowl = scene.load("disc-bowl")
     after = bowl.override({"contact.friction_static": "0.3"})
-    assert after.contact["friction_dynamic"] == "auto" and after.released == ("contact.friction_dynamic is reset to automatic: the value 0.4 of the scene belonged to its own contact.friction_static",)
+    assert after.contact_values["friction_dynamic"] == "auto" and after.released == ("contact.friction_dynamic is reset to automatic: the value 0.4 of the scene belonged to its own contact.friction_static",)
     stiff = bowl.override({"contact.penalty": 1e9, "dt": 1e-4})
     assert not stiff.released and stiff.override({"body.1.velocity": [0, -1], "gravity": 1}).contact["penalty"] == 1e9
     for name, value in (("body.1.young", 1e6), ("young", 1e6), ("contact.exponent", 1.5)):

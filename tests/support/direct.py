@@ -24,7 +24,7 @@ def _prepared(kind: str, entries: tuple) -> tuple[str, dict]:
     _FOLDERS.append(tempfile.TemporaryDirectory())
     folder = Path(_FOLDERS[-1].name)
     scene = read(impact(kind, **dict(entries)), folder, kind)
-    return scene.script, assembly.prepare(scene, folder)[0]
+    return scene.kind.script, assembly.prepare(scene, folder)[0]
 
 
 def case(values: dict, kind: str = "disc") -> tuple[str, ...]:

@@ -41,11 +41,11 @@ def make(name: str, folder: Path) -> None:
     loaded, raw = scene.load(of).override({"accuracy": 0.4} | values), folder / "raw"
     flags, _, used = assembly.prepare(loaded, folder)
     program = freefem.find()
-    ended = program.call(f"edp/program/{loaded.script}.edp", *freefem.words_of(flags | {"out": raw}))
+    ended = program.call(f"edp/program/{loaded.kind.script}.edp", *freefem.words_of(flags | {"out": raw}))
     assert ended.returncode == 0, ended.stderr
     (raw / "scene.toml").write_text(used)
     record = json.loads((raw / "record.json").read_text())
-    added = {"script": loaded.script, "version": ff.__version__, "asked": {}, "estimate": False}
+    added = {"script": loaded.kind.script, "version": ff.__version__, "asked": {}, "estimate": False}
     record |= {"estimated_error": None, "released": [], "total_seconds": 1.0}
     record |= {"symmetric_along": symmetric_along(loaded), "provenance": added}
     (raw / "record.json").write_text(json.dumps(record))

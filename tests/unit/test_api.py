@@ -77,7 +77,7 @@ def test_a_dumped_scene_is_whole():
     """model_dump() has the shapes of bodies, and gives the scene again."""
     dumped = drop().model_dump()
     assert dumped == drop().table() and dumped["body"][0]["radius"] == 0.05
-    assert ff.Scene.from_tables(json.loads(json.dumps(dumped))) == drop()
+    assert ff.Scene.read(json.loads(json.dumps(dumped))) == drop()
 
 
 def test_a_scene_saved_elsewhere_finds_its_files(tmp_path):
@@ -91,7 +91,7 @@ def test_a_scene_saved_elsewhere_finds_its_files(tmp_path):
     )  # fmt: skip
     loaded = ff.Scene.load(scene.save(tmp_path / "it's/new.toml"))
     assert (loaded.folder / loaded.obstacles[0].motion).samefile(table)
-    assert loaded.checked().obstacles[0].driven
+    assert loaded.ready().obstacles[0].driven
 
 
 MATERIAL = {"young": 7e6, "nu": 0.45, "density": 1722}
@@ -111,10 +111,10 @@ def test_a_python_function_of_time_is_a_table():
     table = whole.table()["body"][0]["support"][0]["motion"]
     assert set(table) == {"t", "x", "y"} and table["t"][-1] == 0.1
     for scene in (whole, single):
-        motion = scene.checked().bodies[0].supports[0].functions
+        motion = scene.ready().bodies[0].supports[0].functions
         t = np.linspace(0, 0.1, 5000)
         assert abs(motion[1](t) + 0.01 * np.sin(200 * t)).max() < 2e-7 and motion[0].is_zero
-    assert ff.Scene.from_tables(whole.table()) == whole
+    assert ff.Scene.read(whole.table()) == whole
     plane = ff.Plane(rotation=lambda t: 30 * t, pivot=(0, -1))
     turned = moved([0, "t"], obstacles=[plane], end_time=0.5).table()["obstacle"][0]["rotation"]
     assert turned["r"][-1] == 15
@@ -176,7 +176,7 @@ def test_all_that_is_wrong_with_a_scene_is_told_at_once():
     tables["contact"] |= {"pair": [{"penalti": 3}]}
     tables |= {"accuracy": 3, "foo": 1}
     with pytest.raises(ff.BadInput) as caught:
-        ff.Scene.from_tables(tables)
+        ff.Scene.read(tables)
     wrong = ("accuracy", "foo", "body.1.radius", "body.1.velocty", "body.1.position.2")
     wrong += ("obstacle.1.exponent", "contact.pair.1.penalti")
     assert {line.partition(": ")[0] for line in caught.value.messages} == set(wrong)

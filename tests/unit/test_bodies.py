@@ -130,7 +130,7 @@ def test_entries_are_set_by_name():
     scene = read(SCENE | {"obstacle": [FLOOR]})
     other = scene.override({"body.2.young": "2e6", "body.1.velocity.2": -5, "contact.penalty": 1e8, "gravity": 9.81, "obstacle.1.point": "[0, -2]"})
     assert other.bodies[1].made_of.young == 2e6 and list(other.bodies[0].start_velocity) == [0, -5]
-    assert other.contact["penalty"] == 1e8 and other.values["gravity"] == 9.81
+    assert other.contact_values["penalty"] == 1e8 and other.values["gravity"] == 9.81
     assert scene.bodies[1].made_of.young == 7e6 and list(scene.bodies[0].start_velocity) == [0, -10] and scene.content == SCENE | {"obstacle": [FLOOR]}
 
 

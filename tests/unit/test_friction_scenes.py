@@ -7,14 +7,14 @@ from ffimpact import scene
 from ffimpact.input import parameters
 from ffimpact.report import figures
 from ffimpact.report.impact import impact_of
-from ffimpact.scenes.scene import RUN
+from ffimpact.scene import RUN
 
 
 @pytest.mark.parametrize("name", scene.built_in())
 def test_built_in_scenes_load(name):
     """Every built-in scene has a title, a script of its kind and every parameter."""
     loaded = scene.load(name)
-    assert loaded.title != name and set(loaded.values) == set(RUN) & set(parameters.names(loaded.script))
+    assert loaded.title != name and set(loaded.values) == set(RUN) & set(parameters.names(loaded.kind.script))
 
 
 def test_scenes_of_the_paper():

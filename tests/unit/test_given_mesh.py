@@ -73,14 +73,14 @@ def test_labels_decide_contact_and_name_parts():
 def test_a_part_is_the_place_of_a_support():
     body = ff.Mesh(points=POINTS, cells=CELLS, labels={"foot": BOTTOM}, material=RUBBER, position=(0, 1),
                    support=[ff.Support(where="foot")])  # fmt: skip
-    read = ff.Scene(bodies=[body], gravity=9.81, end_time=0.01).checked()
+    read = ff.Scene(bodies=[body], gravity=9.81, end_time=0.01).ready()
     made = read.bodies[0].file_mesh
-    found = conditions(read.bodies, [made], [], read.dimension, 1)["supports.elements"]
+    found = conditions(read.bodies, [made], [], read.kind, 1)["supports.elements"]
     assert made.edges[found].tolist() == BOTTOM
 
 
 def test_in_space_with_both_orientations():
-    made = scene(**SOLID).checked().bodies[0].file_mesh
+    made = scene(**SOLID).ready().bodies[0].file_mesh
     assert made.volumes == pytest.approx([1e-3 / 6] * 2)
     assert len(made.faces) == 6
 
@@ -92,7 +92,7 @@ def test_the_file_of_the_scene_has_the_arrays(tmp_path):
     assert again == first and again.model_dump() == first.model_dump()
     many = np.column_stack([np.tile(np.linspace(0, 0.1, 101), 2), np.repeat([0, 0.1], 101)])
     strip = np.array([t for k in range(100) for t in ((k, k + 1, k + 102), (k, k + 102, k + 101))])
-    decisive = scene(points=many, cells=strip).checked().decisive_entries["body"][0]
-    other = scene(points=1.001 * many, cells=strip).checked().decisive_entries["body"][0]
+    decisive = scene(points=many, cells=strip).ready().decisive_entries["body"][0]
+    other = scene(points=1.001 * many, cells=strip).ready().decisive_entries["body"][0]
     assert len(str(decisive)) < 1000 and decisive["cells"] == other["cells"]
     assert decisive["points"] != other["points"]

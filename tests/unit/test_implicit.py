@@ -6,9 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from ffimpact import scene
 from ffimpact.failure import BadInput
 from ffimpact.geometry import implicit
-from ffimpact.scenes import approach, scene
+from ffimpact.scenes import approach
 
 POINTS = np.random.default_rng(1).uniform(-0.3, 0.3, (500, 2))
 

@@ -65,6 +65,6 @@ def test_a_body_takes_the_law_at_the_top_with_its_entries_or_another_one():
     top = {"law": "ogden", "nu": 0.4, "density": 1722, "alpha": [2.0], "mu": [2e6]}
     discs = [{"shape": "disc", "radius": 0.05, "position": [k, 0.06], "velocity": [0, -1]} for k in (0, 1)]
     discs[1] |= {"law": "neohookean", "young": 1e6}
-    first, second = ff.Scene.from_tables(top | {"body": discs, "obstacle": [{"kind": "plane"}]}).checked().bodies
+    first, second = ff.Scene.read(top | {"body": discs, "obstacle": [{"kind": "plane"}]}).ready().bodies
     assert first.made_of.numbers == [2, 1] and first.made_of.young == pytest.approx(5.6e6)
     assert second.made_of.numbers == [] and second.made_of.young == 1e6

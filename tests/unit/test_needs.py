@@ -9,11 +9,10 @@ from ffimpact.__main__ import main
 from ffimpact.failure import BadInput
 from ffimpact.input.parameters import PARAMETERS, overrides
 from ffimpact.input.toml_text import to_toml
-from ffimpact.scene import load
+from ffimpact.scene import load, read
 from ffimpact.scenes import assembly
 from ffimpact.scenes.entries import set_entry
 from ffimpact.scenes.needs import NEEDS
-from ffimpact.scenes.scene import read
 
 DISC = {"shape": "disc", "radius": 0.05, "position": [0, 0.06], "velocity": [0, -1], "law": "neohookean", "young": 7e6, "nu": 0.3, "density": 1000}
 RIGID = {name: value for name, value in DISC.items() if name not in ("law", "young", "nu")} | {"rigid": True, "position": [0, 0.3]}

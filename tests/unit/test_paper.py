@@ -69,7 +69,7 @@ def test_the_block_is_the_papers_with_either_law():
     (disc, block), values = svk.content["body"], svk.values
     assert (disc["radius"], disc["speed"], disc["direction"], disc["position"]) == (0.5, 10, -90, [0, 0.5])
     assert (block["width"], block["height"], block["position"]) == (10, 2, [0, -1]) and svk.bodies[0].made_of.young == 7e6 and svk.bodies[1].made_of.density == 1722
-    assert svk.contact["friction_static"] == 0 and values["gravity"] == 0
+    assert svk.contact_values["friction_static"] == 0 and values["gravity"] == 0
 
 
 def test_every_statement_of_the_paper_is_there():

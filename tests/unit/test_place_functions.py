@@ -75,7 +75,7 @@ def test_the_mean_of_the_field_is_the_velocity_of_the_body():
     """The rest of the field has no mean, and both together are the field. A scene that moves by its
     field alone is accepted."""
     field = scene(velocity=None, initial_velocity=[1, "-8 - 100*x^2"])
-    body = field.checked().bodies[0]
+    body = field.ready().bodies[0]
     assert body.start_velocity == pytest.approx([1, -8 - 100 * 0.05**2 / 4], rel=2e-3)
     place = np.array([[0.03, 0.06]])
     assert body.start_velocity + body.fields["initial_velocity"](place)[0] == pytest.approx([1, -8.09])

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from ffimpact.failure import BadInput
-from ffimpact.scenes.scene import read
+from ffimpact.scene import read
 from tests.support.slope import HEIGHT, slope
 
 

@@ -158,6 +158,9 @@ class Entries(BaseModel, metaclass=_Made):
             (name, value) for name, value in self.entries() if type(self).model_fields[name].repr
         ]
 
+    def __eq__(self, other: object) -> bool:
+        return type(self) is type(other) and self.table() == other.table()
+
     def __contains__(self, name: str) -> bool:
         return getattr(self, name, None) is not None
 
@@ -212,7 +215,7 @@ class Entries(BaseModel, metaclass=_Made):
         return no_such(name, value, [*cls.heading, *cls.names(dimension)])
 
     @classmethod
-    def read(cls, entry: str, table: Any, dimension: Dimension | None) -> Self:
+    def from_table(cls, entry: str, table: Any, dimension: Dimension | None) -> Self:
         """The model of the table `entry` of a scene.
 
         Raises BadInput with a line for each error in the table.

@@ -294,10 +294,10 @@ def read(content: dict[str, Any], dimension: Dimension, folder: Path = Path()) -
     top = {name: value for name, value in content.items() if name not in (*KINDS, "contact")}
     every = gathered(
         (
-            lambda: Top.read("", top, dimension),
+            lambda: Top.from_table("", top, dimension),
             lambda: tables(content, "body", dimension),
             lambda: tables(content, "obstacle", dimension),
-            lambda: Contact.read("contact", content.get("contact", {}), dimension),
+            lambda: Contact.from_table("contact", content.get("contact", {}), dimension),
         )
     )
     made = Tables(*every)
@@ -341,7 +341,7 @@ def of_table(
     if not isinstance(name, str) or name not in accepted:
         raise BadInput(f"{entry}.{word}: {unknown(name, accepted)}")
     own = {key: value for key, value in table.items() if key != word}
-    return models[name].read(entry, own, dimension)
+    return models[name].from_table(entry, own, dimension)
 
 
 def rule_of_body(name: str) -> Parameter | None:

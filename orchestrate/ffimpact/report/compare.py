@@ -18,8 +18,7 @@ from ..output.folder import result_folder
 from ..output.results import Record, body_names, mechanical_energy, read_record, suffixes
 from ..places import RESULTS, shown
 from ..running.run import run
-from ..scene import load
-from ..scenes.scene import Scene
+from ..scene import Scene, load
 from . import report
 from .figures import (
     ABOVE,

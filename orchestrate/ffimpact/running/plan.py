@@ -172,7 +172,7 @@ def measure(scene: Scene, estimate: bool = True) -> Plan:
         prepared = time.process_time() - began
         process = freefem.start(
             freefem.find(),
-            f"edp/program/{scene.script}.edp",
+            f"edp/program/{scene.kind.script}.edp",
             flags | {"out": folder / "run"},
             folder / "log.txt",
         )

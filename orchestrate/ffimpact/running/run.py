@@ -110,7 +110,7 @@ def run(
         if not force and (there := reusable(scene, folder, estimate)):
             return there
         provenance = {
-            "script": scene.script,
+            "script": scene.kind.script,
             "version": __version__,
             "code": code_hash(),
             "freefem": program.version,
@@ -202,7 +202,7 @@ def plan(
 
 def states(scene: Scene) -> dict[str, Value]:
     """Returns the default of the entry `fields` if the scene leaves it open, else nothing."""
-    return {"fields": STATES} if scene.content.get("fields") is None else {}
+    return {"fields": STATES} if scene.fields is None else {}
 
 
 def _put(stage: Path, folder: Path, scene: Scene) -> None:
@@ -326,7 +326,7 @@ def _same_scene(folder: Path, scene: Scene) -> bool:
     try:
         provenance = json.loads((folder / name).read_text())["provenance"]
         same_mesh = provenance["gmsh"] == mesh.start_gmsh().__version__
-        same_script, request = provenance["script"] == scene.script, provenance["asked"]
+        same_script, request = provenance["script"] == scene.kind.script, provenance["asked"]
     except (FileNotFoundError, ValueError, KeyError, TypeError):  # it has no such record
         return False
     return bool(same_mesh and same_script and request == scene.decisive_entries)

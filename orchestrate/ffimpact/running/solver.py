@@ -159,7 +159,11 @@ class Solver(AbstractContextManager["Solver", None]):
         flags = flags | {"out": where} | ({"restart": where / "checkpoint"} if goes_on else {})
         process = leaving.enter_context(
             freefem.start(
-                self.program, f"edp/program/{scene.script}.edp", flags, where / "log.txt", self.lock
+                self.program,
+                f"edp/program/{scene.kind.script}.edp",
+                flags,
+                where / "log.txt",
+                self.lock,
             )
         )
         if where == self.stage and self.pair:

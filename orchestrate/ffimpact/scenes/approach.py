@@ -5,10 +5,13 @@ While the bounding spheres are apart no gap is computed: the search goes on from
 polynomials of time to the next.
 """
 
+from __future__ import annotations
+
 import itertools
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -23,7 +26,10 @@ from ..input.dimension import PLANE_STRAIN
 from ..input.obstacles import Drive, Obstacle
 from ..input.parameters import Value
 from ..mesh import mesh
-from .scene import Scene, gap_between
+from .overlap import gap_between
+
+if TYPE_CHECKING:
+    from ..scene import Scene
 
 __all__ = ["Onset", "loaded_pull", "onsets_of", "refuse_nothing", "refuse_sinking", "turned"]
 
@@ -102,16 +108,15 @@ def onsets_of(scene: Scene) -> list[Onset]:
     bodies. They are computed once for a scene and kept in it, as all levels of an error estimate
     ask for them.
     """
-    kept: list[Onset] | None = vars(scene).get("_onsets")
+    kept: list[Onset] | None = vars(scene).get("onsets")
     if kept is None:
-        kept = vars(scene)["_onsets"] = _onsets_of(scene)
+        kept = vars(scene)["onsets"] = _onsets_of(scene)
     return kept
 
 
 @progress.work("searching for the first contact of the bodies")
 def _onsets_of(scene: Scene) -> list[Onset]:
-    scene = replace(
-        scene,
+    scene = scene.replaced(
         bodies=[body.at_mean_velocity for body in scene.bodies],
         obstacles=[obstacle.at_mean_velocity for obstacle in scene.obstacles],
     )
@@ -159,7 +164,7 @@ def _near(scene: Scene) -> list[list[int]]:
 
 def _fall(scene: Scene) -> np.ndarray:
     """Returns the acceleration of free bodies [m/s2]."""
-    fall = np.zeros(scene.dimension.axes)
+    fall = np.zeros(scene.kind.axes)
     if "body_force_x" in scene.values:
         fall[0] = scene.number("body_force_x")
     fall[1] = scene.number("body_force_y") - scene.number("gravity")
@@ -201,7 +206,7 @@ def _in_turn(scene: Scene, onset: Onset) -> list[Onset]:
     turns the rigid bodies, without friction, and other corners strike.
     """
     onsets = [onset]
-    while scene.dimension is PLANE_STRAIN and len(onsets) <= MORE and math.isfinite(onset.time):
+    while scene.kind is PLANE_STRAIN and len(onsets) <= MORE and math.isfinite(onset.time):
         rebound = _rebound(scene, onset)
         if rebound is None:
             break
@@ -259,7 +264,7 @@ def _rebound(scene: Scene, onset: Onset) -> Scene | None:
     still: dict[str, Value] = {
         name: 0.0 for name in ("gravity", "body_force_x", "body_force_y") if name in scene.values
     }
-    return replace(scene, bodies=bodies, values=scene.values | still)
+    return scene.replaced(bodies=bodies, values=scene.values | still)
 
 
 def _middle(onset: Onset) -> np.ndarray:
@@ -326,7 +331,7 @@ def _onset(scene: Scene, first: int, second: int) -> Onset:
     )
     onset = replace(onset, pressed=_pressed(scene, onset))
     onset = replace(onset, sliding=onset.sliding + _turning_speed(other, outlines[0]))
-    if scene.dimension is not PLANE_STRAIN:
+    if scene.kind is not PLANE_STRAIN:
         return onset
     # `spun` [m/s] is the closing velocity of the points in contact, with that by spin.
     point, spun = _middle(onset), velocity @ normal
@@ -378,7 +383,7 @@ def _pressed(scene: Scene, onset: Onset) -> float:
         depths.append(abs(float(moved @ onset.normal)))
     share = min(0.5, max([0.0, *depths]) / onset.radius)
     bar_speed = min(math.sqrt(body.made_of.young / body.made_of.density) for body in bodies)
-    return bar_speed * (0.4 * share if scene.dimension is PLANE_STRAIN else 0.5 * share**1.25)
+    return bar_speed * (0.4 * share if scene.kind is PLANE_STRAIN else 0.5 * share**1.25)
 
 
 def _between(scene: Scene, drive: Drive) -> bool:
@@ -398,7 +403,7 @@ def turned(scene: Scene) -> Scene:
 
     So the region of small elements does not depend on the frame in which the scene is written.
     """
-    if scene.dimension is not PLANE_STRAIN or not any(
+    if scene.kind is not PLANE_STRAIN or not any(
         body.outline.disc and not body.file_mesh for body in scene.bodies
     ):
         return scene
@@ -414,7 +419,7 @@ def turned(scene: Scene) -> Scene:
         before = body.start_spin * first.time if math.isfinite(first.time) else 0.0
         angle = math.atan2(outward[1], outward[0]) + math.pi / 2 - before
         bodies[k] = body.model_copy(update={"start_angle": angle})
-    return replace(scene, bodies=bodies)
+    return scene.replaced(bodies=bodies)
 
 
 def refuse_nothing(scene: Scene, onsets: list[Onset]) -> None:

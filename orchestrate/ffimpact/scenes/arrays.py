@@ -2,9 +2,12 @@
 and radians; vectors have three components.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,7 +18,9 @@ from ..mesh.mesh import AXIS, WIDEST, Mesh
 from ..mesh.plane_file import on_circle
 from ..mesh.solid_mesh import DEPTH, SolidMesh
 from .mirror import copies
-from .scene import Scene
+
+if TYPE_CHECKING:
+    from ..scene import Scene
 
 __all__ = [
     "SHAPES",
@@ -87,8 +92,8 @@ def scene_arrays(scene: Scene, centres: np.ndarray, pairs: list[dict[str, Value]
         if body.rigid
     ]
     return (
-        {"script": scene.script}
-        | {"symmetry_factor": 2 if scene.dimension is AXISYMMETRIC else copies(scene)}
+        {"script": scene.kind.script}
+        | {"symmetry_factor": 2 if scene.kind is AXISYMMETRIC else copies(scene)}
         | table("bodies", _bodies(scene, centres))
         | joined(
             "bodies.law_numbers",
@@ -112,7 +117,7 @@ def parameter_arrays(values: Mapping[str, Value]) -> Entries:
 
 
 def _bodies(scene: Scene, centres: np.ndarray) -> list[Entries]:
-    solid = scene.dimension is SOLID
+    solid = scene.kind is SOLID
     return [
         {
             "name": body.own_name,
@@ -127,9 +132,9 @@ def _bodies(scene: Scene, centres: np.ndarray) -> list[Entries]:
             "velocity": padded(body.start_velocity),
             "spin": padded(body.start_spin) if solid else np.array([0.0, 0.0, body.start_spin]),
             "thickness": 2 * float(body.outline.half_thickness),
-            "of_file": 1 if body.file_mesh else 2 if "file" in content else 0,
+            "of_file": 1 if body.file_mesh else 2 if "file" in body else 0,
         }
-        for content, body, centre in zip(scene.content["body"], scene.bodies, centres)
+        for body, centre in zip(scene.bodies, centres)
     ]
 
 

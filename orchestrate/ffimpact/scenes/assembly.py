@@ -8,6 +8,8 @@ to the start. For bodies of revolution the mesh is the half x >= 0 of their sect
 other, with the label 2 on the axis. So it is for bodies in the plane that are reduced by symmetry.
 """
 
+from __future__ import annotations
+
 import hashlib
 import math
 import tomllib
@@ -15,7 +17,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -36,11 +38,14 @@ from .arrays import Arc, mesh_arrays, padded, parameter_arrays, scene_arrays
 from .front import Front, fronts, stretch_of
 from .mirror import COPIES, copies, mirror_axes
 from .needs import IMPLICIT, implicit_for
+from .pairs import STIFF
 from .parts import conditions
-from .scene import STIFF, Scene, refuse_rest
 from .sizes import Impact
 from .start_fields import start_fields
 from .unstressed import find_unstressed
+
+if TYPE_CHECKING:
+    from ..scene import Scene
 
 __all__ = [
     "Asker",
@@ -130,7 +135,7 @@ def prepare(
         )
     scene = turned(scene)
     onsets = onsets_of(scene)
-    refuse_rest(scene)
+    scene.refuse_rest()
     refuse_nothing(scene, onsets)
     refuse_sinking(scene, onsets)
     built = assemble(scene, onsets=onsets, longer=longer)
@@ -150,29 +155,24 @@ def assemble(
     """
     ask = Asker(scene, onsets_of(scene) if onsets is None else onsets)
     why = implicit_for(scene) if scene.values["integrator"] == "auto" else ""
-    scene = replace(
-        scene,
+    scene = scene.replaced(
         bodies=[_with_viscosity(k, ask) for k in range(len(scene.bodies))],
         values=scene.values | ({"integrator": IMPLICIT} if why else {}),
     )
     ask = replace(ask, scene=scene)
-    values = scene.values | contact_values(scene.bodies, scene.contact, ask, "contact")
+    values = scene.values | contact_values(scene.bodies, scene.contact_values, ask, "contact")
     moving = longer or scene  # whose functions of time last until end_time
     values["end_time"] = moving.values["end_time"]
-    scene = replace(scene, pairs=with_open_penalties(scene, ask))
+    scene = scene.replaced(pairs=with_open_penalties(scene, ask))
     pairs = [pair_values(pair, ask, values) for pair in scene.pairs]
     with progress.work("choosing element sizes"):
         sizes = [
             None if body.file_mesh else element_sizes(k, ask) for k, body in enumerate(scene.bodies)
         ]
     with progress.work("meshing the bodies"):
-        meshes, centres, arcs = (_solids if scene.dimension is SOLID else _sections)(scene, sizes)
+        meshes, centres, arcs = (_solids if scene.kind is SOLID else _sections)(scene, sizes)
     together, regions = stack(meshes, centres)
-    files = [
-        k
-        for k, (table, body) in enumerate(zip(scene.content["body"], scene.bodies))
-        if body.file_mesh or "file" in table
-    ]
+    files = [k for k, body in enumerate(scene.bodies) if body.file_mesh or "file" in body]
     penalties = {
         (pair.first, pair.second): float(own["penalty"]) for pair, own in zip(scene.pairs, pairs)
     }
@@ -192,7 +192,7 @@ def assemble(
         | scene_arrays(scene, centres, pairs)
         | on_mesh
         | start_fields(scene, together, regions, centres, arcs, on_mesh["mesh.arc_of"])
-        | conditions(moving.bodies, meshes, moving.obstacles, scene.dimension, copies(scene))
+        | conditions(moving.bodies, meshes, moving.obstacles, scene.kind, copies(scene))
     )
     decisive = {
         name: value
@@ -219,7 +219,7 @@ def _sections(
             made = mesh_body(boundary_curves(scene, k), size, body.outline.half_thickness)
         assert isinstance(made, mesh.Mesh)
         meshes.append(_reached(scene, k, made))
-    halved = bool(mirror_axes(scene.dimension, copies(scene)))
+    halved = bool(mirror_axes(scene.kind, copies(scene)))
     centres = side_by_side(meshes, 1 if halved else 0)
     circles = [
         Arc(k, padded(centre + at), np.zeros(3), float(radius))
@@ -298,7 +298,7 @@ class Asker:
         """Returns the front of a pair that strikes flat and whose penalty is automatic, else
         None.
         """
-        is_open = pair.own.get("penalty", self.scene.contact["penalty"]) == "auto"
+        is_open = pair.own.get("penalty", self.scene.contact_values["penalty"]) == "auto"
         return self.fronts.get((pair.first, pair.second)) if is_open else None
 
     def small(self, first: int, second: int) -> float:
@@ -354,7 +354,7 @@ class Asker:
         soft = min(bodies, key=lambda body: body.stiffness)
         scene = self.scene
         impact = Impact(
-            sphere=scene.dimension is not PLANE_STRAIN,
+            sphere=scene.kind is not PLANE_STRAIN,
             radius=radius,
             young=soft.made_of.young / (STIFF if soft.rigid else 1),
             nu=soft.made_of.nu,
@@ -403,11 +403,13 @@ def pair_values(pair: Pair, ask: Asker, values: dict[str, Value]) -> dict[str, V
     """
     bodies = [ask.scene.bodies[k] for k in (pair.first, pair.second) if k >= 0]
     alone = "friction_static" in pair.own  # then it sets both coefficients
-    inherited = {name: values[name] for name in ask.scene.contact}
-    inherited["friction_dynamic"] = "auto" if alone else ask.scene.contact["friction_dynamic"]
+    inherited = {name: values[name] for name in ask.scene.contact_values}
+    inherited["friction_dynamic"] = (
+        "auto" if alone else ask.scene.contact_values["friction_dynamic"]
+    )
     small = ask.small(pair.first, pair.second)
     if 0 < small < math.inf:
-        inherited["penalty"] = ask.scene.contact["penalty"]
+        inherited["penalty"] = ask.scene.contact_values["penalty"]
     own = inherited | pair.own
     if front := ask.open_front(pair):
         own["penalty"] = front.penalty(ask.scene.bodies, ask.scene.number("exponent"))
@@ -415,7 +417,7 @@ def pair_values(pair: Pair, ask: Asker, values: dict[str, Value]) -> dict[str, V
     return {name: own[name] for name in OWN}
 
 
-def with_open_penalties(scene: Scene, ask: "Asker") -> list[Pair]:
+def with_open_penalties(scene: Scene, ask: Asker) -> list[Pair]:
     """Returns the pairs of the scene, and those whose automatic penalty differs: flat strikes, and
     a body with an obstacle that is smaller than the contact of the body on a plane.
     """
@@ -425,7 +427,9 @@ def with_open_penalties(scene: Scene, ask: "Asker") -> list[Pair]:
         for onset in ask.onsets
         if 0 < ask.small(onset.first, onset.second) < math.inf
     ]
-    differ = dict.fromkeys([*small, *ask.fronts]) if scene.contact["penalty"] == "auto" else {}
+    differ = (
+        dict.fromkeys([*small, *ask.fronts]) if scene.contact_values["penalty"] == "auto" else {}
+    )
     pairs = scene.pairs + [
         Pair.between(*both, f"obstacle.{-both[1]}" if both[1] < 0 else "contact", {})
         for both in differ
@@ -465,11 +469,15 @@ def used_tables(
         | {key: value for key, value in table.items() if key not in OWN}
         for table, obstacle in zip(scene.content.get("obstacle", []), scene.obstacles)
     ]
-    contact: Table = {key: values[key] for key in scene.contact}
-    contact |= {"self_contact": scene.content.get("contact", {}).get("self_contact", "auto")}
+    contact: Table = {key: values[key] for key in scene.contact_values}
+    contact |= {"self_contact": scene.contact.self_contact or "auto"}
     contact |= {"pair": [{"bodies": names(pair)} | own for pair, own in zip(scene.pairs, pairs)]}
-    top = {"title": scene.title, "script": scene.script, "dimension": scene.dimension.name}
-    if scene.dimension is not AXISYMMETRIC:
+    top = {
+        "title": scene.title or scene.name,
+        "script": scene.kind.script,
+        "dimension": scene.kind.name,
+    }
+    if scene.kind is not AXISYMMETRIC:
         top["symmetry"] = next(word for word, count in COPIES.items() if count == copies(scene))
     return (
         top
@@ -525,7 +533,7 @@ def element_sizes(k: int, ask: Asker) -> Sizes:
     contact = body.contact_size or min(
         [bulk, *(size / stretch for size, *_ in hits), *(front.sizes[k] for front in mine)]
     )
-    near = np.vstack([np.empty((0, ask.scene.dimension.axes)), *(points for _, points, _ in hits)])
+    near = np.vstack([np.empty((0, ask.scene.kind.axes)), *(points for _, points, _ in hits)])
     slack = max([0.0, *(slack for *_, slack in hits)])
     return Sizes(bulk, min(bulk, contact), near, slack, along, stretch)
 
@@ -646,7 +654,7 @@ def boundary_curves(scene: Scene, k: int) -> list[list[tuple[Curve, float, int]]
             return np.inf
         return (ROUND if loop.radius else min(ROUND, finest)) * float(loop.semi_axes.min())
 
-    halved = outline if scene.dimension is AXISYMMETRIC else None
+    halved = outline if scene.kind is AXISYMMETRIC else None
     if copies(scene) > 1:
         halved = revolution.crossing_axis(outline)
     if halved:
@@ -683,7 +691,7 @@ def _holds(scene: Scene, k: int, inner: np.ndarray, rest: np.ndarray) -> bool:
     to the vertices `inner` (n, axes) of that outline than to those of the `rest` of the boundary.
     """
     body = scene.bodies[k]
-    turn = np.eye(3) if scene.dimension is SOLID else rotation(body.start_angle).T
+    turn = np.eye(3) if scene.kind is SOLID else rotation(body.start_angle).T
     own, outer = (points @ turn + body.start_position for points in (inner, rest))
     gaps = [other.placed.gap for j, other in enumerate(scene.bodies) if j != k]
     gaps += [obstacle.gap for obstacle in scene.obstacles]

@@ -1,13 +1,18 @@
 """Changes the sizes of elements and steps of a scene, for the runs that estimate an error."""
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING
 
 from ..input.bodies import SIZES
 from ..input.parameters import Table
 from ..output import estimate
 from .approach import onsets_of
 from .front import fronts, stretch_of
-from .scene import Scene
+
+if TYPE_CHECKING:
+    from ..scene import Scene
 
 __all__ = ["scaled"]
 
@@ -50,7 +55,7 @@ def _pairs(scene: Scene, used: list[Table], factor: float) -> list[Table]:
     estimated error is then that of elements and penalty together (front.py).
     """
     fixed_pairs = {(pair.first, pair.second) for pair in scene.pairs if "penalty" in pair}
-    if scene.contact["penalty"] != "auto" or len(used) == len(fixed_pairs):
+    if scene.contact_values["penalty"] != "auto" or len(used) == len(fixed_pairs):
         return used
     onsets = [front.onset for front in fronts(scene, onsets_of(scene))]
     # The index -1 is obstacle 0.

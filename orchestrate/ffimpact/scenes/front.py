@@ -10,8 +10,11 @@ LONGEST of its transit across the body if that is shorter. Then all errors are o
 element size.
 """
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,7 +22,9 @@ from ..geometry.outlines import Outline, TubeOutline
 from ..input.bodies import Body
 from ..input.dimension import SOLID
 from .approach import Onset
-from .scene import Scene
+
+if TYPE_CHECKING:
+    from ..scene import Scene
 
 __all__ = ["Front", "fronts", "stretch_of"]
 
@@ -158,7 +163,7 @@ def _stays_plane(scene: Scene, k: int, onsets: list[Onset], landings: list[Front
     """
     body = scene.bodies[k]
     is_set = body.file_mesh or body.bulk_size or body.mesh_stretch
-    if scene.dimension is SOLID or is_set or body.supports or body.loads:
+    if scene.kind is SOLID or is_set or body.supports or body.loads:
         return False
     possible = [onset for onset in onsets if k in (onset.first, onset.second) and not onset.never]
     mine = [
@@ -197,7 +202,7 @@ def _size(scene: Scene, onset: Onset, k: int, across: float = 0.0) -> float:
     The latter keeps the body below MOST_UNKNOWNS, and gives at least four elements across the
     thickness.
     """
-    body, axes = scene.bodies[k], scene.dimension.axes
+    body, axes = scene.bodies[k], scene.kind.axes
     content = body.outline.content
     if body.file_mesh:
         return float((content / len(body.file_mesh.elements) / ELEMENT[axes]) ** (1 / axes))

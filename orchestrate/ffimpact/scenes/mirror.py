@@ -3,6 +3,8 @@ three dimensions its half z >= 0 or the quarter x >= 0, z >= 0 (`symmetry`). It 
 and spins zero.
 """
 
+from __future__ import annotations
+
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,7 +18,7 @@ from ..mesh import revolution
 from ..mesh.solids import Solid
 
 if TYPE_CHECKING:
-    from .scene import Scene
+    from ..scene import Scene
 
 __all__ = ["COPIES", "copies", "mirror_axes", "symmetric_along"]
 
@@ -36,14 +38,14 @@ def mirror_axes(dimension: Dimension, copies: int) -> tuple[int, ...]:
     return (0,) if dimension is AXISYMMETRIC or copies == 2 else ()
 
 
-def copies(scene: "Scene") -> int:
+def copies(scene: Scene) -> int:
     """Returns the symmetry factor 1, 2 or 4: whole scene over computed part. Of revolution it is 1.
     Raises BadInput if the scene has less symmetry than its entry demands.
     """
-    if scene.dimension is AXISYMMETRIC:
+    if scene.kind is AXISYMMETRIC:
         return 1
-    symmetry = scene.content.get("symmetry", "auto")
-    if scene.dimension is SOLID:
+    symmetry = scene.symmetry or "auto"
+    if scene.kind is SOLID:
         half = _broken(scene, 2)
         quarter = half or _broken(scene, 0)
     else:
@@ -58,17 +60,17 @@ def copies(scene: "Scene") -> int:
     return COPIES[symmetry]
 
 
-def symmetric_along(scene: "Scene") -> list[str]:
+def symmetric_along(scene: Scene) -> list[str]:
     """Returns the axes along which no body can move, because the scene is its own mirror image in a
     plane normal to the axis. A case of the paper (without bodies) counts as not symmetric.
     """
-    if scene.dimension is SOLID:
+    if scene.kind is SOLID:
         return [AXES[axis] for axis in (0, 2) if not _broken(scene, axis)]
-    planar = scene.bodies and scene.dimension is PLANE_STRAIN
+    planar = scene.bodies and scene.kind is PLANE_STRAIN
     return [AXES[axis] for axis in (0, 1) if planar and _is_mirrored_in_plane(scene, axis)]
 
 
-def _is_mirrored_in_plane(scene: "Scene", axis: int) -> bool:
+def _is_mirrored_in_plane(scene: Scene, axis: int) -> bool:
     """Whether a plane scene is its own mirror image in the line normal to an axis through the centre
     of its first body. Shapes are compared by their signed distances.
     """
@@ -108,7 +110,7 @@ def _is_mirrored_in_plane(scene: "Scene", axis: int) -> bool:
     )
 
 
-def _broken_in_plane(scene: "Scene") -> str:
+def _broken_in_plane(scene: Scene) -> str:
     """Returns why the half x >= 0 of a plane scene does not represent all of it, "" if it does."""
     if scene.bodies[0].start_position[0] != 0 or not _is_mirrored_in_plane(scene, 0):
         return "the scene is not its own mirror image in x = 0"
@@ -124,7 +126,7 @@ def _broken_in_plane(scene: "Scene") -> str:
     return ""
 
 
-def _broken(scene: "Scene", axis: int) -> str:
+def _broken(scene: Scene, axis: int) -> str:
     """Returns what has no mirror image in the plane through the origin normal to an axis, "" if the
     scene is symmetric.
     """

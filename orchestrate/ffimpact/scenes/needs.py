@@ -14,7 +14,7 @@ from ..input.materials import LAW_WORDS
 from ..input.parameters import PARAMETERS, Value
 
 if TYPE_CHECKING:
-    from .scene import Scene
+    from ..scene import Scene
 
 __all__ = ["EXPLICIT", "IMPLICIT", "NEEDS", "Need", "implicit_for", "refuse"]
 
@@ -99,7 +99,7 @@ NEEDS = (
     Need(
         "penalty_damping needs",
         False,
-        lambda scene: scene.contact["penalty_damping"] > 0,
+        lambda scene: scene.contact_values["penalty_damping"] > 0,
         {"integrator": (*_MIDDLE, EXPLICIT)},
     ),
 )

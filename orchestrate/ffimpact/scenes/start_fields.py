@@ -2,7 +2,10 @@
 (edp/program/run/start.idp).
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,7 +16,9 @@ from ..input.dimension import PLANE_STRAIN
 from ..mesh.mesh import Mesh
 from ..mesh.solid_mesh import SolidMesh
 from .arrays import Arc
-from .scene import Scene
+
+if TYPE_CHECKING:
+    from ..scene import Scene
 
 __all__ = ["start_fields"]
 
@@ -43,7 +48,7 @@ def start_fields(
         fields = [body.fields.get(name) for body in scene.bodies]
         for k, (body, field) in enumerate(zip(scene.bodies, fields)):
             if field:
-                plane = scene.dimension is PLANE_STRAIN
+                plane = scene.kind is PLANE_STRAIN
                 turn = rotation(body.start_angle) if plane else np.eye(nodes.shape[2])
                 mine = regions == k
                 place = (nodes[mine] - centres[k]) @ turn.T + body.start_position

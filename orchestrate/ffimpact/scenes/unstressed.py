@@ -1,16 +1,21 @@
 """Finds the unstressed shape of bodies whose given shape is that under their gases."""
 
+from __future__ import annotations
+
 import math
 import shutil
 from collections.abc import Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..failure import BadInput, of_code
 from ..freefem import freefem
 from ..freefem.arrays import packed
-from .scene import Scene
+
+if TYPE_CHECKING:
+    from ..scene import Scene
 
 __all__ = ["find_unstressed"]
 
@@ -36,7 +41,7 @@ def find_unstressed(scene: Scene, flags: Mapping[str, object], where: Path) -> N
     for _ in range(MOST):
         code, message = freefem.run(
             freefem.find(),
-            f"edp/program/{scene.script}.edp",
+            f"edp/program/{scene.kind.script}.edp",
             {**flags, "out": out},
             where / "log.txt",
         )

@@ -28,7 +28,7 @@ from ..output.folder import failed_beside
 from ..output.results import Record, read_json
 from ..progress import Line, forward
 from ..running import run
-from ..scenes.scene import Scene
+from ..scene import Scene
 
 __all__ = [
     "CORES",

@@ -41,7 +41,7 @@ from ..input.parameters import Table, Value
 from ..output import columns
 from ..output.folder import result_folder
 from ..places import RESULTS, shown
-from ..scenes.scene import Scene
+from ..scene import Scene
 from . import study, sweep_figures
 
 __all__ = ["Sweep", "built_in", "collect", "load", "main", "report", "table"]
@@ -290,7 +290,7 @@ def _sweep(path: Path, content: Table, text: str) -> Sweep:
         raise BadInput("estimate: true beside [refine] (accepted: one of them)")
     figure = (
         sweep_figures.check(tables["figure"], points, collected, loaded.columns)
-        | {"per": dimension.per_metre(loaded.script)}
+        | {"per": dimension.per_metre(loaded.kind.script)}
         if tables["figure"]
         else {}
     )
@@ -495,7 +495,7 @@ def _units(sweep: Sweep, names: list[str]) -> str:
     """Returns the units of columns of sweep.csv in words, from the parameters and the table of
     what a run records.
     """
-    of_table = columns.units(dimension.per_metre(sweep.sample.script), names)
+    of_table = columns.units(dimension.per_metre(sweep.sample.kind.script), names)
     units = {name: of_table.get(name) or sweep_figures.unit_of(name) for name in names}
     text = ", ".join(f"{name} {unit}" for name, unit in units.items() if unit not in ("", "-", "1"))
     return f"units: {text}" if text else "units: none"
