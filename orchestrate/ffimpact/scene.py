@@ -48,6 +48,8 @@ __all__ = ["RUN", "SCENES", "Scene", "absent", "built_in", "load", "read", "read
 
 # The parameters of a run, at the top of a scene.
 RUN = tuple(name for name in models.Top.__annotations__ if name in PARAMETERS and name not in SIZES)
+# Entries, beside those of contact, on which the motion up to the first contacts does not depend.
+UNMOVED = (*SIZES, "mesh_stretch", "accuracy", "dt", "fields", "modes")
 LONG = 100  # number of items from which on a list is a table
 
 
@@ -85,6 +87,7 @@ class Scene(models.Top):
     _content: Table = PrivateAttr(default_factory=dict)
     _released: tuple[str, ...] = PrivateAttr(())
     _ready: Scene | None = PrivateAttr(None)
+    _memory: dict[str, Any] = PrivateAttr(default_factory=dict)
 
     # ---- from files, tables and Python
 
@@ -176,6 +179,11 @@ class Scene(models.Top):
         messages = release(changed, list(named))
         scene = self.read(changed, self.folder, self.name)
         scene._released = self.released + messages
+        entries_alike = [
+            name.startswith("contact.") or name.rpartition(".")[2] in UNMOVED for name in named
+        ]
+        if all(entries_alike):
+            scene._memory = self._memory
         return scene
 
     def _with(self, named: dict[str, Value]) -> Table:
@@ -221,7 +229,7 @@ class Scene(models.Top):
         """Sets an entry if the whole scene is accepted with it. Raises BadInput."""
         if not name.startswith("_"):
             made = type(self)(**(dict(self.entries()) | {name: value}))
-            vars(self).pop("kind", None)
+            self.forget_derived()
             vars(self)[name] = getattr(made, name)
         else:
             super().__setattr__(name, value)
@@ -297,10 +305,17 @@ class Scene(models.Top):
             own.setdefault((k, k), Pair.between(k, k, "contact", {}))
         return [own[both] for both in sorted(own)]
 
-    def replaced(self, **derived: Any) -> Scene:
+    @property
+    def memory(self) -> dict[str, Any]:
+        """What is known of the motion up to the first contacts (scenes/approach.py). Scenes that move
+        alike, such as the levels of an error estimate, share it.
+        """
+        return self._memory
+
+    def replaced(self, memory: dict[str, Any] | None = None, **derived: Any) -> Scene:
         """Returns a copy with other bodies, obstacles, values or pairs, for what follows from them."""
         copy = self.model_copy(update=derived)
-        vars(copy).pop("onsets", None)
+        copy._memory = {} if memory is None else memory
         return copy
 
     @property
@@ -415,7 +430,7 @@ class Scene(models.Top):
             raise BadInput("body: is missing (accepted: one table [[body]] or more)")
         if self.script not in (None, self.kind.script):
             raise BadInput(
-                f"script: '{self.script}' is not that of [[body]] tables in "
+                f"script: '{brief(self.script)}' is not that of [[body]] tables in "
                 f"dimension = '{self.kind.name}' (accepted: {self.kind.script})"
             )
         gathered(

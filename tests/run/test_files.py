@@ -234,7 +234,7 @@ def test_a_disc_from_a_file_is_not_turned(tmp_path):
     body = {"shape": "mesh", "file": "disc.msh", "position": [0, 0], "angle": 90, "velocity": [1, 0]}
     problem = read(tables(body, obstacles=[wall]), tmp_path, "x")
     assert problem.bodies[0].outline.disc
-    assert approach.turned(problem).bodies[0].start_angle == pytest.approx(math.pi / 2)
+    assert approach.with_discs_aligned(problem).bodies[0].start_angle == pytest.approx(math.pi / 2)
     prepared(tables(body, obstacles=[wall]), tmp_path, tmp_path / "1")
     with pytest.raises(BadInput, match="^body.1.file: .* which is no contact boundary"):
         prepared(tables(body | {"angle": -90}, obstacles=[wall]), tmp_path, tmp_path / "2")

@@ -51,7 +51,7 @@ def test_a_disc_is_meshed_finely_where_it_touches_whatever_its_angle(tmp_path):
     """A disc comes into contact with its lowest point. The angle in the scene has no effect."""
     from ffimpact.scenes import approach
     for angle in (0.0, 50.0):
-        problem = approach.turned(read(seen(scene.load("two-discs").content | {"body": [body | {"angle": angle} for body in scene.load("two-discs").content["body"]]}), tmp_path, "x"))
+        problem = approach.with_discs_aligned(read(seen(scene.load("two-discs").content | {"body": [body | {"angle": angle} for body in scene.load("two-discs").content["body"]]}), tmp_path, "x"))
         met, = approach.onsets_of(problem)
         touching = problem.bodies[0].start_position * 0 - met.normal
         assert problem.bodies[0].start_angle - math.pi / 2 == pytest.approx(math.atan2(touching[1], touching[0]), abs=1e-6)
@@ -81,7 +81,7 @@ def test_no_mesh_depends_on_the_unit_of_length(shape, tmp_path):
     floor = {"kind": "plane", "point": [0.0, 0.0, 0.0][:len(body["position"])], "normal": [0.0, 1.0, 0.0][:len(body["position"])]}
     for metre in (1, 100, 1000):
         tables = in_unit(MATERIAL | {"gravity": 9.81}, metre) | {"body": [in_unit(body, metre)], "obstacle": [floor], "dimension": "3d" if solid else "plane-strain"}
-        tables = approach.turned(read(tables, tmp_path, "unit"))
+        tables = approach.with_discs_aligned(read(tables, tmp_path, "unit"))
         node_sets.append(assembly.assemble(tables, onsets=approach.onsets_of(tables)).mesh.points / metre)
     assert node_sets[1].shape == node_sets[0].shape == node_sets[2].shape
     assert max(abs(nodes - node_sets[0]).max() for nodes in node_sets) < 1e-12

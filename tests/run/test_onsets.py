@@ -157,7 +157,7 @@ def test_elements_follow_the_radius_of_an_obstacle(dimension, kind):
     for radius in (0.005, 0.0005, 0.05, 50):
         tables = scene(body, peg(radius, kind, axes), dimension=dimension)
         ask = assembly.Asker(tables, approach.onsets_of(tables))
-        values = assembly.contact_values(tables.bodies, tables.contact, ask, "contact")
+        values = assembly.contact_values(tables.bodies, tables.contact_values, ask, "contact")
         sizes.append(assembly.element_sizes(0, ask).contact)
         own = [assembly.pair_values(pair, ask, values) for pair in assembly.with_open_penalties(tables, ask)]
         penalties.append(own[0]["penalty"] if own else values["penalty"])

@@ -401,8 +401,8 @@ def test_what_a_scene_fixed_for_its_own_follows(name, entries, opened, kept):
     before = scene.load(name)
     after = before.override(entries)
     used = assembly.assemble(after).used
-    values = used | used["contact"] | after.values | after.sizes | {name: value for name, value in after.contact.items() if value == "auto"}
-    assert all((after.contact[entry] == "auto" if value == "auto" else values[entry] == value) or used["contact"].get(entry) == value for entry, value in opened.items())
+    values = used | used["contact"] | after.values | after.sizes | {name: value for name, value in after.contact_values.items() if value == "auto"}
+    assert all((after.contact_values[entry] == "auto" if value == "auto" else values[entry] == value) or used["contact"].get(entry) == value for entry, value in opened.items())
     assert all(used["contact"].get(entry, after.values.get(entry)) == value for entry, value in kept.items())
     freed = set(opened) - set(entries)
     assert len(after.released) == len(freed) and all(any(f"{entry} is reset to automatic" in message for message in after.released) for entry in freed)
@@ -428,9 +428,9 @@ def test_what_a_scene_of_bodies_fixed_follows():
     after = bowl.override({"contact.friction_static": "0.3"})
     assert after.contact_values["friction_dynamic"] == "auto" and after.released == ("contact.friction_dynamic is reset to automatic: the value 0.4 of the scene belonged to its own contact.friction_static",)
     stiff = bowl.override({"contact.penalty": 1e9, "dt": 1e-4})
-    assert not stiff.released and stiff.override({"body.1.velocity": [0, -1], "gravity": 1}).contact["penalty"] == 1e9
+    assert not stiff.released and stiff.override({"body.1.velocity": [0, -1], "gravity": 1}).contact_values["penalty"] == 1e9
     for name, value in (("body.1.young", 1e6), ("young", 1e6), ("contact.exponent", 1.5)):
-        assert stiff.override({name: value}).contact["penalty"] == "auto"
+        assert stiff.override({name: value}).contact_values["penalty"] == "auto"
     assert (stiff.override({"young": 1e6}).values["dt"], stiff.override({"contact.exponent": 2}).values["dt"]) == (0, 1e-4)
     larger = bowl.override({"body.1.radius": 0.04})
     assert larger.bodies[0].bulk_size == larger.bodies[0].contact_size == 0 and len(larger.released) == 2

@@ -79,64 +79,62 @@ class Body(OfMaterial):
         "angle": (PLANE_STRAIN, SOLID), "turn": (SOLID,), "spin": (PLANE_STRAIN, SOLID),
     }  # fmt: skip
 
-    name: Annotated[str | None, Name("of its own")] = None
-    position: Annotated[Components | None, Place("of the centre of mass [m]")]
-    velocity: Annotated[Components | None, Place("of the centre of mass [m/s]")] = None
+    name: Annotated[str | None, Name(), "of its own"] = None
+    position: Annotated[Components | None, Place(), "of the centre of mass [m]"]
+    velocity: Annotated[Components | None, Place(), "of the centre of mass [m/s]"] = None
     mesh_size: Annotated[
-        float | None, real(0, 0, 1e9, "m", "largest element size; 0 = by accuracy", OF_BODIES)
+        float | None, real(0, 0, 1e9, "m", OF_BODIES), "largest element size; 0 = by accuracy"
     ] = None
     contact_mesh_size: Annotated[
         float | None,
-        real(0, 0, 1e9, "m", "element size at the contact boundary; 0 = from accuracy", OF_BODIES),
+        real(0, 0, 1e9, "m", OF_BODIES),
+        "element size at the contact boundary; 0 = from accuracy",
     ] = None
     mesh_stretch: Annotated[
         float | None,
-        number(
-            0.0,
-            MOST_STRETCH,
-            "",
-            "length of the elements across the normal of the first contact over that along it, from"
-            " 1; 0 = by accuracy where a face lands flat, else 1",
-        ),
+        number(0.0, MOST_STRETCH, ""),
+        "length of the elements across the normal of the first contact over that along it, from"
+        " 1; 0 = by accuracy where a face lands flat, else 1",
     ] = None
     support: Annotated[list[Support] | None, BeforeValidator(several)] = None
     load: Annotated[list[Load] | None, BeforeValidator(several)] = None
-    rigid: Annotated[bool | None, Flag("moves without deforming")] = None
+    rigid: Annotated[bool | None, Flag(), "moves without deforming"] = None
     mass: Annotated[
-        float | None, number(1e-12, LONGEST, "", "of a rigid body [kg, in the plane kg/m]")
+        float | None, number(1e-12, LONGEST, ""), "of a rigid body [kg, in the plane kg/m]"
     ] = None
     inertia: Annotated[
         Components | None,
-        InSpace(number(1e-18, LONGEST, ""), "of a rigid body [kg m2]", about_z=False),
+        InSpace(number(1e-18, LONGEST, ""), about_z=False),
+        "of a rigid body [kg m2]",
     ] = None
-    angle: Annotated[float | None, number(-MOST_TURN, MOST_TURN, "deg", "turned by, about z")] = (
+    angle: Annotated[float | None, number(-MOST_TURN, MOST_TURN, "deg"), "turned by, about z"] = (
         None
     )
     turn: Annotated[
         list[float] | None,
-        Vector("turned about a vector of this length [degrees]", -MOST_TURN, MOST_TURN, 3),
+        Vector(-MOST_TURN, MOST_TURN, 3),
+        "turned about a vector of this length [degrees]",
     ] = None
     speed: Annotated[
-        float | None, real(0, 0, 1e9, "m/s", "in place of velocity, with direction", OF_BODIES)
+        float | None, real(0, 0, 1e9, "m/s", OF_BODIES), "in place of velocity, with direction"
     ] = None
     direction: Annotated[
         float | None,
-        number(
-            -MOST_TURN, MOST_TURN, "deg", "of the speed, in the plane of x and y, from the x axis"
-        ),
+        number(-MOST_TURN, MOST_TURN, "deg"),
+        "of the speed, in the plane of x and y, from the x axis",
     ] = None
     spin: Annotated[
         Components | None,
         InSpace(
-            real(0, -1e12, 1e12, "rad/s", "spin at the start, counter-clockwise", OF_BODIES),
-            "angular velocity [rad/s]; in space a vector",
+            real(0, -1e12, 1e12, "rad/s", OF_BODIES).means("spin at the start, counter-clockwise")
         ),
+        "angular velocity [rad/s]; in space a vector",
     ] = None
     initial_velocity: Annotated[
-        Placed | None, OfPlace("of the points of the body [m/s], on top of velocity and spin")
+        Placed | None, OfPlace(), "of the points of the body [m/s], on top of velocity and spin"
     ] = None
     initial_displacement: Annotated[
-        Placed | None, OfPlace("of the points of the body [m], which deforms it")
+        Placed | None, OfPlace(), "of the points of the body [m], which deforms it"
     ] = None
 
     @model_validator(mode="before")
@@ -518,10 +516,11 @@ class Drawn(Body):
 
     position: Annotated[
         Components | None,
-        Place("of the centre of mass, or with placement = 'as-drawn' of the origin [m]"),
+        Place(),
+        "of the centre of mass, or with placement = 'as-drawn' of the origin [m]",
     ] = None
     placement: Annotated[
-        str | None, Parameter("", "word", None, "-", "what `position` places", words=PLACEMENTS)
+        str | None, Parameter("", "word", None, "-", words=PLACEMENTS), "what `position` places"
     ] = None
 
     @property
@@ -544,8 +543,8 @@ class Drawn(Body):
 class Hollow(Body):
     """The entries of a body with a wall."""
 
-    radius: Annotated[float, number(meaning="outer radius")]
-    inner_radius: Annotated[float, number(meaning="inner radius")]
+    radius: Annotated[float, number(), "outer radius"]
+    inner_radius: Annotated[float, number(), "inner radius"]
 
     def refusals(self) -> Iterator[tuple[str, str]]:
         yield from super().refusals()

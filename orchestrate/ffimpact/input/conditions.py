@@ -115,12 +115,13 @@ class Support(Condition):
     where: Annotated[str | dict[str, Any], WHERE]
     fix: Annotated[
         str | None,
-        Parameter("", "word", None, "", "what is held", words=("all", "x", "y", "z", "normal")),
+        Parameter("", "word", None, "", words=("all", "x", "y", "z", "normal")),
+        "what is held",
     ] = None
-    motion: Annotated[Timed | None, Function("displacement [m], a function of t for each axis")] = (
-        None
-    )
-    release: Annotated[float | None, number(1e-12, LONGEST, "s", "time from which it is free")] = (
+    motion: Annotated[
+        Timed | None, Function(), "displacement [m], a function of t for each axis"
+    ] = None
+    release: Annotated[float | None, number(1e-12, LONGEST, "s"), "time from which it is free"] = (
         None
     )
 
@@ -185,29 +186,19 @@ class Gas(Entries):
 
     gauge_pressure: Annotated[
         float,
-        number(
-            -MOST_PRESSURE,
-            MOST_PRESSURE,
-            "Pa",
-            "over the pressure outside, in equilibrium with the body at the start",
-        ),
+        number(-MOST_PRESSURE, MOST_PRESSURE, "Pa"),
+        "over the pressure outside, in equilibrium with the body at the start",
     ]
     exponent: Annotated[
-        float | None, number(0.0, 10.0, "", "n of p V^n; 1: isothermal, 1.4: air")
+        float | None, number(0.0, 10.0, ""), "n of p V^n; 1: isothermal, 1.4: air"
     ] = None
     ambient_pressure: Annotated[
-        float | None, number(0.0, MOST_PRESSURE, "Pa", "outside; an atmosphere where it is open")
+        float | None, number(0.0, MOST_PRESSURE, "Pa"), "outside; an atmosphere where it is open"
     ] = None
     given_shape: Annotated[
         str | None,
-        Parameter(
-            "",
-            "word",
-            None,
-            "",
-            "of the body: unstressed (default), or inflated as at the start",
-            words=("unstressed", "inflated"),
-        ),
+        Parameter("", "word", None, "", words=("unstressed", "inflated")),
+        "of the body: unstressed (default), or inflated as at the start",
     ] = None
 
     @property
@@ -225,10 +216,10 @@ class Load(Condition):
     nested = {"gas": Gas}
     where: Annotated[str | dict[str, Any], WHERE]
     traction: Annotated[
-        Timed | None, Function("per reference area [Pa], a function of t for each axis")
+        Timed | None, Function(), "per reference area [Pa], a function of t for each axis"
     ] = None
     pressure: Annotated[
-        Timed | None, Function("follows the surface [Pa], a function of t", single=True)
+        Timed | None, Function(single=True), "follows the surface [Pa], a function of t"
     ] = None
     gas: Gas | None = None
 

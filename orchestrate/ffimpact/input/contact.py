@@ -21,28 +21,19 @@ class OfContact(Entries):
 
     penalty: Annotated[
         float | str | None,
-        real(
-            "auto",
-            1e-12,
-            1e100,
-            "Pa/m^m",
-            "contact stiffness k of (10); auto = stiff beside the body, from young, the width of the "
-            "contact and the exponent",
-        ),
+        real("auto", 1e-12, 1e100, "Pa/m^m"),
+        "contact stiffness k of (10); auto = stiff beside the body, from young, the width of the "
+        "contact and the exponent",
     ] = None
     friction_static: Annotated[
         float | None,
-        real(
-            0,
-            0,
-            10,
-            "-",
-            "static coefficient mu_e of (12), for |v_T| < slip_velocity; at least friction_dynamic",
-        ),
+        real(0, 0, 10, "-"),
+        "static coefficient mu_e of (12), for |v_T| < slip_velocity; at least friction_dynamic",
     ] = None
     friction_dynamic: Annotated[
         float | str | None,
-        real("auto", 0, 10, "-", "dynamic coefficient mu_d of (12); auto = friction_static"),
+        real("auto", 0, 10, "-"),
+        "dynamic coefficient mu_d of (12); auto = friction_static",
     ] = None
 
     default_static: ClassVar[float | None] = None  # friction_static; None: that of the scene
@@ -77,7 +68,7 @@ class Pair(OfContact):
     They replace the entries of the whole scene.
     """
 
-    bodies: Annotated[Sequence[str] | None, Partners("two names")] = None
+    bodies: Annotated[Sequence[str] | None, Partners(), "two names"] = None
     _surfaces: tuple[int, int] = PrivateAttr((0, 0))
 
     @classmethod
@@ -103,56 +94,34 @@ class Contact(OfContact):
 
     nested = {"pair": Pair}
     default_static = 0.0
-    exponent: Annotated[float | None, real(1, 1, 4, "-", "contact exponent m of (10)")] = None
+    exponent: Annotated[float | None, real(1, 1, 4, "-"), "contact exponent m of (10)"] = None
     slip_velocity: Annotated[
         float | str | None,
-        real(
-            "auto",
-            1e-15,
-            1e9,
-            "m/s",
-            "epsilon of (12) and (13); auto = a hundredth of the speeds of the scene",
-        ),
+        real("auto", 1e-15, 1e9, "m/s"),
+        "epsilon of (12) and (13); auto = a hundredth of the speeds of the scene",
     ] = None
     regularization: Annotated[
         str | None,
-        word(
-            "linear",
-            ("linear", "linear-printed", "sqrt", "tanh"),
-            "phi of (13); linear-printed as the paper prints it; sqrt and tanh stay below mu_e for "
-            "|v_T| < slip_velocity",
-        ),
+        word("linear", ("linear", "linear-printed", "sqrt", "tanh")),
+        "phi of (13); linear-printed as the paper prints it; sqrt and tanh stay below mu_e for "
+        "|v_T| < slip_velocity",
     ] = None
     friction_transition: Annotated[
         str | None,
-        word(
-            "jump",
-            ("jump", "smooth"),
-            "from static to dynamic: the paper's jump at slip_velocity, or a half cosine up to twice "
-            "that (resolve it: dt (mu_e - mu_d) times the deceleration below slip_velocity)",
-        ),
+        word("jump", ("jump", "smooth")),
+        "from static to dynamic: the paper's jump at slip_velocity, or a half cosine up to twice "
+        "that (resolve it: dt (mu_e - mu_d) times the deceleration below slip_velocity)",
     ] = None
     penalty_damping: Annotated[
         float | None,
-        real(
-            0,
-            0,
-            1e9,
-            "s",
-            "retardation time tau of the penalty: a closing contact takes t_N + tau dt_N/dt instead of "
-            "t_N of (10), never below 0; 0 = none. It takes energy (penalty_damping_work)",
-        ),
+        real(0, 0, 1e9, "s"),
+        "retardation time tau of the penalty: a closing contact takes t_N + tau dt_N/dt instead of "
+        "t_N of (10), never below 0; 0 = none. It takes energy (penalty_damping_work)",
     ] = None
     self_contact: Annotated[
         str | None,
-        Parameter(
-            "",
-            "word",
-            None,
-            "-",
-            "whether bodies may come into contact with themselves",
-            words=("auto", "on", "off"),
-        ),
+        Parameter("", "word", None, "-", words=("auto", "on", "off")),
+        "whether bodies may come into contact with themselves",
     ] = None
     pair: Annotated[list[Pair] | None, BeforeValidator(several)] = None
 

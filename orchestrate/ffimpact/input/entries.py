@@ -128,8 +128,21 @@ class Entries(BaseModel, metaclass=_Made):
                 raise
             raise BadInput(*_lines(type(self), error, type(self).__name__, ": ", None)) from None
         self._given = {**self._given, name: value}
-        for derived in self.__dict__.keys() - type(self).model_fields.keys():
-            del self.__dict__[derived]  # values of cached properties
+        self.forget_derived()
+
+    def forget_derived(self) -> None:
+        """Removes the values of cached properties, which follow from the entries."""
+        for name in self.__dict__.keys() - type(self).model_fields.keys():
+            del self.__dict__[name]
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **keywords: Any) -> None:
+        """Gives rules the meanings that stand behind them."""
+        for field in cls.model_fields.values():
+            texts = [item for item in field.metadata if isinstance(item, str)]
+            rules = [item for item in field.metadata if not isinstance(item, str)]
+            if texts:
+                field.metadata = [rules[0].means(*texts), *rules[1:]]
 
     @model_validator(mode="wrap")
     @classmethod

@@ -40,22 +40,14 @@ __all__ = [
 OF_BODIES = ()  # of no script: entries of bodies
 # The words of the laws in edp/kernels/laws.cpp.
 LAW_WORDS = ("svk", "neohookean", "mooney-rivlin", "ogden", "incompressible")
-LAW = word(
-    "svk",
-    LAW_WORDS,
-    "constitutive law: St. Venant-Kirchhoff (5), compressible neo-Hookean (6), or another",
-    OF_BODIES,
+LAW = word("svk", LAW_WORDS, OF_BODIES).means(
+    "constitutive law: St. Venant-Kirchhoff (5), compressible neo-Hookean (6), or another"
 )
-YOUNG = real(7e6, 1e-6, 1e18, "Pa", "Young's modulus E", OF_BODIES)
-NU = real(
-    0.45,
-    0,
-    0.5,
-    "-",
-    "Poisson's ratio; the paper says only nu -> 0.5; 0.5: J = 1, of all laws but svk",
-    OF_BODIES,
+YOUNG = real(7e6, 1e-6, 1e18, "Pa", OF_BODIES).means("Young's modulus E")
+NU = real(0.45, 0, 0.5, "-", OF_BODIES).means(
+    "Poisson's ratio; the paper says only nu -> 0.5; 0.5: J = 1, of all laws but svk"
 )
-DENSITY = real(1722, 1e-15, 1e12, "kg/m3", "reference density", OF_BODIES)
+DENSITY = real(1722, 1e-15, 1e12, "kg/m3", OF_BODIES).means("reference density")
 DAMPING = ("viscosity", "bulk_viscosity", "relaxation_modulus", "relaxation_time")
 # Largest nu in the speed of waves. The stiffness by a larger nu acts on the volume of elements.
 STIFFEST = 0.45
@@ -71,57 +63,42 @@ class OfMaterial(Entries):
     nu: Annotated[float | None, NU] = None
     density: Annotated[float | None, DENSITY] = None
     share: Annotated[
-        float | None, number(0.0, 1.0, "-", "mooney-rivlin: part of I2 in the shear modulus")
+        float | None, number(0.0, 1.0, "-"), "mooney-rivlin: part of I2 in the shear modulus"
     ] = None
     alpha: Annotated[
-        list[float] | None, Numbers(-30.0, 30.0, 3, "ogden: exponents of one to three terms")
+        list[float] | None, Numbers(-30.0, 30.0, 3), "ogden: exponents of one to three terms"
     ] = None
     mu: Annotated[
         list[float] | None,
-        Numbers(-1e18, 1e18, 3, "ogden: moduli of the terms [Pa], in place of young"),
+        Numbers(-1e18, 1e18, 3),
+        "ogden: moduli of the terms [Pa], in place of young",
     ] = None
     viscosity: Annotated[
         float | None,
-        real(
-            0,
-            0,
-            1e18,
-            "Pa s",
-            "viscosity eta of the material: beside the law's stress 2 eta D, D the rate of deformation",
-            OF_BODIES,
-        ),
+        real(0, 0, 1e18, "Pa s", OF_BODIES),
+        "viscosity eta of the material: beside the law's stress 2 eta D, D the rate of deformation",
     ] = None
     bulk_viscosity: Annotated[
         float | None,
-        real(0, 0, 1e18, "Pa s", "viscosity zeta of volume: beside it zeta tr(D) I", OF_BODIES),
+        real(0, 0, 1e18, "Pa s", OF_BODIES),
+        "viscosity zeta of volume: beside it zeta tr(D) I",
     ] = None
     relaxation_modulus: Annotated[
         float | None,
-        real(
-            0,
-            0,
-            1e18,
-            "Pa",
-            "shear modulus G of a Maxwell branch beside the law, which relaxes in relaxation_time; 0 "
-            "= none",
-            OF_BODIES,
-        ),
+        real(0, 0, 1e18, "Pa", OF_BODIES),
+        "shear modulus G of a Maxwell branch beside the law, which relaxes in relaxation_time; 0 "
+        "= none",
     ] = None
     relaxation_time: Annotated[
         float | None,
-        real(0, 0, 1e9, "s", "its time tau: G exp(-t/tau) is left of G after t", OF_BODIES),
+        real(0, 0, 1e9, "s", OF_BODIES),
+        "its time tau: G exp(-t/tau) is left of G after t",
     ] = None
     loss: Annotated[
         float | None,
-        real(
-            0,
-            0,
-            10,
-            "-",
-            "loss factor tan delta of shear at the first mode of the disc or ball: sets viscosity; 0 "
-            "= by viscosity",
-            OF_BODIES,
-        ),
+        real(0, 0, 10, "-", OF_BODIES),
+        "loss factor tan delta of shear at the first mode of the disc or ball: sets viscosity; 0 "
+        "= by viscosity",
     ] = None
 
     @classmethod

@@ -43,193 +43,134 @@ class Top(OfMaterial):
     They control the run, and set the material and mesh sizes of bodies without their own.
     """
 
-    title: Annotated[str | None, Text("a line about it")] = None
-    script: Annotated[str | None, Text("script of edp/")] = None
+    title: Annotated[str | None, Text(), "a line about it"] = None
+    script: Annotated[str | None, Text(), "script of edp/"] = None
     dimension: Annotated[
         str | None,
-        Parameter("", "word", None, "-", "what it is computed in", words=tuple(DIMENSIONS)),
+        Parameter("", "word", None, "-", words=tuple(DIMENSIONS)),
+        "what it is computed in",
     ] = None
     symmetry: Annotated[
         str | None,
-        Parameter(
-            "",
-            "word",
-            None,
-            "-",
-            "the part that is computed: in the plane the half x >= 0, in space the half z >= 0, or of "
-            "that the half x >= 0; auto = the least that represents the scene",
-            words=("auto", "full", "half", "quarter"),
-        ),
+        Parameter("", "word", None, "-", words=("auto", "full", "half", "quarter")),
+        "the part that is computed: in the plane the half x >= 0, in space the half z >= 0, or of "
+        "that the half x >= 0; auto = the least that represents the scene",
     ] = None
     only = {"symmetry": (PLANE_STRAIN, SOLID)}
     mesh_size: Annotated[
-        float | None, real(0, 0, 1e9, "m", "element size in the bulk; 0 = from accuracy", OF_BODIES)
+        float | None, real(0, 0, 1e9, "m", OF_BODIES), "element size in the bulk; 0 = from accuracy"
     ] = None
     contact_mesh_size: Annotated[
         float | None,
-        real(0, 0, 1e9, "m", "element size at the contact boundary; 0 = from accuracy", OF_BODIES),
+        real(0, 0, 1e9, "m", OF_BODIES),
+        "element size at the contact boundary; 0 = from accuracy",
     ] = None
     gravity: Annotated[
         float | None,
-        real(
-            0, 0, 1e12, "m/s2", "gravity, along -y; another direction: body_force_x, body_force_y"
-        ),
+        real(0, 0, 1e12, "m/s2"),
+        "gravity, along -y; another direction: body_force_x, body_force_y",
     ] = None
     body_force_x: Annotated[
         float | None,
-        real(
-            0,
-            -1e12,
-            1e12,
-            "m/s2",
-            "constant body force b of (1), along the plane",
-            ("bodies", "bodies-3d"),
-        ),
+        real(0, -1e12, 1e12, "m/s2", ("bodies", "bodies-3d")),
+        "constant body force b of (1), along the plane",
     ] = None
     body_force_y: Annotated[
         float | None,
-        real(
-            0,
-            -1e12,
-            1e12,
-            "m/s2",
-            "constant body force b of (1), away from the plane; gravity comes on top",
-        ),
+        real(0, -1e12, 1e12, "m/s2"),
+        "constant body force b of (1), away from the plane; gravity comes on top",
     ] = None
     volume: Annotated[
         str | None,
-        word(
-            "auto",
-            ("plain", "projected", "auto"),
-            "resistance to change of volume: plain = at points, which locks as nu -> 0.5; projected ="
-            " what is beyond that of nu = 0.45 in the mean of each element; auto = projected, where "
-            "degree=1 plain",
-        ),
+        word("auto", ("plain", "projected", "auto")),
+        "resistance to change of volume: plain = at points, which locks as nu -> 0.5; projected ="
+        " what is beyond that of nu = 0.45 in the mean of each element; auto = projected, where "
+        "degree=1 plain",
     ] = None
     degree: Annotated[
-        int | None, integer(2, 1, 2, "-", "polynomial degree of the displacement")
+        int | None, integer(2, 1, 2, "-"), "polynomial degree of the displacement"
     ] = None
     integrator: Annotated[
         str | None,
         word(
             "energy-momentum",
             ("energy-momentum", "midpoint", "backward-euler", "bdf2", "central-difference", "auto"),
-            "time integrator; central-difference: explicit, in substeps that resolve the waves in "
-            "the bodies, contact and friction solved in each; auto: central-difference or "
-            "energy-momentum, whichever is cheaper by the estimated number of operations",
         ),
+        "time integrator; central-difference: explicit, in substeps that resolve the waves in "
+        "the bodies, contact and friction solved in each; auto: central-difference or "
+        "energy-momentum, whichever is cheaper by the estimated number of operations",
     ] = None
-    dt: Annotated[float | None, real(0, 0, 1e9, "s", "time step; 0 = adaptive")] = None
+    dt: Annotated[float | None, real(0, 0, 1e9, "s"), "time step; 0 = adaptive"] = None
     accuracy: Annotated[
         float | None,
-        real(
-            0.005,
-            1e-5,
-            0.4,
-            "-",
-            "requested relative accuracy: of impulse and thresholded contact time relative to themselves, "
-            "rebound velocities and spin relative to the speed, energies and friction work to the largest "
-            "energy; mesh and step that are not given follow from it",
-        ),
+        real(0.005, 1e-5, 0.4, "-"),
+        "requested relative accuracy: of impulse and thresholded contact time relative to themselves, "
+        "rebound velocities and spin relative to the speed, energies and friction work to the largest "
+        "energy; mesh and step that are not given follow from it",
     ] = None
     accuracy_of: Annotated[
         str | None,
-        word(
-            "promised",
-            ("promised", "friction_work", "peak_force", "contact_time"),
-            "one more number to which the accuracy applies, relative to itself: it costs more"
-            " because these numbers scatter more",
-        ),
+        word("promised", ("promised", "friction_work", "peak_force", "contact_time")),
+        "one more number to which the accuracy applies, relative to itself: it costs more"
+        " because these numbers scatter more",
     ] = None
     tolerance: Annotated[
         float | None,
-        real(
-            5e-12,
-            1e-15,
-            0.0001,
-            "-",
-            "largest work of the residual in a step, over the energy at the start",
-        ),
+        real(5e-12, 1e-15, 0.0001, "-"),
+        "largest work of the residual in a step, over the energy at the start",
     ] = None
     breakdown: Annotated[
         str | None,
-        word(
-            "stop",
-            ("stop", "continue"),
-            "what a run does under svk when det F <= 0 or a point loses four fifths of its volume in "
-            "the smallest step",
-        ),
+        word("stop", ("stop", "continue")),
+        "what a run does under svk when det F <= 0 or a point loses four fifths of its volume in "
+        "the smallest step",
     ] = None
     chatter: Annotated[
         str | None,
-        word(
-            "stop",
-            ("stop", "continue"),
-            "what a run does when the body leaves the obstacle and is back within a transit of its "
-            "waves twenty times in a row",
-        ),
+        word("stop", ("stop", "continue")),
+        "what a run does when the body leaves the obstacle and is back within a transit of its "
+        "waves twenty times in a row",
     ] = None
     end_time: Annotated[
         float | None,
-        real(
-            0,
-            0,
-            1e9,
-            "s",
-            "end of the run; 0 = until the first impact is over, with the contacts that follow it at "
-            "once",
-        ),
+        real(0, 0, 1e9, "s"),
+        "end of the run; 0 = until the first impact is over, with the contacts that follow it at "
+        "once",
     ] = None
     start: Annotated[
         str | None,
-        word(
-            "given",
-            ("given", "equilibrium"),
-            "the bodies at t = 0: as given, or at rest in equilibrium under body force, loads, gas and "
-            "contact, reached from the given shape and place by slow loading",
-        ),
+        word("given", ("given", "equilibrium")),
+        "the bodies at t = 0: as given, or at rest in equilibrium under body force, loads, gas and "
+        "contact, reached from the given shape and place by slow loading",
     ] = None
     until: Annotated[
         str | None,
-        word(
-            "impact",
-            ("impact", "rest"),
-            "what ends the run, at end_time at the latest: the end of the impact, or under gravity, "
-            "with viscosity or friction, that all rests",
-        ),
+        word("impact", ("impact", "rest")),
+        "what ends the run, at end_time at the latest: the end of the impact, or under gravity, "
+        "with viscosity or friction, that all rests",
     ] = None
-    fields: Annotated[int | None, integer(0, 0, 10000, "-", "number of field snapshots (VTU)")] = (
+    fields: Annotated[int | None, integer(0, 0, 10000, "-"), "number of field snapshots (VTU)"] = (
         None
     )
     modes: Annotated[
         int | None,
-        integer(
-            0,
-            0,
-            500,
-            "-",
-            "number of natural modes of the free bodies, with their energies at the end of the run; 0"
-            " = none",
-        ),
+        integer(0, 0, 500, "-"),
+        "number of natural modes of the free bodies, with their energies at the end of the run; 0"
+        " = none",
     ] = None
     checkpoint_every: Annotated[
         int | None,
-        integer(
-            0,
-            0,
-            1000000000,
-            "steps",
-            "a checkpoint every so many steps, from which a killed run goes on; 0 = none; the answer "
-            "stays the same",
-        ),
+        integer(0, 0, 1000000000, "steps"),
+        "a checkpoint every so many steps, from which a killed run goes on; 0 = none; the answer "
+        "stays the same",
     ] = None
     without: Annotated[
         str | None,
         word(
             "none",
             ("none", "flight", "friction", "body-force", "frozen-factorisation", "contact-culling"),
-            "leave out one saving, to measure what it saves",
         ),
+        "leave out one saving, to measure what it saves",
     ] = None
 
     @classmethod

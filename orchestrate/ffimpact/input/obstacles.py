@@ -62,17 +62,17 @@ class Obstacle(OfContact):
     is_exact: ClassVar[bool] = True  # whether gap() is the distance at any distance
     heading = ("kind",)
     dimensions: ClassVar[tuple[Dimension, ...]] = (PLANE_STRAIN, AXISYMMETRIC, SOLID)
-    name: Annotated[str | None, Name("of its own")] = None
-    velocity: Annotated[Components | None, Place("[m/s]")] = None
-    motion: Annotated[Timed | None, Function("displacement [m], a function of t for each axis")] = (
-        None
-    )
-    rotation: Annotated[
-        Timed | None, Function("turned by [degrees], a function of t", single=True)
+    name: Annotated[str | None, Name(), "of its own"] = None
+    velocity: Annotated[Components | None, Place(), "[m/s]"] = None
+    motion: Annotated[
+        Timed | None, Function(), "displacement [m], a function of t for each axis"
     ] = None
-    pivot: Annotated[list[float] | None, Vector("what it turns about [m]")] = None
+    rotation: Annotated[
+        Timed | None, Function(single=True), "turned by [degrees], a function of t"
+    ] = None
+    pivot: Annotated[list[float] | None, Vector(), "what it turns about [m]"] = None
     axis: Annotated[
-        list[float] | None, Vector("in space, the direction that it turns about", count=3)
+        list[float] | None, Vector(count=3), "in space, the direction that it turns about"
     ] = None
 
     def refusals(self) -> Iterator[tuple[str, str]]:
@@ -230,8 +230,8 @@ class Plane(Obstacle):
     """The half-space below a plane, by default the floor y = 0."""
 
     kind = "plane"
-    point: Annotated[list[float] | None, Vector("on it [m]; default 0")] = None
-    normal: Annotated[list[float] | None, Vector("out of it; default along y")] = None
+    point: Annotated[list[float] | None, Vector(), "on it [m]; default 0"] = None
+    normal: Annotated[list[float] | None, Vector(), "out of it; default along y"] = None
 
     def defaults(self) -> dict[str, list[float]]:
         axes = self.context.dimension.axes
@@ -274,8 +274,8 @@ class Circle(Obstacle):
 
     kind = "circle"
     dimensions: ClassVar[tuple[Dimension, ...]] = (PLANE_STRAIN,)
-    centre: Annotated[Components, Place("[m]")]
-    radius: Annotated[float, number(meaning="radius")]
+    centre: Annotated[Components, Place(), "[m]"]
+    radius: Annotated[float, number(), "radius"]
 
     @cached_property
     def numbers(self) -> tuple[float, ...]:
@@ -331,15 +331,17 @@ class Polyline(Obstacle):
     kind = "polyline"
     dimensions = (PLANE_STRAIN, AXISYMMETRIC)
     only = {"closed": (PLANE_STRAIN,)}
-    vertices: Annotated[list[list[float]], Points(2, "corners [m]")]
-    closed: Annotated[bool | None, Flag("whether the last joins the first")] = None
+    vertices: Annotated[list[list[float]], Points(2), "corners [m]"]
+    closed: Annotated[bool | None, Flag(), "whether the last joins the first"] = None
     rounding: Annotated[
         float | None,
-        number(0.0, LONGEST, "m", "of convex corners; sides lie as far outside the vertices"),
+        number(0.0, LONGEST, "m"),
+        "of convex corners; sides lie as far outside the vertices",
     ] = None
     fillet: Annotated[
         float | None,
-        number(0.0, LONGEST, "m", "radius that cuts convex corners; sides stay on the vertices"),
+        number(0.0, LONGEST, "m"),
+        "radius that cuts convex corners; sides stay on the vertices",
     ] = None
 
     def refusals(self) -> Iterator[tuple[str, str]]:
@@ -383,16 +385,17 @@ class Surface(Obstacle):
     kind = "surface"
     dimensions = (SOLID,)
     file: Annotated[
-        str, Text("path, from the folder of the scene on", "the path of an STL file or a mesh")
+        str, Text("the path of an STL file or a mesh"), "path, from the folder of the scene on"
     ]
-    scale: Annotated[float | None, number(1e-9, 1e9, "m", "a unit of length of the file")] = None
-    position: Annotated[list[float] | None, Vector("of the file's origin [m]", count=3)] = None
+    scale: Annotated[float | None, number(1e-9, 1e9, "m"), "a unit of length of the file"] = None
+    position: Annotated[list[float] | None, Vector(count=3), "of the file's origin [m]"] = None
     turn: Annotated[
         list[float] | None,
-        Vector("about a vector of this length [degrees]", -MOST_TURN, MOST_TURN, 3),
+        Vector(-MOST_TURN, MOST_TURN, 3),
+        "about a vector of this length [degrees]",
     ] = None
     rounding: Annotated[
-        float | None, number(0.0, LONGEST, "m", "how far it reaches out of the file's triangles")
+        float | None, number(0.0, LONGEST, "m"), "how far it reaches out of the file's triangles"
     ] = None
 
     @cached_property
@@ -434,7 +437,7 @@ class Implicit(Obstacle):
     kind = "implicit"
     is_exact = False
     distance: Annotated[
-        Timed, Function("expression in x, y (, z) of the signed distance [m]", single=True)
+        Timed, Function(single=True), "expression in x, y (, z) of the signed distance [m]"
     ]
 
     @cached_property

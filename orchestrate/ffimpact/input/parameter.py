@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
@@ -61,7 +61,7 @@ OTHER_UNITS = {
 
 
 class Rule:
-    """The base of rules: an entry of a model is declared as Annotated[float, rule]."""
+    """The base of rules: an entry of a model is declared as Annotated[float, rule, meaning]."""
 
     @property
     def accepted(self) -> str:
@@ -87,6 +87,11 @@ class Rule:
     def schema(self) -> dict[str, Any]:
         """The rule as a JSON schema."""
         raise NotImplementedError
+
+    def means(self, text: str) -> Self:
+        """The rule with the meaning of its entry."""
+        made: Self = replace(self, meaning=text)  # type: ignore[type-var]
+        return made
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
@@ -126,7 +131,7 @@ class Parameter(Rule):
     kind: str
     default: Any  # None: the parameter has no default
     unit: str
-    help: str
+    help: str = ""
     low: float = 0.0
     high: float = 0.0
     words: tuple[str, ...] = ()
@@ -136,6 +141,9 @@ class Parameter(Rule):
     def meaning(self) -> str:
         """The meaning of the parameter, with its unit."""
         return f"{self.help} [{self.unit}]" if self.unit not in ("", "-") else self.help
+
+    def means(self, text: str) -> Self:
+        return replace(self, help=text)
 
     def checked(self, value: Any, dimension: Dimension | None) -> Value:
         return replace(self, name="").check(value)
@@ -204,37 +212,19 @@ def with_unit(text: str, unit: str) -> str:
 
 
 def real(
-    default: float | str,
-    low: float,
-    high: float,
-    unit: str,
-    meaning: str,
-    scripts: tuple[str, ...] = SCRIPTS,
+    default: float | str, low: float, high: float, unit: str, scripts: tuple[str, ...] = SCRIPTS
 ) -> Parameter:
     """The rule of a number between two bounds; `auto` is accepted if it is the default."""
     words = ("auto",) if default == "auto" else ()
-    return Parameter(
-        "",
-        "real",
-        default if words else float(default),
-        unit,
-        meaning,
-        float(low),
-        float(high),
-        words,
-        scripts,
-    )
+    number = default if words else float(default)
+    return Parameter("", "real", number, unit, "", float(low), float(high), words, scripts)
 
 
-def integer(
-    default: int, low: int, high: int, unit: str, meaning: str, scripts: tuple[str, ...] = SCRIPTS
-) -> Parameter:
+def integer(default: int, low: int, high: int, unit: str) -> Parameter:
     """The rule of a whole number between two bounds."""
-    return Parameter("", "int", default, unit, meaning, low, high, (), scripts)
+    return Parameter("", "int", default, unit, "", low, high, (), SCRIPTS)
 
 
-def word(
-    default: str, words: tuple[str, ...], meaning: str, scripts: tuple[str, ...] = SCRIPTS
-) -> Parameter:
+def word(default: str, words: tuple[str, ...], scripts: tuple[str, ...] = SCRIPTS) -> Parameter:
     """The rule of a choice between words."""
-    return Parameter("", "word", default, "-", meaning, words=words, scripts=scripts)
+    return Parameter("", "word", default, "-", words=words, scripts=scripts)

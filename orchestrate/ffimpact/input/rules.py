@@ -61,11 +61,9 @@ Placed = list[float | str] | dict[str, Any] | Callable[[np.ndarray], Any]  # fun
 ALIAS = {"half-plane": "half-space", "disc": "ball"}  # names of regions in the plane
 
 
-def number(
-    low: float = SHORTEST, high: float = LONGEST, unit: str = "m", meaning: str = ""
-) -> Parameter:
+def number(low: float = SHORTEST, high: float = LONGEST, unit: str = "m") -> Parameter:
     """The rule of a number between two bounds; without bounds the rule of a length [m]."""
-    return Parameter("", "real", None, unit, meaning, low, high)
+    return Parameter("", "real", None, unit, "", low, high)
 
 
 def placeholder(count: int) -> str:
@@ -107,10 +105,10 @@ def points(value: Any, least: int, at: str = "") -> list[list[float]]:
 class Vector(Rule):
     """A vector with a component for each axis, or with `count` components."""
 
-    meaning: str = ""
     low: float = -LONGEST
     high: float = LONGEST
     count: int = 0
+    meaning: str = ""
 
     @property
     def accepted(self) -> str:
@@ -191,9 +189,9 @@ class InSpace(Rule):
     """
 
     plane: Parameter
-    meaning: str = ""
     about_z: bool = True
     low: float | None = None
+    meaning: str = ""
 
     @property
     def accepted(self) -> str:
@@ -201,7 +199,7 @@ class InSpace(Rule):
 
     @property
     def _vector(self) -> Vector:
-        return Vector("", self.plane.low if self.low is None else self.low, self.plane.high, 3)
+        return Vector(self.plane.low if self.low is None else self.low, self.plane.high, 3)
 
     def checked(self, value: Any, dimension: Dimension | None) -> Any:
         if (
@@ -245,8 +243,8 @@ class Rows(Rule):
     """A list of rows of numbers, of one of these `widths`; `whole` ones are numbers of points."""
 
     widths: tuple[int, ...]
-    meaning: str = ""
     whole: bool = False
+    meaning: str = ""
 
     @property
     def accepted(self) -> str:
@@ -314,8 +312,8 @@ class Parts(Rule):
 class Polygons(Rule):
     """A list of polygons."""
 
-    meaning: str = ""
     accepted: str = "[[[x, y], ...], ...]"
+    meaning: str = ""
 
     def checked(self, value: Any, dimension: Dimension | None) -> Any:
         if not isinstance(value, list):
@@ -330,8 +328,8 @@ class Polygons(Rule):
 class Flag(Rule):
     """A truth value: true or false."""
 
-    meaning: str = ""
     accepted: str = "true|false"
+    meaning: str = ""
 
     def checked(self, value: Any, dimension: Dimension | None) -> Any:
         if not isinstance(value, bool):
@@ -348,8 +346,8 @@ class Flag(Rule):
 class Text(Rule):
     """Any text."""
 
-    meaning: str = ""
     accepted: str = "text in quotes"
+    meaning: str = ""
 
     def checked(self, value: Any, dimension: Dimension | None) -> Any:
         if not isinstance(value, str):
@@ -364,8 +362,8 @@ class Text(Rule):
 class Name(Rule):
     """A name, which is written as one word to data files."""
 
-    meaning: str = ""
     accepted: str = "letters, digits, _ - . without blanks, a letter first"
+    meaning: str = ""
 
     def checked(self, value: Any, dimension: Dimension | None) -> Any:
         if not isinstance(value, str) or not NAME.fullmatch(value):
@@ -380,8 +378,8 @@ class Name(Rule):
 class Partners(Rule):
     """The names of a contact pair; scenes/scene.py looks them up in the scene."""
 
-    meaning: str = ""
     accepted: str = "two names, one at least of a body"
+    meaning: str = ""
 
     def checked(self, value: Any, dimension: Dimension | None) -> Any:
         return value
@@ -397,9 +395,9 @@ class Function(Rule):
     time_functions.py checks them.
     """
 
-    meaning: str = ""
     single: bool = False
     accepted: str = "numbers, expressions of t in quotes, a CSV file or a table"
+    meaning: str = ""
 
     def checked(self, value: Any, dimension: Dimension | None) -> Any:
         return value

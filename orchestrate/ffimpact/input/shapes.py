@@ -38,7 +38,7 @@ class Disc(Body):
     """A disc in plane strain."""
 
     shape = "disc"
-    radius: Annotated[float, number(meaning="radius")]
+    radius: Annotated[float, number(), "radius"]
 
     def loops(self) -> tuple[Loop, ...]:
         return (circle_loop(self.radius),)
@@ -49,7 +49,7 @@ class Ellipse(Body):
 
     shape = "ellipse"
     semi_axes: Annotated[
-        list[float], Vector("half its width and half its height [m]", 1e-9, count=2)
+        list[float], Vector(1e-9, count=2), "half its width and half its height [m]"
     ]
 
     def loops(self) -> tuple[Loop, ...]:
@@ -60,8 +60,8 @@ class Rectangle(Body):
     """A rectangle in plane strain."""
 
     shape = "rectangle"
-    width: Annotated[float, number(meaning="width")]
-    height: Annotated[float, number(meaning="height")]
+    width: Annotated[float, number(), "width"]
+    height: Annotated[float, number(), "height"]
 
     def loops(self) -> tuple[Loop, ...]:
         half = np.array([self.width, self.height]) / 2
@@ -86,8 +86,8 @@ class Polygon(Drawn):
     shape = "polygon"
     dimensions = (PLANE_STRAIN, AXISYMMETRIC)
     only = Drawn.only | {"holes": (PLANE_STRAIN,)}
-    vertices: Annotated[list[list[float]], Points(3, "corners [m], each once, in order")]
-    holes: Annotated[list[list[list[float]]] | None, Polygons("holes in it")] = None
+    vertices: Annotated[list[list[float]], Points(3), "corners [m], each once, in order"]
+    holes: Annotated[list[list[list[float]]] | None, Polygons(), "holes in it"] = None
 
     def loops(self) -> tuple[Loop, ...]:
         path, outer = self.at("vertices"), np.array(self.vertices)
@@ -103,7 +103,7 @@ class Ball(Body):
 
     shape = "ball"
     dimensions = (AXISYMMETRIC, SOLID)
-    radius: Annotated[float, number(meaning="radius")]
+    radius: Annotated[float, number(), "radius"]
 
     def loops(self) -> tuple[Loop, ...]:
         return (circle_loop(self.radius),)
@@ -130,7 +130,7 @@ class Ellipsoid(Body):
 
     shape = "ellipsoid"
     dimensions = (AXISYMMETRIC,)
-    semi_axes: Annotated[list[float], Vector("radius and half the height [m]", 1e-9, count=2)]
+    semi_axes: Annotated[list[float], Vector(1e-9, count=2), "radius and half the height [m]"]
 
     def loops(self) -> tuple[Loop, ...]:
         return (ellipse_loop(*self.semi_axes),)
@@ -141,8 +141,8 @@ class Cylinder(Body):
 
     shape = "cylinder"
     dimensions = (AXISYMMETRIC, SOLID)
-    radius: Annotated[float, number(meaning="radius")]
-    height: Annotated[float, number(meaning="height")]
+    radius: Annotated[float, number(), "radius"]
+    height: Annotated[float, number(), "height"]
 
     def loops(self) -> tuple[Loop, ...]:
         corners = [[0, -1], [1, -1], [1, 1], [0, 1], [-1, 1], [-1, -1]]
@@ -157,7 +157,7 @@ class Tube(Hollow):
 
     shape = "tube"
     dimensions = (AXISYMMETRIC, SOLID)
-    height: Annotated[float, number(meaning="height")]
+    height: Annotated[float, number(), "height"]
 
     def loops(self) -> tuple[Loop, ...]:
         inner, outer, half = self.inner_radius, self.radius, self.height / 2
@@ -172,8 +172,8 @@ class Torus(Body):
 
     shape = "torus"
     dimensions = (AXISYMMETRIC,)
-    radius: Annotated[float, number(meaning="from the axis to the middle of the section")]
-    section: Annotated[float, number(meaning="radius of the section")]
+    radius: Annotated[float, number(), "from the axis to the middle of the section"]
+    section: Annotated[float, number(), "radius of the section"]
 
     def refusals(self) -> Iterator[tuple[str, str]]:
         yield from super().refusals()
@@ -190,9 +190,9 @@ class Box(Body):
 
     shape = "box"
     dimensions = (SOLID,)
-    width: Annotated[float, number(meaning="along x")]
-    height: Annotated[float, number(meaning="along y")]
-    depth: Annotated[float, number(meaning="along z")]
+    width: Annotated[float, number(), "along x"]
+    height: Annotated[float, number(), "along y"]
+    depth: Annotated[float, number(), "along z"]
 
     def solid(self) -> solids.Shape:
         return solids.box(np.array([self.width, self.height, self.depth]))
@@ -206,29 +206,30 @@ class Mesh(Drawn):
 
     shape = "mesh"
     dimensions = (PLANE_STRAIN, AXISYMMETRIC, SOLID)
-    file: Annotated[str | None, Text("path, from the folder of the scene on")] = None
+    file: Annotated[str | None, Text(), "path, from the folder of the scene on"] = None
     points: Annotated[
         list[list[float]] | None,
-        Rows((2, 3), "points of a mesh, in place of a file"),
+        Rows((2, 3)),
+        "points of a mesh, in place of a file",
         Field(repr=False),
     ] = None
     cells: Annotated[
         list[list[int]] | None,
-        Rows((3, 4), "corners of its triangles or tetrahedra, as numbers of points", True),
+        Rows((3, 4), True),
+        "corners of its triangles or tetrahedra, as numbers of points",
         Field(repr=False),
     ] = None
     labels: Annotated[
         dict[str, list[list[int]]] | None,
-        Parts(
-            Rows((2, 3), whole=True),
-            "parts of its boundary, for `where`; 'contact' may come into contact (without it all), "
-            "'symmetry' is on the axis of revolution",
-        ),
+        Parts(Rows((2, 3), whole=True)),
+        "parts of its boundary, for `where`; 'contact' may come into contact (without it all), "
+        "'symmetry' is on the axis of revolution",
         Field(repr=False),
     ] = None
     scale: Annotated[
         float | None,
-        number(1e-9, 1e9, "m", "a unit of length of the file or points; STEP declares its own"),
+        number(1e-9, 1e9, "m"),
+        "a unit of length of the file or points; STEP declares its own",
     ] = None
 
     def refusals(self) -> Iterator[tuple[str, str]]:

@@ -31,7 +31,14 @@ from .overlap import gap_between
 if TYPE_CHECKING:
     from ..scene import Scene
 
-__all__ = ["Onset", "loaded_pull", "onsets_of", "refuse_nothing", "refuse_sinking", "turned"]
+__all__ = [
+    "Onset",
+    "loaded_pull",
+    "onsets_of",
+    "refuse_nothing",
+    "refuse_sinking",
+    "with_discs_aligned",
+]
 
 STEPS = 2000  # steps of conservative advancement, after which the onset of contact is unknown
 # Gap over the smaller half thickness at which the search ends. It matters for implicit obstacles
@@ -105,13 +112,12 @@ class Onset:
 def onsets_of(scene: Scene) -> list[Onset]:
     """Returns the onsets of contact of a scene: one for each body with each obstacle and for each
     two bodies that may come near each other, and those that follow because an impact turns the
-    bodies. They are computed once for a scene and kept in it, as all levels of an error estimate
-    ask for them.
+    bodies. They are searched once for all scenes that move alike.
     """
-    kept: list[Onset] | None = vars(scene).get("onsets")
-    if kept is None:
-        kept = vars(scene)["onsets"] = _onsets_of(scene)
-    return kept
+    if "onsets" not in scene.memory:
+        scene.memory["onsets"] = _onsets_of(scene)
+    onsets: list[Onset] = scene.memory["onsets"]
+    return onsets
 
 
 @progress.work("searching for the first contact of the bodies")
@@ -397,29 +403,38 @@ def _lever(shape: Shape, point: np.ndarray, n: np.ndarray) -> float:
     return float(arm[0] * n[1] - arm[1] * n[0])
 
 
-def turned(scene: Scene) -> Scene:
+def with_discs_aligned(scene: Scene) -> Scene:
     """Returns the scene with its discs turned, except those of mesh files. The point of a disc that
     first comes into contact is then the lowest point of its mesh, which is not turned.
 
     So the region of small elements does not depend on the frame in which the scene is written.
     """
-    if scene.kind is not PLANE_STRAIN or not any(
-        body.outline.disc and not body.file_mesh for body in scene.bodies
-    ):
+    if scene.kind is not PLANE_STRAIN:
         return scene
-    onsets = onsets_of(scene)
+    if "angles" not in scene.memory:
+        scene.memory["angles"] = _angles_of_discs(scene), {}
+    angles, memory = scene.memory["angles"]
     bodies = list(scene.bodies)
+    for k, angle in angles.items():
+        bodies[k] = bodies[k].model_copy(update={"start_angle": angle})
+    return scene.replaced(memory, bodies=bodies) if angles else scene
+
+
+def _angles_of_discs(scene: Scene) -> dict[int, float]:
+    """Returns the angles [rad] at the start of aligned discs by the numbers of the bodies."""
+    angles = {}
     for k, body in enumerate(scene.bodies):
-        mine = [onset for onset in onsets if k in (onset.first, onset.second)]
-        if body.file_mesh or not body.outline.disc or not mine:
+        if body.file_mesh or not body.outline.disc:
+            continue
+        mine = [onset for onset in onsets_of(scene) if k in (onset.first, onset.second)]
+        if not mine:
             continue
         soonest = min(onset.time for onset in mine)
         first = next(onset for onset in mine if onset.time <= soonest * (1 + 1e-9))
         outward = -first.normal if k == first.first else first.normal
         before = body.start_spin * first.time if math.isfinite(first.time) else 0.0
-        angle = math.atan2(outward[1], outward[0]) + math.pi / 2 - before
-        bodies[k] = body.model_copy(update={"start_angle": angle})
-    return scene.replaced(bodies=bodies)
+        angles[k] = math.atan2(outward[1], outward[0]) + math.pi / 2 - before
+    return angles
 
 
 def refuse_nothing(scene: Scene, onsets: list[Onset]) -> None:

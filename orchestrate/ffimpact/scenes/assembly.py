@@ -33,7 +33,14 @@ from ..input.toml_text import to_toml
 from ..mesh import mesh, revolution, solid_mesh, solids
 from ..mesh.mesh import AXIS, FREE, Curve, Sizes, mesh_body, nearest
 from ..mesh.solids import Solid
-from .approach import Onset, loaded_pull, onsets_of, refuse_nothing, refuse_sinking, turned
+from .approach import (
+    Onset,
+    loaded_pull,
+    onsets_of,
+    refuse_nothing,
+    refuse_sinking,
+    with_discs_aligned,
+)
 from .arrays import Arc, mesh_arrays, padded, parameter_arrays, scene_arrays
 from .front import Front, fronts, stretch_of
 from .mirror import COPIES, copies, mirror_axes
@@ -133,7 +140,7 @@ def prepare(
             "obstacle: is missing, and a second body too (accepted: one table [[obstacle]] or more, several "
             "[[body]], or an end_time > 0)"
         )
-    scene = turned(scene)
+    scene = with_discs_aligned(scene)
     onsets = onsets_of(scene)
     scene.refuse_rest()
     refuse_nothing(scene, onsets)
