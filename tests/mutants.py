@@ -23,7 +23,7 @@ ALTERATIONS = (
     ("mesh/curved.py", "solution[3] + (solution[:3] ** 2)", "solution[3] - (solution[:3] ** 2)"),
     ("output/contacts.py", "self.jump = self.impulse / reduced", "self.jump = self.impulse * reduced"),
     ("output/contacts.py", "values *= 0.5", "values *= 1.0"),
-    ("output/contacts.py", "> DRIVEN * jump and after.normal >= 0", "> DRIVEN * jump and after.normal <= 0"),
+    ("output/contacts.py", "> MIN_APPROACH_SHARE * jump and after.normal >= 0", "> MIN_APPROACH_SHARE * jump and after.normal <= 0"),
     ("output/contacts.py", "math.degrees(math.atan2(normal, along_surface))", "math.atan2(normal, along_surface)"),
     ("output/errors.py", 'estimates[name] = share["rebound"] * answers.speed', 'estimates[name] = share["rebound"] * answers.speed / 2'),
     ("output/estimate.py", "SAFETY[len(pairs)] / (ratio - 1)", "SAFETY[len(pairs)] / (ratio + 1)"),

@@ -41,7 +41,7 @@ from .mesh.solid_file import takes_in_others
 from .output import former
 from .output.columns import Features, recorded
 from .scenes import mirror, needs, overlap, pairs
-from .scenes.entries import files_renamed, release, set_entry, toml_value
+from .scenes.entries import files_renamed, reset_dependents, set_entry, toml_value
 from .scenes.files import SCENES, absent, built_in, read_toml
 
 __all__ = ["RUN", "SCENES", "Scene", "absent", "built_in", "load", "read", "read_toml"]
@@ -105,9 +105,16 @@ class Scene(models.Top):
             raise error.within(str(path)) if path.parent != SCENES else error from None
 
     @classmethod
-    def read(cls, content: Table, folder: Path = Path(), name: str = "scene") -> Scene:
+    def read(
+        cls,
+        content: Table,
+        folder: Path = Path(),
+        name: str = "scene",
+        known: Scene | None = None,
+    ) -> Scene:
         """Returns the scene of the tables of a file. Paths of other files are relative to `folder`.
-        Raises BadInput for whatever is wrong in the tables.
+        Bodies with the shapes of those of the scene `known` take them over. Raises BadInput for
+        whatever is wrong in the tables.
         """
         if not content:
             raise BadInput(
@@ -129,6 +136,8 @@ class Scene(models.Top):
         scene = cls.model_construct(**dict(tables.top.entries()), **own, folder=folder)
         vars(scene)["kind"] = kind
         scene._name, scene._content = name, content
+        for body, other in zip(scene.bodies, known.bodies if known else ()):
+            body.take_shape_of(other)
         scene._check()
         return scene
 
@@ -169,15 +178,15 @@ class Scene(models.Top):
 
     def override(self, entries: dict[str, Value]) -> Scene:
         """Returns the scene with `entries` set by dotted names (text or values). Entries that
-        depend on them are reset to automatic (release()). Raises BadInput for whatever is wrong
+        depend on them are reset to automatic (reset_dependents()). Raises BadInput for whatever is wrong
         then.
         """
         if not entries:
             return self
         named = self._by_full_name(self.check(entries))
         changed = self._with(named)
-        messages = release(changed, list(named))
-        scene = self.read(changed, self.folder, self.name)
+        messages = reset_dependents(changed, list(named))
+        scene = self.read(changed, self.folder, self.name, self)
         scene._released = self.released + messages
         entries_alike = [
             name.startswith("contact.") or name.rpartition(".")[2] in UNMOVED for name in named
@@ -215,7 +224,7 @@ class Scene(models.Top):
         """
         named = self._by_full_name(entries)
         changed = self._with(named)
-        release(changed, list(named))
+        reset_dependents(changed, list(named))
         return models.read(changed, self.kind)
 
     def _by_full_name(self, entries: dict[str, Value]) -> dict[str, Value]:
@@ -467,7 +476,7 @@ class Scene(models.Top):
         derived["obstacles"] = [other.within(middle, float(half)) for other in self.obstacles]
         common = self.contact_values["penalty"]
         penalties = pairs.penalties_of(common, self.pairs, len(self.bodies), len(self.obstacles))
-        derived["bodies"] = pairs.stiffened(self.bodies, penalties, "contact.penalty")
+        derived["bodies"] = pairs.with_rigid_modulus(self.bodies, penalties, "contact.penalty")
         if all(body.rigid for body in self.bodies) and common == "auto":
             # no pair uses it, and no body would determine it
             self.contact_values["penalty"] = max(penalties)

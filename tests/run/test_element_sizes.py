@@ -36,7 +36,7 @@ BLOCK = SOFT + "width = 0.2\nheight = 0.2\nposition = [0.09, -0.095]\n"
 
 
 def sizes_of(problem: scene.Scene) -> list[Sizes]:
-    ask = assembly.Asker(problem, approach.onsets_of(problem))
+    ask = assembly.AutomaticValues(problem, approach.onsets_of(problem))
     return [assembly.element_sizes(k, ask) for k in range(len(problem.bodies))]
 
 

@@ -156,7 +156,7 @@ def test_elements_follow_the_radius_of_an_obstacle(dimension, kind):
     sizes, penalties = [], []
     for radius in (0.005, 0.0005, 0.05, 50):
         tables = scene(body, peg(radius, kind, axes), dimension=dimension)
-        ask = assembly.Asker(tables, approach.onsets_of(tables))
+        ask = assembly.AutomaticValues(tables, approach.onsets_of(tables))
         values = assembly.contact_values(tables.bodies, tables.contact_values, ask, "contact")
         sizes.append(assembly.element_sizes(0, ask).contact)
         own = [assembly.pair_values(pair, ask, values) for pair in assembly.with_open_penalties(tables, ask)]
@@ -168,7 +168,7 @@ def test_elements_follow_the_radius_of_an_obstacle(dimension, kind):
 
 def contact_size(tables: Scene) -> float:
     """The element size of the first body of a scene near contact."""
-    return assembly.element_sizes(0, assembly.Asker(tables, approach.onsets_of(tables))).contact
+    return assembly.element_sizes(0, assembly.AutomaticValues(tables, approach.onsets_of(tables))).contact
 
 
 @pytest.mark.parametrize("distance", ["sqrt(x^2+(y+0.0401)^2)-0.02", "x^2+(y+0.0401)^2-0.0004"])

@@ -14,7 +14,7 @@ from .parameter import (
 )
 
 __all__ = [
-    "FOLLOWS",
+    "DEPENDS_ON",
     "NOT_DECISIVE",
     "OUTPUT",
     "PARAMETERS",
@@ -37,7 +37,7 @@ __all__ = [
 # parameters of its own. A penalty belongs to a material, a size and an exponent; a time step
 # belongs to a material and a size; mesh sizes belong to a size. `slip_velocity` and `end_time` are
 # not reset; they have their own warnings.
-FOLLOWS = {
+DEPENDS_ON = {
     "friction_dynamic": ("friction_static",),
     "viscosity": ("loss",),
     **dict.fromkeys(("share", "alpha", "mu"), ("law",)),

@@ -376,7 +376,7 @@ class Name(Rule):
 
 @dataclass(frozen=True)
 class Partners(Rule):
-    """The names of a contact pair; scenes/scene.py looks them up in the scene."""
+    """The names of a contact pair; scenes/pairs.py looks them up in the scene."""
 
     accepted: str = "two names, one at least of a body"
     meaning: str = ""

@@ -49,7 +49,7 @@ __all__ = [
 
 RECORDED = "contacts.bin"  # written by edp/program/run/contacts.idp
 THRESHOLD = 0.01  # of the largest force, for thresholded contact times
-SLIGHTEST, DRIVEN, STEADY = (
+MIN_DIRECTION_SHARE, MIN_APPROACH_SHARE, MIN_NORMAL_SHARE = (
     0.05,
     0.25,
     0.99,
@@ -113,7 +113,7 @@ class Interval:
         firm = np.flatnonzero(self.force >= 0.1 * self.peak)
         self.before = self._motion(0, 0, firm[0])
         self.after = self._motion(len(rows) - 1, 1, firm[-1])
-        self.straight = size > 0 and size >= STEADY * self.impulse
+        self.straight = size > 0 and size >= MIN_NORMAL_SHARE * self.impulse
         self.impact = is_impact(self.over and self.straight, self.before, self.after, self.jump)
         self.phase_impulse, self.phase_work = self._phases(impulses)
 
@@ -179,7 +179,7 @@ class Interval:
 
     def row(self) -> dict[str, float | None]:
         """The columns of contacts.csv."""
-        least, before, after = SLIGHTEST * self.jump, self.before, self.after
+        least, before, after = MIN_DIRECTION_SHARE * self.jump, self.before, self.after
         slip_after = along(before.slip, after.slip, before.n, after.n, 1e-9 * self.jump)
         slipped = along(
             before.centres_slip, after.centres_slip, before.n, after.n, 1e-9 * self.jump
@@ -307,14 +307,14 @@ def of_run(intervals: list[Interval]) -> dict[str, Any]:
     impacts, last = 0, None
     for current in intervals:
         if last is None or (
-            last.after.normal > 0 and -current.before.normal > DRIVEN * current.jump
+            last.after.normal > 0 and -current.before.normal > MIN_APPROACH_SHARE * current.jump
         ):
             impacts += 1
         last = current
     along_one = (
         len(pairs) == 1
         and 0 < np.linalg.norm(normal)
-        and bool(np.linalg.norm(normal) >= STEADY * size)
+        and bool(np.linalg.norm(normal) >= MIN_NORMAL_SHARE * size)
     )
     numbers: dict[str, Any] = dict.fromkeys(
         column.name
@@ -328,7 +328,7 @@ def of_run(intervals: list[Interval]) -> dict[str, Any]:
     ]
     if last is None or not along_one:
         return numbers
-    before, after, least = intervals[0].before, last.after, SLIGHTEST * jump
+    before, after, least = intervals[0].before, last.after, MIN_DIRECTION_SHARE * jump
     single = impacts == 1 and last.over
     slip = float(np.linalg.norm(before.slip))
     slip_after = along(before.slip, after.slip, before.n, after.n, 0.0)
@@ -388,7 +388,7 @@ def thresholds(
 def is_impact(over: bool, before: Motion, after: Motion, jump: float) -> bool:
     """Whether an interval that is over is an impact: driven by its approach, and ended by a
     separation."""
-    return bool(over and -before.normal > DRIVEN * jump and after.normal >= 0)
+    return bool(over and -before.normal > MIN_APPROACH_SHARE * jump and after.normal >= 0)
 
 
 def along(

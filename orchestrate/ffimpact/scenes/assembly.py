@@ -55,7 +55,7 @@ if TYPE_CHECKING:
     from ..scene import Scene
 
 __all__ = [
-    "Asker",
+    "AutomaticValues",
     "Assembly",
     "SCENE_FILE",
     "assemble",
@@ -64,7 +64,7 @@ __all__ = [
     "element_sizes",
     "pair_values",
     "prepare",
-    "side_by_side",
+    "place_apart",
     "stack",
     "used_tables",
     "with_open_penalties",
@@ -160,21 +160,22 @@ def assemble(
     """Meshes the bodies of a scene and collects the data of a run. `onsets` holds the onsets of
     contact if they are known already; `longer`: prepare().
     """
-    ask = Asker(scene, onsets_of(scene) if onsets is None else onsets)
+    auto = AutomaticValues(scene, onsets_of(scene) if onsets is None else onsets)
     why = implicit_for(scene) if scene.values["integrator"] == "auto" else ""
     scene = scene.replaced(
-        bodies=[_with_viscosity(k, ask) for k in range(len(scene.bodies))],
+        bodies=[_with_viscosity(k, auto) for k in range(len(scene.bodies))],
         values=scene.values | ({"integrator": IMPLICIT} if why else {}),
     )
-    ask = replace(ask, scene=scene)
-    values = scene.values | contact_values(scene.bodies, scene.contact_values, ask, "contact")
+    auto = replace(auto, scene=scene)
+    values = scene.values | contact_values(scene.bodies, scene.contact_values, auto, "contact")
     moving = longer or scene  # whose functions of time last until end_time
     values["end_time"] = moving.values["end_time"]
-    scene = scene.replaced(pairs=with_open_penalties(scene, ask))
-    pairs = [pair_values(pair, ask, values) for pair in scene.pairs]
+    scene = scene.replaced(pairs=with_open_penalties(scene, auto))
+    pairs = [pair_values(pair, auto, values) for pair in scene.pairs]
     with progress.work("choosing element sizes"):
         sizes = [
-            None if body.file_mesh else element_sizes(k, ask) for k, body in enumerate(scene.bodies)
+            None if body.file_mesh else element_sizes(k, auto)
+            for k, body in enumerate(scene.bodies)
         ]
     with progress.work("meshing the bodies"):
         meshes, centres, arcs = (_solids if scene.kind is SOLID else _sections)(scene, sizes)
@@ -186,13 +187,13 @@ def assemble(
     penalty, exponent = float(values["penalty"]), float(values["exponent"])
     rises = [
         strike.rise_on(penalties.get(both, penalty), scene.bodies, exponent)
-        for both, strike in ask.fronts.items()
+        for both, strike in auto.fronts.items()
     ]
     on_mesh = mesh_arrays(together, regions, arcs, files)
     arrays: Entries = (
         {
             "implicit_why": why,
-            "front_transit": float(min((strike.tau for strike in ask.fronts.values()), default=0)),
+            "front_transit": float(min((strike.tau for strike in auto.fronts.values()), default=0)),
             "front_rise": float(max(rises, default=0)),
         }
         | parameter_arrays(values)
@@ -227,7 +228,7 @@ def _sections(
         assert isinstance(made, mesh.Mesh)
         meshes.append(_reached(scene, k, made))
     halved = bool(mirror_axes(scene.kind, copies(scene)))
-    centres = side_by_side(meshes, 1 if halved else 0)
+    centres = place_apart(meshes, 1 if halved else 0)
     circles = [
         Arc(k, padded(centre + at), np.zeros(3), float(radius))
         for k, (body, centre) in enumerate(zip(scene.bodies, centres))
@@ -267,7 +268,7 @@ def _solids(
             f"contact_mesh_size: the rigid bodies have {rigid} tetrahedra (accepted: up to "
             f"{solid_mesh.MOST_RIGID_CELLS}; a larger contact_mesh_size or accuracy, or a smaller penalty, whose contacts are wider)"
         )
-    centres = side_by_side(meshes, 1)
+    centres = place_apart(meshes, 1)
     surfaces = [
         Arc(k, centre + patch.centre, _unit(patch.axis), float(patch.radius))
         for k, (made, centre) in enumerate(zip(meshes, centres))
@@ -285,7 +286,7 @@ def _unit(axis: np.ndarray) -> np.ndarray:
 
 
 @dataclass(frozen=True)
-class Asker:
+class AutomaticValues:
     """Makes a disc (ball) that hits a plane as the scene's bodies hit each other, with their largest
     speeds and accelerations along and across the normal. Its automatic values are those of the scene.
     """
@@ -341,7 +342,7 @@ class Asker:
         """The closing speed [m/s] of impacts with as wide a contact as moving supports make."""
         return float(f"{max((onset.pressed for onset in self.onsets), default=0.0):.6g}")
 
-    def disc(
+    def of_disc(
         self,
         bodies: list[Body],
         radius: float,
@@ -382,7 +383,11 @@ class Asker:
 
 
 def contact_values(
-    bodies: list[Body], contact: dict[str, Value], ask: Asker, path: str, least: float = math.inf
+    bodies: list[Body],
+    contact: dict[str, Value],
+    auto: AutomaticValues,
+    path: str,
+    least: float = math.inf,
 ) -> dict[str, Value]:
     """Returns `contact` with numbers for penalty, friction_dynamic and slip_velocity, for the
     softest of the bodies and the smallest radius. `least` [m] is the radius of an obstacle.
@@ -393,49 +398,49 @@ def contact_values(
     values = dict(contact)
     if automatic := [name for name in ("penalty", "slip_velocity") if contact[name] == "auto"]:
         more |= {"exponent": contact["exponent"]}
-        disc = ask.disc(bodies, radius, slides=True, **more)
+        disc = auto.of_disc(bodies, radius, slides=True, **more)
         values |= {name: getattr(disc, name) for name in automatic}
         # The slow motion of a support slips slowly, even if it makes a wide contact.
-        if "slip_velocity" in automatic and ask.pressed > 0:
-            slow = ask.disc(bodies, radius, slides=True, presses=False, **more)
+        if "slip_velocity" in automatic and auto.pressed > 0:
+            slow = auto.of_disc(bodies, radius, slides=True, presses=False, **more)
             values["slip_velocity"] = slow.slip_velocity
     if contact["friction_dynamic"] == "auto":
         values["friction_dynamic"] = contact["friction_static"]
     return values
 
 
-def pair_values(pair: Pair, ask: Asker, values: dict[str, Value]) -> dict[str, Value]:
+def pair_values(pair: Pair, auto: AutomaticValues, values: dict[str, Value]) -> dict[str, Value]:
     """Returns all contact parameters of a pair. A parameter that the pair does not set has the
     value of the scene; it is automatic again if it depends on one that the pair sets.
     """
-    bodies = [ask.scene.bodies[k] for k in (pair.first, pair.second) if k >= 0]
+    bodies = [auto.scene.bodies[k] for k in (pair.first, pair.second) if k >= 0]
     alone = "friction_static" in pair.own  # then it sets both coefficients
-    inherited = {name: values[name] for name in ask.scene.contact_values}
+    inherited = {name: values[name] for name in auto.scene.contact_values}
     inherited["friction_dynamic"] = (
-        "auto" if alone else ask.scene.contact_values["friction_dynamic"]
+        "auto" if alone else auto.scene.contact_values["friction_dynamic"]
     )
-    small = ask.small(pair.first, pair.second)
+    small = auto.small(pair.first, pair.second)
     if 0 < small < math.inf:
-        inherited["penalty"] = ask.scene.contact_values["penalty"]
+        inherited["penalty"] = auto.scene.contact_values["penalty"]
     own = inherited | pair.own
-    if front := ask.open_front(pair):
-        own["penalty"] = front.penalty(ask.scene.bodies, ask.scene.number("exponent"))
-    own = contact_values(bodies, own, ask, pair.entry, small or math.inf)
+    if front := auto.open_front(pair):
+        own["penalty"] = front.penalty(auto.scene.bodies, auto.scene.number("exponent"))
+    own = contact_values(bodies, own, auto, pair.entry, small or math.inf)
     return {name: own[name] for name in OWN}
 
 
-def with_open_penalties(scene: Scene, ask: Asker) -> list[Pair]:
+def with_open_penalties(scene: Scene, auto: AutomaticValues) -> list[Pair]:
     """Returns the pairs of the scene, and those whose automatic penalty differs: flat strikes, and
     a body with an obstacle that is smaller than the contact of the body on a plane.
     """
     listed = {(pair.first, pair.second) for pair in scene.pairs}
     small = [
         (onset.first, onset.second)
-        for onset in ask.onsets
-        if 0 < ask.small(onset.first, onset.second) < math.inf
+        for onset in auto.onsets
+        if 0 < auto.small(onset.first, onset.second) < math.inf
     ]
     differ = (
-        dict.fromkeys([*small, *ask.fronts]) if scene.contact_values["penalty"] == "auto" else {}
+        dict.fromkeys([*small, *auto.fronts]) if scene.contact_values["penalty"] == "auto" else {}
     )
     pairs = scene.pairs + [
         Pair.between(*both, f"obstacle.{-both[1]}" if both[1] < 0 else "contact", {})
@@ -493,21 +498,21 @@ def used_tables(
     )
 
 
-def _disc_like(k: int, ask: Asker, **more: Any) -> Impact:
+def _disc_like(k: int, auto: AutomaticValues, **more: Any) -> Impact:
     """Returns the impact of a disc or ball as thick as body k."""
-    body = ask.scene.bodies[k]
-    return ask.disc([body], body.outline.half_thickness, **more)
+    body = auto.scene.bodies[k]
+    return auto.of_disc([body], body.outline.half_thickness, **more)
 
 
-def _with_viscosity(k: int, ask: Asker) -> Body:
+def _with_viscosity(k: int, auto: AutomaticValues) -> Body:
     """Returns body k with the viscosity that its loss factor sets. Raises BadInput if it has
     another viscosity.
     """
-    body = ask.scene.bodies[k]
+    body = auto.scene.bodies[k]
     material = body.made_of
     if not material.loss:
         return body
-    viscosity = _disc_like(k, ask).viscosity(material.loss)
+    viscosity = _disc_like(k, auto).viscosity(material.loss)
     if material.viscosity and not math.isclose(material.viscosity, viscosity):
         raise BadInput(
             f"body.{k + 1}.loss: {material.loss:g} asks for viscosity {viscosity:g} Pa s of '{body.own_name}', which "
@@ -516,18 +521,18 @@ def _with_viscosity(k: int, ask: Asker) -> Body:
     return body.model_copy(update={"made_of": material.model_copy(update={"viscosity": viscosity})})
 
 
-def element_sizes(k: int, ask: Asker) -> Sizes:
+def element_sizes(k: int, auto: AutomaticValues) -> Sizes:
     """Returns the element sizes of body k: in the bulk for its own thickness, near contacts for
     each contact pair.
     """
-    body = ask.scene.bodies[k]
-    bulk = body.bulk_size or _bulk(k, ask)
+    body = auto.scene.bodies[k]
+    bulk = body.bulk_size or _bulk(k, auto)
     hits = [
-        _hit(body, k, onset, ask)
-        for onset in ask.onsets
+        _hit(body, k, onset, auto)
+        for onset in auto.onsets
         if k in (onset.first, onset.second) and not onset.shielded
     ]
-    mine = [front for front in ask.fronts.values() if k in front.sizes]
+    mine = [front for front in auto.fronts.values() if k in front.sizes]
     if body.rigid and not body.bulk_size:
         bulk = _bulk_of_rigid(body, min((size for size, *_ in hits), default=math.inf))
     if not body.bulk_size:
@@ -536,52 +541,52 @@ def element_sizes(k: int, ask: Asker) -> Sizes:
     if plane > 1:  # a plane front presses evenly: the bulk resolves its pressure
         hits = []
     stretch = body.mesh_stretch or plane
-    along = _first_normal(k, ask) if stretch > 1 else None
+    along = _first_normal(k, auto) if stretch > 1 else None
     contact = body.contact_size or min(
         [bulk, *(size / stretch for size, *_ in hits), *(front.sizes[k] for front in mine)]
     )
-    near = np.vstack([np.empty((0, ask.scene.kind.axes)), *(points for _, points, _ in hits)])
+    near = np.vstack([np.empty((0, auto.scene.kind.axes)), *(points for _, points, _ in hits)])
     slack = max([0.0, *(slack for *_, slack in hits)])
     return Sizes(bulk, min(bulk, contact), near, slack, along, stretch)
 
 
-def _bulk(k: int, ask: Asker) -> float:
+def _bulk(k: int, auto: AutomaticValues) -> float:
     """Returns the element size [m] in the bulk of body k that the accuracy requires. Errors are
     quadratic in it. The rule is asked at an accuracy where it does not limit the size.
     """
-    body = ask.scene.bodies[k]
-    looser = ask.scene.number("accuracy") / UNLIMITED / _share(k, ask)
-    required = _disc_like(k, ask, accuracy=UNLIMITED).mesh_size * math.sqrt(looser)
+    body = auto.scene.bodies[k]
+    looser = auto.scene.number("accuracy") / UNLIMITED / _share(k, auto)
+    required = _disc_like(k, auto, accuracy=UNLIMITED).mesh_size * math.sqrt(looser)
     return max(min(required, body.outline.coarsest), body.contact_size)
 
 
-def _share(k: int, ask: Asker) -> float:
+def _share(k: int, auto: AutomaticValues) -> float:
     """Returns the error by the elements in the bulk of body k, over that of the softest body it may
     come into contact with, 1 at most.
 
     A stiffer body deforms less by the ratio of the moduli, but by the cube of its slenderness more
     where it bends. Loads deform a body by themselves.
     """
-    body = ask.scene.bodies[k]
+    body = auto.scene.bodies[k]
     if body.rigid or body.loads:
         return 1.0
-    softer = [_softer(k, o, ask) for o in ask.onsets if k in (o.first, o.second) and not o.never]
+    softer = [_softer(k, o, auto) for o in auto.onsets if k in (o.first, o.second) and not o.never]
     slender = float(body.outline.extent.max()) / (2 * body.outline.half_thickness)
     return min(1.0, max(softer, default=1.0) * max(1.0, slender) ** 3)
 
 
-def _softer(k: int, onset: Onset, ask: Asker) -> float:
+def _softer(k: int, onset: Onset, auto: AutomaticValues) -> float:
     """Returns the stiffness of the softest body in a contact pair over that of its body k."""
-    bodies = [ask.scene.bodies[j] for j in (onset.first, onset.second) if j >= 0]
-    return min(body.stiffness for body in bodies) / ask.scene.bodies[k].stiffness
+    bodies = [auto.scene.bodies[j] for j in (onset.first, onset.second) if j >= 0]
+    return min(body.stiffness for body in bodies) / auto.scene.bodies[k].stiffness
 
 
-def _first_normal(k: int, ask: Asker) -> np.ndarray:
+def _first_normal(k: int, auto: AutomaticValues) -> np.ndarray:
     """Returns the normal of the first contact of body k, in its own axes. Raises BadInput if there is
     no contact.
     """
-    body = ask.scene.bodies[k]
-    onsets = [onset for onset in ask.onsets if k in (onset.first, onset.second)]
+    body = auto.scene.bodies[k]
+    onsets = [onset for onset in auto.onsets if k in (onset.first, onset.second)]
     if not onsets:
         raise BadInput(
             f"body.{k + 1}.mesh_stretch: {body.mesh_stretch or 0.0:g}, but '{body.own_name}' never comes into "
@@ -599,22 +604,24 @@ def _bulk_of_rigid(body: Body, contact: float) -> float:
     return max(half / 3, min(half, 2 * contact)) if isinstance(body.outline, Solid) else half / 3
 
 
-def _hit(body: Body, k: int, onset: Onset, ask: Asker) -> tuple[float, np.ndarray, float]:
+def _hit(
+    body: Body, k: int, onset: Onset, auto: AutomaticValues
+) -> tuple[float, np.ndarray, float]:
     """Returns, for an onset of contact of body k, the element size [m] at the contact, points (n,
     axes) of its outline there, and half their distance [m].
     """
-    bodies = [ask.scene.bodies[j] for j in (onset.first, onset.second) if j >= 0]
-    straight = ask.disc(bodies, onset.radius)
+    bodies = [auto.scene.bodies[j] for j in (onset.first, onset.second) if j >= 0]
+    straight = auto.of_disc(bodies, onset.radius)
     arc, size = straight.touch_arc, straight.contact_mesh_size
     # The indentation of a stiffer body is smaller by the ratio of the moduli, and so is its error,
     # which is quadratic in the size. Its points still resolve the pressure. Rigid bodies have no
     # unknowns to save.
     if not body.rigid:
         resolved = RESOLVED * 2 / math.pi * arc * onset.radius
-        size = max(size, min(size / math.sqrt(_softer(k, onset, ask)), resolved))
+        size = max(size, min(size / math.sqrt(_softer(k, onset, auto)), resolved))
     depth, small = (
         onset.radius * (1 - math.cos(min(arc, math.pi / 2))),
-        ask.small(onset.first, onset.second),
+        auto.small(onset.first, onset.second),
     )
     points, spacing = body.outline.samples(size)
     near = _near(body, k, onset, depth, points)
@@ -631,7 +638,7 @@ def _hit(body: Body, k: int, onset: Onset, ask: Asker) -> tuple[float, np.ndarra
         size = max(SMALLEST * onset.radius / wider, size)
         points, spacing = body.outline.samples(size * wider)
         near = _near(body, k, onset, min(depth, small), points)
-    slide = (ask.disc(bodies, onset.radius, slides=True).touch_arc - arc) * onset.radius
+    slide = (auto.of_disc(bodies, onset.radius, slides=True).touch_arc - arc) * onset.radius
     if slide > 0:
         near = points[nearest(points, near) <= slide]
     return size * (wider if small > 0 else max(1.0, wider)), near, spacing / 2
@@ -708,7 +715,7 @@ def _holds(scene: Scene, k: int, inner: np.ndarray, rest: np.ndarray) -> bool:
 # ---- meshes
 
 
-def side_by_side(meshes: Sequence[mesh.Mesh | solid_mesh.SolidMesh], along: int) -> np.ndarray:
+def place_apart(meshes: Sequence[mesh.Mesh | solid_mesh.SolidMesh], along: int) -> np.ndarray:
     """Returns centres (bodies, axes) [m] on an axis (0: x, 1: y), from 0 on, for meshes about their
     centres. Their distance from each other is BETWEEN times the largest extent.
     """

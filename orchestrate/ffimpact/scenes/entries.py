@@ -16,7 +16,7 @@ from ..input import parameters
 from ..input.models import listed
 from ..input.parameters import Table
 
-__all__ = ["files_renamed", "release", "set_entry", "toml_value"]
+__all__ = ["files_renamed", "reset_dependents", "set_entry", "toml_value"]
 
 # Entries that set the size of a body, beside `radius`.
 SHAPE = (
@@ -68,8 +68,8 @@ def set_entry(content: Table, name: str, value: Any) -> Table:
     return changed
 
 
-def release(content: Table, names: list[str]) -> tuple[str, ...]:
-    """Resets entries that depend on the changed entries `names` (FOLLOWS) to automatic: removes
+def reset_dependents(content: Table, names: list[str]) -> tuple[str, ...]:
+    """Resets entries that depend on the changed entries `names` (DEPENDS_ON) to automatic: removes
     them from the tables `content`. Returns one message for each.
 
     Coefficients of friction and sizes of a body depend on entries of the same table; penalty, step
@@ -79,9 +79,9 @@ def release(content: Table, names: list[str]) -> tuple[str, ...]:
     messages = []
     for path, table in list(_tables(content)):
         for key in [
-            key for key in parameters.FOLLOWS if key in table and (path, key) not in places
+            key for key in parameters.DEPENDS_ON if key in table and (path, key) not in places
         ]:
-            causes = parameters.FOLLOWS[key]
+            causes = parameters.DEPENDS_ON[key]
             changed_names = [
                 name
                 for name, (where, entry) in zip(names, places)

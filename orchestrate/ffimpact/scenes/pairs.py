@@ -19,7 +19,7 @@ __all__ = [
     "names",
     "own_of_obstacles",
     "penalties_of",
-    "stiffened",
+    "with_rigid_modulus",
     "touching_themselves",
 ]
 
@@ -141,7 +141,7 @@ def _partners(path: str, names: Any, index: dict[str, int]) -> tuple[int, int]:
     return first, second
 
 
-def stiffened(bodies: list[Body], penalties: list[Value], path: str) -> list[Body]:
+def with_rigid_modulus(bodies: list[Body], penalties: list[Value], path: str) -> list[Body]:
     """Returns the bodies of a scene with `young` of the rigid ones.
 
     It is STIFF times the largest `young` of the other bodies. If all bodies are rigid it is STIFF
