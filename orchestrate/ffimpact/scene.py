@@ -110,10 +110,10 @@ class Scene(models.Top):
         content: Table,
         folder: Path = Path(),
         name: str = "scene",
-        known: Scene | None = None,
+        earlier: Scene | None = None,
     ) -> Scene:
         """Returns the scene of the tables of a file. Paths of other files are relative to `folder`.
-        Bodies with the shapes of those of the scene `known` take them over. Raises BadInput for
+        Bodies with the shapes of those of the scene `earlier` take them over. Raises BadInput for
         whatever is wrong in the tables.
         """
         if not content:
@@ -136,7 +136,7 @@ class Scene(models.Top):
         scene = cls.model_construct(**dict(tables.top.entries()), **own, folder=folder)
         vars(scene)["kind"] = kind
         scene._name, scene._content = name, content
-        for body, other in zip(scene.bodies, known.bodies if known else ()):
+        for body, other in zip(scene.bodies, earlier.bodies if earlier else ()):
             body.take_shape_of(other)
         scene._check()
         return scene
