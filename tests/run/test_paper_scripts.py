@@ -44,7 +44,7 @@ def apart(history: pd.DataFrame, result: ffimpact.Result, speed: float) -> dict[
     """Differences of a script from the program: of the impulse relative, of rebounds over the speed."""
     impulse = (history.dt * history.normal_force)[1:].sum()
     differences = {"impulse": impulse / result["impulse"] - 1}
-    for suffix in [""] if "rebound_vy" in result and "vy" in history else ["_1", "_2"]:
+    for suffix in ["_1", "_2"] if "rebound_vy_2" in result else [""]:
         for axis in "xy":
             name = f"v{axis}{suffix}"
             differences[name] = (history[name].iloc[-1] - result[f"rebound_{name}"]) / speed
