@@ -104,7 +104,7 @@ STRIP = {
     "position": [0, 0],
     "support": [{"where": "left"}, {"where": "right"}],
 }
-COARSE = {"mesh_size": 0.01, "contact_mesh_size": 0.002, "accuracy": 0.05}
+COARSE = {"mesh_size": 0.01, "contact_mesh_size": 0.004, "accuracy": 0.05}
 
 
 @pytest.fixture(scope="module")

@@ -21,6 +21,7 @@ import pandas as pd
 from .. import scene
 from ..failure import BadInput, Busy, Failure, Unreadable
 from ..freefem import freefem
+from ..input import models, parameters
 from ..input.parameters import Table, Value
 from ..mesh import mesh
 from ..output.errors import errors
@@ -43,6 +44,7 @@ __all__ = [
     "study",
     "table",
     "find_finished",
+    "unit_of",
     "warned",
 ]
 
@@ -303,3 +305,10 @@ def complete(path: Path) -> Iterator[Path]:
         os.replace(part, path)
     finally:
         part.unlink(missing_ok=True)
+
+
+def unit_of(name: str) -> str:
+    """Returns the unit of a parameter (of body.2.young that of young), "-" if it has none."""
+    entry = name.rpartition(".")[2]
+    parameter = parameters.PARAMETERS.get(entry) or models.rule_of_body(entry)
+    return parameter.unit if parameter and parameter.unit else "-"

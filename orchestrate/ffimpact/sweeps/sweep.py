@@ -42,7 +42,7 @@ from ..output import columns
 from ..output.folder import result_folder
 from ..places import RESULTS, shown
 from ..scene import Scene
-from . import study, sweep_figures
+from . import study
 
 __all__ = ["Sweep", "built_in", "collect", "load", "main", "report", "table"]
 
@@ -228,6 +228,16 @@ def load(name: str) -> Sweep:
         raise error.within(str(path)) from None
 
 
+def _figure(entries: Table, points: list[Table], collected: list[str], loaded: Scene) -> Table:
+    """Returns the [figure] of a sweep with defaults, empty if there is none."""
+    if not entries:
+        return {}
+    from . import sweep_figures  # loads matplotlib, here and below
+
+    figure = sweep_figures.check(entries, points, collected, loaded.columns)
+    return figure | {"per": dimension.per_metre(loaded.kind.script)}
+
+
 def _sweep(path: Path, content: Table, text: str) -> Sweep:
     for key in content:
         if key not in KEYS:
@@ -288,12 +298,7 @@ def _sweep(path: Path, content: Table, text: str) -> Sweep:
     estimate = _is(content.get("estimate", False), bool, "estimate", "true, false")
     if estimate and refine:
         raise BadInput("estimate: true beside [refine] (accepted: one of them)")
-    figure = (
-        sweep_figures.check(tables["figure"], points, collected, loaded.columns)
-        | {"per": dimension.per_metre(loaded.kind.script)}
-        if tables["figure"]
-        else {}
-    )
+    figure = _figure(tables["figure"], points, collected, loaded)
     base = {"fields": 0} | base
     return Sweep(
         path.stem,
@@ -455,7 +460,10 @@ def collect(sweep: Sweep, out: Path) -> pd.DataFrame:
     """
     rows = table(sweep, out)
     study.save(rows, out / "sweep.csv")
-    sweep_figures.draw(sweep, rows, out)
+    if sweep.figure:
+        from . import sweep_figures
+
+        sweep_figures.draw(sweep, rows, out)
     return rows
 
 
@@ -496,7 +504,7 @@ def _units(sweep: Sweep, names: list[str]) -> str:
     what a run records.
     """
     of_table = columns.units(dimension.per_metre(sweep.sample.kind.script), names)
-    units = {name: of_table.get(name) or sweep_figures.unit_of(name) for name in names}
+    units = {name: of_table.get(name) or study.unit_of(name) for name in names}
     text = ", ".join(f"{name} {unit}" for name, unit in units.items() if unit not in ("", "-", "1"))
     return f"units: {text}" if text else "units: none"
 
@@ -511,6 +519,8 @@ def report(sweep: Sweep, rows: pd.DataFrame, out: Path) -> str:
         for name in sweep.collect[:SHOWN]:
             text[name] = ["" if np.isnan(value) else f"{value:.5g}" for value in rows[name]]
             if f"{name}_error" in rows:
+                from . import sweep_figures
+
                 errors = sweep_figures.bars_of_all(sweep, rows, name)
                 text[name] += ["" if np.isnan(error) else f" ± {error:.2g}" for error in errors]
         lines += [
@@ -535,7 +545,10 @@ def report(sweep: Sweep, rows: pd.DataFrame, out: Path) -> str:
     lines += [f"released: {sentence}" for sentence in sweep.sample.released]
     if warned := study.warned(rows.warnings):
         lines.append(f"warnings: {warned}")
-    lines += sweep_figures.findings(sweep, rows, out)
+    if sweep.figure:
+        from . import sweep_figures
+
+        lines += sweep_figures.findings(sweep, rows, out)
     files = ", ".join(path.name for path in (out / "sweep.csv", out / "sweep.png") if path.exists())
     lines.append(
         f"{len(rows) - len(failed)} of {len(rows)} points finished; {shown(out)}/: {files}"

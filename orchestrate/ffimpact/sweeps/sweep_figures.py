@@ -31,7 +31,6 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullLocator
 
 from ..failure import BadInput, brief, suggestion, unknown
-from ..input import models, parameters
 from ..input.parameters import Table
 from ..output.results import read_history
 from ..report import report
@@ -81,7 +80,6 @@ __all__ = [
     "spans",
     "steps_against",
     "trend",
-    "unit_of",
 ]
 
 KINDS = {
@@ -230,7 +228,7 @@ def label(name: str, per: str = "/m") -> str:
     """Returns the words and the unit of a parameter or a number of the summary, for an axis. `per`
     is "/m" in plane strain, "" for a ball.
     """
-    unit = _quantity(name, per).unit or unit_of(name)
+    unit = _quantity(name, per).unit or study.unit_of(name)
     return _words(name) if unit in ("-", "", "of the start") else f"{_words(name)} [{unit}]"
 
 
@@ -260,15 +258,8 @@ def _value(name: str, value: Any) -> str:
         return f"{_words(name)} auto"
     if isinstance(value, str):
         return LAWS.get(value, value)
-    unit = unit_of(name)
+    unit = study.unit_of(name)
     return f"{_words(name)} = {value:g}" + f" {unit}" * (unit != "-")
-
-
-def unit_of(name: str) -> str:
-    """Returns the unit of a parameter (of body.2.young that of young), "-" if it has none."""
-    entry = name.rpartition(".")[2]
-    parameter = parameters.PARAMETERS.get(entry) or models.rule_of_body(entry)
-    return parameter.unit if parameter and parameter.unit else "-"
 
 
 def _groups(sweep: Sweep, rows: pd.DataFrame, key: str) -> Iterator[tuple[str, pd.DataFrame]]:
