@@ -134,8 +134,8 @@ def _finish_parts(options: Namespace, table: pd.DataFrame, argv: list[str], titl
 
 def held(row) -> bool:
     """Whether the coverage of a row of cover() is KEPT, within the 95 % interval of the binomial
-    distribution."""
-    return row.within >= KEPT - 1.96 * (KEPT * (1 - KEPT) / row.cases) ** 0.5
+    distribution. Without cases nothing is shown."""
+    return row.cases > 0 and row.within >= KEPT - 1.96 * (KEPT * (1 - KEPT) / row.cases) ** 0.5
 
 
 def compare(drawn: list[Drawn], out: Path, limit: float = LIMIT, minutes: float = math.inf) -> pd.DataFrame:

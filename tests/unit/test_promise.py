@@ -1,5 +1,7 @@
 """Tests of the accuracy and of the error estimates: random scenes, and verdicts that can fail."""
 
+from types import SimpleNamespace
+
 import pandas as pd
 import pytest
 
@@ -134,6 +136,12 @@ def test_scenes_that_do_not_begin_in_time_are_left_out(tmp_path, monkeypatch):
     monkeypatch.setattr(promise, "_compared", lambda problem, folder: {"error": 0.5, "message": ""})
     drawn = draws.held(3, 4)
     assert len(promise.compare(drawn, tmp_path, minutes=1)) == len(drawn) == 4 and promise.compare(drawn, tmp_path, minutes=0).empty
+
+
+def test_coverage_without_cases_is_not_held():
+    """It holds from 95 % less what chance explains."""
+    rows = [(0.0, 0), (0.94, 100), (0.8, 100)]
+    assert [promise.held(SimpleNamespace(within=within, cases=cases)) for within, cases in rows] == [False, True, False]
 
 
 def test_drawn_scenes_of_other_families_are_accepted():
