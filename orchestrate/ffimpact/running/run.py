@@ -14,6 +14,7 @@ import subprocess
 import time
 from collections.abc import Iterable
 from dataclasses import replace as changed
+from functools import cache
 from pathlib import Path
 
 from .. import __version__
@@ -153,7 +154,7 @@ def run(
                 _put(stage, failure.folder, scene)
             raise
         provenance |= request_entries | {
-            "git": commit(),
+            "git": commit(code=provenance["code"]),
             "mesh": _sha256(stage / scene.mesh_name),
         }
         write_fields(stage)
@@ -339,9 +340,11 @@ def _sha256(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def commit(digits: int = 40) -> str:
-    """Returns the git commit, with -dirty if the source tree differs from it. If the program is
-    installed, the answer is "unknown": the surrounding folder may belong to another repository.
+@cache
+def commit(digits: int = 40, code: str = "") -> str:
+    """Returns the git commit, with -dirty if the source tree differs from it. git is asked once for
+    each `code`, of which the argument is a hash. If the program is installed, the answer is
+    "unknown": the surrounding folder may belong to another repository.
     """
     if INSTALLED:
         return "unknown"
