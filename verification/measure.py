@@ -138,7 +138,7 @@ def entries(script: str, flags: dict[str, Value | Path]) -> Entries:
         made = unpacked(Path(flags["scene"]).read_bytes())
     else:
         own = {"friction_dynamic": own.get("friction_static", 0.0)} | own
-        made = parameter_arrays({name: own[name] for name in parameters.names() if name in own})
+        made = parameter_arrays({name: own[name] for name in parameters.PARAMETERS if name in own})
         terms = {name: own.pop(name) for name in ("share", "alpha", "mu") if name in own}
         numbers = Material.model_construct(law=own["law"], **terms).numbers
         made |= joined("law_numbers", [np.array(numbers, dtype=float)])

@@ -287,11 +287,9 @@ def _list(options: argparse.Namespace) -> None:
 def _parameters(options: argparse.Namespace) -> None:
     from .input import parameters
 
-    for name in parameters.names():
-        p = parameters.PARAMETERS[name]
+    for name, p in parameters.PARAMETERS.items():
         default = p.default if isinstance(p.default, str) else f"{p.default:g}"
-        only = f"; in {p.scripts[0]} only" if len(p.scripts) == 1 else ""
-        print(f"{name:<21}{default:<17}{p.unit:<9}{p.help}; accepted: {p.accepted}{only}")
+        print(f"{name:<21}{default:<17}{p.unit:<9}{p.help}; accepted: {p.accepted}")
 
 
 def _schema(options: argparse.Namespace) -> None:

@@ -15,7 +15,7 @@ import json
 import os
 import shutil
 from collections.abc import Mapping
-from functools import cached_property, partial
+from functools import cached_property
 from html import escape
 from pathlib import Path
 from typing import Annotated, Any, Self
@@ -32,7 +32,7 @@ from .input.contact import CONTACT, Contact, Pair
 from .input.dimension import AXISYMMETRIC, DIMENSIONS, PLANE_STRAIN, SOLID, Dimension
 from .input.entries import Entries, several
 from .input.materials import MATERIAL, STIFFEST
-from .input.models import listed
+from .input.models import RUN, listed
 from .input.obstacles import Obstacle
 from .input.parameter import plain
 from .input.parameters import PARAMETERS, Table, Value
@@ -46,8 +46,6 @@ from .scenes.files import SCENES, absent, built_in, read_toml
 
 __all__ = ["RUN", "SCENES", "Scene", "absent", "built_in", "load", "read", "read_toml"]
 
-# The parameters of a run, at the top of a scene.
-RUN = tuple(name for name in models.Top.__annotations__ if name in PARAMETERS and name not in SIZES)
 # Entries, beside those of contact, on which the motion up to the first contacts does not depend.
 UNMOVED = (*SIZES, "mesh_stretch", "accuracy", "dt", "fields", "modes")
 LONG = 100  # number of items from which on a list is a table
@@ -277,27 +275,21 @@ class Scene(models.Top):
         plane = all(PLANE_STRAIN in body.dimensions for body in self.bodies)
         return PLANE_STRAIN if plane else AXISYMMETRIC
 
+    @property
+    def surfaces(self) -> list[Body | Obstacle]:
+        """Bodies and obstacles."""
+        return [*self.bodies, *self.obstacles]
+
     @cached_property
     def values(self) -> dict[str, Value]:
         """All parameters of the run. Those that are left to the program (auto, 0) stay as they are."""
-        return self._parameters(self, RUN)
+        names = self.names(self.kind)
+        return {name: _value(self, name) for name in RUN if name in names}
 
     @cached_property
     def contact_values(self) -> dict[str, Value]:
         """The parameters of [contact], likewise."""
-        return self._parameters(self.contact, CONTACT)
-
-    def _parameters(self, table: Entries, names: tuple[str, ...]) -> dict[str, Value]:
-        """The values of the parameters that the script takes, defaults where the table has no entry.
-        Raises BadInput for an entry that the script does not take.
-        """
-        script = self.kind.script
-        gathered([partial(parameters.taken, name, script) for name in names if name in table])
-        return {
-            name: getattr(table, name) if name in table else PARAMETERS[name].default
-            for name in names
-            if script in PARAMETERS[name].scripts
-        }
+        return {name: _value(self.contact, name) for name in CONTACT}
 
     @cached_property
     def pairs(self) -> list[Pair]:
@@ -442,14 +434,7 @@ class Scene(models.Top):
                 f"script: '{brief(self.script)}' is not that of [[body]] tables in "
                 f"dimension = '{self.kind.name}' (accepted: {self.kind.script})"
             )
-        gathered(
-            (
-                lambda: gathered([body.check for body in self.bodies]),
-                lambda: gathered([obstacle.check for obstacle in self.obstacles]),
-                lambda: self.contact_values,
-                lambda: self.values,
-            )
-        )
+        gathered([surface.check for surface in self.surfaces])
         for name in SIZES:
             if getattr(self, name) and all(body.file_mesh for body in self.bodies):
                 raise BadInput(
@@ -483,15 +468,14 @@ class Scene(models.Top):
 
     def refuse_rest(self) -> None:
         """Raises BadInput if nothing ever moves."""
-        surfaces: list[Body | Obstacle] = [*self.bodies, *self.obstacles]
         moving = [
-            *(surface.start_velocity for surface in surfaces),
+            *(surface.start_velocity for surface in self.surfaces),
             *(body.start_spin for body in self.bodies),
             *(self.values.get(name, 0.0) for name in ("gravity", "body_force_x", "body_force_y")),
         ]
         if (
             not any(np.any(motion) for motion in moving)
-            and not any(surface.driven for surface in surfaces)
+            and not any(surface.driven for surface in self.surfaces)
             and not any(body.supports or body.loads or body.has_fields for body in self.bodies)
         ):
             raise BadInput(
@@ -503,7 +487,7 @@ class Scene(models.Top):
         """Raises BadInput if the scene starts in equilibrium and something moves at t = 0."""
         if self.values["start"] != "equilibrium":
             return
-        for table in (*self.bodies, *self.obstacles):
+        for table in self.surfaces:
             for name in ("velocity", "spin", *FIELDS):
                 value = getattr(table, name, None)
                 if value is not None and (name in FIELDS or np.any(np.atleast_1d(value))):
@@ -616,6 +600,12 @@ class Scene(models.Top):
             f"<tr><td>{name}</td><td>{escape(text)}</td></tr>" for name, text in self._rows()
         )
         return f"<table>{rows}</table>"
+
+
+def _value(table: Entries, name: str) -> Any:
+    """The value of a parameter, its default if the table does not set it."""
+    value = getattr(table, name)
+    return PARAMETERS[name].default if value is None else value
 
 
 def _shortened(value: Any) -> Any:

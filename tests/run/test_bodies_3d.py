@@ -327,7 +327,7 @@ def test_the_scene_as_used_makes_the_same_run(fall, tmp_path):
     gives the same history."""
     result = fall("quarter")
     again = load(str(result.folder / "scene.toml"))
-    assert again.kind.script == SCRIPT and set(again.values) <= set(parameters.names(SCRIPT)) and again.content["symmetry"] == "quarter"
+    assert again.kind.script == SCRIPT and set(again.values) <= set(parameters.PARAMETERS) and again.content["symmetry"] == "quarter"
     made = assembly.assemble(again)
     assert made.data == (result.folder / "scene.bin").read_bytes() and to_toml(made.used) == (result.folder / "scene.toml").read_text()
     code, _, _ = call("-scene", str(result.folder / "scene.bin"), "-out", str(tmp_path / "direct"), cwd=tmp_path, kind=SCRIPT)

@@ -129,7 +129,7 @@ def test_the_scene_as_used_makes_the_same_run(slow, tmp_path):
     """scene.toml has the dimension and only parameters of the script, and gives the same data file
     and mesh. The script alone gives exactly the same history."""
     again = load(str(slow.folder / "scene.toml"))
-    assert again.kind.script == SCRIPT and set(again.values) <= set(parameters.names(SCRIPT))
+    assert again.kind.script == SCRIPT and set(again.values) <= set(parameters.PARAMETERS)
     made = assembly.assemble(again)
     assert made.data == (slow.folder / "scene.bin").read_bytes() and to_toml(made.used) == (slow.folder / "scene.toml").read_text()
     code, _, _ = call("-scene", str(slow.folder / "scene.bin"), "-out", str(tmp_path / "direct"), cwd=tmp_path, kind=SCRIPT)

@@ -59,7 +59,7 @@ BAD = [
     ({"angle": 30}, {}, "body.1.angle: no such entry, set to '30'"),
     ({"shape": "disc"}, {}, "body.1.shape: 'disc' is not known (accepted: ball|shell|ellipsoid|cylinder|polygon|tube|torus|mesh)"),
     ({"shape": "polygon", "vertices": [[0, 0], [1, 0], [1, 1]]}, {}, "body.1.vertices: do not go from the axis to the axis"),
-    ({}, {"body_force_x": 1}, "body_force_x: bodies-axisymmetric takes no such parameter"),
+    ({}, {"body_force_x": 1}, "body_force_x: no such entry, set to '1'"),
     ({}, {"dimension": "2d"}, "dimension: '2d' is not known (accepted: plane-strain|axisymmetric"),
     ({}, {"script": "bodies"}, "script: 'bodies' is not that of [[body]] tables in dimension = 'axisymmetric' (accepted: bodies-axisymmetric)"),
     ({"position": -0.8}, {}, "body.1.position: 'ball' overlaps 'floor'"),

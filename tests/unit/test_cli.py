@@ -26,7 +26,7 @@ def test_lists(capsys):
     assert main(["list"]) == 0 and "disc-normal" in capsys.readouterr().out
     assert main(["parameters"]) == 0
     out = capsys.readouterr().out
-    assert all(re.search(rf"^{name} ", out, re.MULTILINE) for name in parameters.names())
+    assert all(re.search(rf"^{name} ", out, re.MULTILINE) for name in parameters.PARAMETERS)
 
 
 def test_make_lists_every_target():

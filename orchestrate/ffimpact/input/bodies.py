@@ -30,7 +30,6 @@ from .materials import (
     LAWS,
     MATERIAL,
     NOT_RIGID,
-    OF_BODIES,
     Material,
     OfMaterial,
     accepted,
@@ -83,11 +82,11 @@ class Body(OfMaterial):
     position: Annotated[Components | None, Place(), "of the centre of mass [m]"]
     velocity: Annotated[Components | None, Place(), "of the centre of mass [m/s]"] = None
     mesh_size: Annotated[
-        float | None, real(0, 0, 1e9, "m", OF_BODIES), "largest element size; 0 = by accuracy"
+        float | None, real(0, 0, 1e9, "m"), "largest element size; 0 = by accuracy"
     ] = None
     contact_mesh_size: Annotated[
         float | None,
-        real(0, 0, 1e9, "m", OF_BODIES),
+        real(0, 0, 1e9, "m"),
         "element size at the contact boundary; 0 = from accuracy",
     ] = None
     mesh_stretch: Annotated[
@@ -116,7 +115,7 @@ class Body(OfMaterial):
         "turned about a vector of this length [degrees]",
     ] = None
     speed: Annotated[
-        float | None, real(0, 0, 1e9, "m/s", OF_BODIES), "in place of velocity, with direction"
+        float | None, real(0, 0, 1e9, "m/s"), "in place of velocity, with direction"
     ] = None
     direction: Annotated[
         float | None,
@@ -125,9 +124,7 @@ class Body(OfMaterial):
     ] = None
     spin: Annotated[
         Components | None,
-        InSpace(
-            real(0, -1e12, 1e12, "rad/s", OF_BODIES).means("spin at the start, counter-clockwise")
-        ),
+        InSpace(real(0, -1e12, 1e12, "rad/s").means("spin at the start, counter-clockwise")),
         "angular velocity [rad/s]; in space a vector",
     ] = None
     initial_velocity: Annotated[

@@ -12,7 +12,6 @@ __all__ = [
     "DIMENSIONS",
     "Dimension",
     "PLANE_STRAIN",
-    "SCRIPTS",
     "SOLID",
     "of_scene",
     "per_metre",
@@ -36,7 +35,6 @@ PLANE_STRAIN = Dimension("plane-strain", "bodies", 2)
 AXISYMMETRIC = Dimension("axisymmetric", "bodies-axisymmetric", 2)
 SOLID = Dimension("3d", "bodies-3d", 3)
 DIMENSIONS = {dimension.name: dimension for dimension in (PLANE_STRAIN, AXISYMMETRIC, SOLID)}
-SCRIPTS = tuple(dimension.script for dimension in DIMENSIONS.values())
 
 
 def of_scene(content: Table) -> Dimension:

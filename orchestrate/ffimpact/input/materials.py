@@ -27,7 +27,6 @@ __all__ = [
     "MooneyRivlin",
     "NOT_RIGID",
     "NeoHookean",
-    "OF_BODIES",
     "OfMaterial",
     "Ogden",
     "STIFFEST",
@@ -37,17 +36,16 @@ __all__ = [
     "rigid",
 ]
 
-OF_BODIES = ()  # of no script: entries of bodies
 # The words of the laws in edp/kernels/laws.cpp.
 LAW_WORDS = ("svk", "neohookean", "mooney-rivlin", "ogden", "incompressible")
-LAW = word("svk", LAW_WORDS, OF_BODIES).means(
+LAW = word("svk", LAW_WORDS).means(
     "constitutive law: St. Venant-Kirchhoff (5), compressible neo-Hookean (6), or another"
 )
-YOUNG = real(7e6, 1e-6, 1e18, "Pa", OF_BODIES).means("Young's modulus E")
-NU = real(0.45, 0, 0.5, "-", OF_BODIES).means(
+YOUNG = real(7e6, 1e-6, 1e18, "Pa").means("Young's modulus E")
+NU = real(0.45, 0, 0.5, "-").means(
     "Poisson's ratio; the paper says only nu -> 0.5; 0.5: J = 1, of all laws but svk"
 )
-DENSITY = real(1722, 1e-15, 1e12, "kg/m3", OF_BODIES).means("reference density")
+DENSITY = real(1722, 1e-15, 1e12, "kg/m3").means("reference density")
 DAMPING = ("viscosity", "bulk_viscosity", "relaxation_modulus", "relaxation_time")
 # Largest nu in the speed of waves. The stiffness by a larger nu acts on the volume of elements.
 STIFFEST = 0.45
@@ -75,28 +73,28 @@ class OfMaterial(Entries):
     ] = None
     viscosity: Annotated[
         float | None,
-        real(0, 0, 1e18, "Pa s", OF_BODIES),
+        real(0, 0, 1e18, "Pa s"),
         "viscosity eta of the material: beside the law's stress 2 eta D, D the rate of deformation",
     ] = None
     bulk_viscosity: Annotated[
         float | None,
-        real(0, 0, 1e18, "Pa s", OF_BODIES),
+        real(0, 0, 1e18, "Pa s"),
         "viscosity zeta of volume: beside it zeta tr(D) I",
     ] = None
     relaxation_modulus: Annotated[
         float | None,
-        real(0, 0, 1e18, "Pa", OF_BODIES),
+        real(0, 0, 1e18, "Pa"),
         "shear modulus G of a Maxwell branch beside the law, which relaxes in relaxation_time; 0 "
         "= none",
     ] = None
     relaxation_time: Annotated[
         float | None,
-        real(0, 0, 1e9, "s", OF_BODIES),
+        real(0, 0, 1e9, "s"),
         "its time tau: G exp(-t/tau) is left of G after t",
     ] = None
     loss: Annotated[
         float | None,
-        real(0, 0, 10, "-", OF_BODIES),
+        real(0, 0, 10, "-"),
         "loss factor tan delta of shear at the first mode of the disc or ball: sets viscosity; 0 "
         "= by viscosity",
     ] = None

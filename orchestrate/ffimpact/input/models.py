@@ -13,11 +13,11 @@ from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
 from ..failure import BadInput, brief, gathered, suggestion, unknown
-from .bodies import Body
+from .bodies import SIZES, Body
 from .contact import CONTACT, Contact, OfContact
 from .dimension import DIMENSIONS, PLANE_STRAIN, SOLID, Dimension
 from .entries import FORMER, Context, Entries, no_more, no_such, rule_of
-from .materials import OF_BODIES, OfMaterial
+from .materials import OfMaterial
 from .obstacles import OBSTACLES, Obstacle
 from .parameter import Parameter, Rule, integer, real, word
 from .rules import InSpace, Text
@@ -25,6 +25,7 @@ from .shapes import BODIES
 
 __all__ = [
     "PARAMETERS",
+    "RUN",
     "Tables",
     "Top",
     "full_name",
@@ -56,13 +57,13 @@ class Top(OfMaterial):
         "the part that is computed: in the plane the half x >= 0, in space the half z >= 0, or of "
         "that the half x >= 0; auto = the least that represents the scene",
     ] = None
-    only = {"symmetry": (PLANE_STRAIN, SOLID)}
+    only = dict.fromkeys(("symmetry", "body_force_x"), (PLANE_STRAIN, SOLID))
     mesh_size: Annotated[
-        float | None, real(0, 0, 1e9, "m", OF_BODIES), "element size in the bulk; 0 = from accuracy"
+        float | None, real(0, 0, 1e9, "m"), "element size in the bulk; 0 = from accuracy"
     ] = None
     contact_mesh_size: Annotated[
         float | None,
-        real(0, 0, 1e9, "m", OF_BODIES),
+        real(0, 0, 1e9, "m"),
         "element size at the contact boundary; 0 = from accuracy",
     ] = None
     gravity: Annotated[
@@ -72,7 +73,7 @@ class Top(OfMaterial):
     ] = None
     body_force_x: Annotated[
         float | None,
-        real(0, -1e12, 1e12, "m/s2", ("bodies", "bodies-3d")),
+        real(0, -1e12, 1e12, "m/s2"),
         "constant body force b of (1), along the plane",
     ] = None
     body_force_y: Annotated[
@@ -211,6 +212,8 @@ def _parameters() -> Iterator[Parameter]:
 
 # The parameters by name: entries with defaults, which are those of a run, of contact and of bodies.
 PARAMETERS: dict[str, Parameter] = {parameter.name: parameter for parameter in _parameters()}
+# Those of a run, at the top of a scene.
+RUN = tuple(name for name in Top.__annotations__ if name in PARAMETERS and name not in SIZES)
 
 
 class Tables(NamedTuple):

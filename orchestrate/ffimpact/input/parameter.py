@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 __all__ = [
     "Parameter",
     "Rule",
-    "SCRIPTS",
     "Table",
     "Value",
     "integer",
@@ -29,7 +28,6 @@ __all__ = [
     "word",
 ]
 
-SCRIPTS = ("bodies", "bodies-axisymmetric", "bodies-3d")  # of edp/program
 Value = float | int | str
 Table = dict[str, Any]  # a table of a TOML or JSON file
 
@@ -124,7 +122,7 @@ class Parameter(Rule):
     """The rule of one parameter.
 
     `kind` is real, int or word. `low` and `high` bound numbers. `words` are the accepted words; a
-    number may have them too (auto). `scripts` are the scripts that take the parameter.
+    number may have them too (auto).
     """
 
     name: str
@@ -135,7 +133,6 @@ class Parameter(Rule):
     low: float = 0.0
     high: float = 0.0
     words: tuple[str, ...] = ()
-    scripts: tuple[str, ...] = ()
 
     @property
     def meaning(self) -> str:
@@ -211,20 +208,18 @@ def with_unit(text: str, unit: str) -> str:
     return f"has a unit; give the number {'alone' if unit in ('', '-') else f'in {unit}'}{number}"
 
 
-def real(
-    default: float | str, low: float, high: float, unit: str, scripts: tuple[str, ...] = SCRIPTS
-) -> Parameter:
+def real(default: float | str, low: float, high: float, unit: str) -> Parameter:
     """The rule of a number between two bounds; `auto` is accepted if it is the default."""
     words = ("auto",) if default == "auto" else ()
     number = default if words else float(default)
-    return Parameter("", "real", number, unit, "", float(low), float(high), words, scripts)
+    return Parameter("", "real", number, unit, "", float(low), float(high), words)
 
 
 def integer(default: int, low: int, high: int, unit: str) -> Parameter:
     """The rule of a whole number between two bounds."""
-    return Parameter("", "int", default, unit, "", low, high, (), SCRIPTS)
+    return Parameter("", "int", default, unit, "", low, high)
 
 
-def word(default: str, words: tuple[str, ...], scripts: tuple[str, ...] = SCRIPTS) -> Parameter:
+def word(default: str, words: tuple[str, ...]) -> Parameter:
     """The rule of a choice between words."""
-    return Parameter("", "word", default, "-", words=words, scripts=scripts)
+    return Parameter("", "word", default, "-", words=words)

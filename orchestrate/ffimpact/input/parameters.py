@@ -24,9 +24,7 @@ __all__ = [
     "Value",
     "add_set",
     "check",
-    "names",
     "overrides",
-    "taken",
     "whole",
     "with_unit",
 ]
@@ -52,34 +50,15 @@ NOT_DECISIVE = ("checkpoint_every",)  # parameters that do not change the result
 OUTPUT = {"fields": 0, "modes": 0}
 
 
-def names(script: str = "") -> list[str]:
-    """The names of the parameters of one script, or of all scripts."""
-    return [
-        parameter.name
-        for parameter in PARAMETERS.values()
-        if not script or script in parameter.scripts
-    ]
-
-
-def taken(name: str, script: str) -> None:
-    """Raises BadInput if a script does not take a parameter of the table."""
-    if script not in PARAMETERS[name].scripts:
-        raise BadInput(
-            f"{brief(name)}: {script} takes no such parameter (accepted: in {'|'.join(PARAMETERS[name].scripts)})"
-        )
-
-
-def check(values: dict[str, Value], script: str = "") -> dict[str, Value]:
-    """Checks and converts the given parameters of one script, or of all scripts.
+def check(values: dict[str, Value]) -> dict[str, Value]:
+    """Checks and converts parameters by name.
 
     Raises BadInput with the name of the first parameter that is unknown or not accepted.
     """
     for name in values:
-        if name in names() and script:
-            taken(name, script)
-        if name not in names():
+        if name not in PARAMETERS:
             raise BadInput(
-                f"{brief(name)}: no such parameter{suggestion(name, names())} (accepted: {', '.join(names(script))})"
+                f"{brief(name)}: no such parameter{suggestion(name, PARAMETERS)} (accepted: {', '.join(PARAMETERS)})"
             )
     return {name: PARAMETERS[name].check(value) for name, value in values.items()}
 

@@ -12,7 +12,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..freefem.arrays import Entries, joined, table
+from ..input.contact import CONTACT
 from ..input.dimension import AXISYMMETRIC, SOLID
+from ..input.models import RUN
 from ..input.parameters import PARAMETERS, Value
 from ..mesh.mesh import AXIS, WIDEST, Mesh
 from ..mesh.plane_file import on_circle
@@ -106,10 +108,8 @@ def scene_arrays(scene: Scene, centres: np.ndarray, pairs: list[dict[str, Value]
 
 
 def parameter_arrays(values: Mapping[str, Value]) -> Entries:
-    """Returns the parameters of a run: `values`, and the defaults of those that its script has not."""
-    chosen = {
-        name: values.get(name, row.default) for name, row in PARAMETERS.items() if row.scripts
-    }
+    """Returns the parameters of a run: `values`, and the defaults of those that it has not."""
+    chosen = {name: values.get(name, PARAMETERS[name].default) for name in (*CONTACT, *RUN)}
     return {
         name: float(value) if PARAMETERS[name].kind == "real" else value
         for name, value in chosen.items()
