@@ -19,7 +19,7 @@ SOLID = SOFT | {"dimension": "3d", "end_time": 4e-3, "contact": {"friction_stati
                           "load": [{"where": "right", "pressure": "3e4*sin(300*t)"}, {"where": "front", "traction": [1e3, 2e3, "1e4*sin(500*t)"]}]}]}
 
 
-@pytest.mark.parametrize("scene", [PUSHED, ROUND, SOLID], ids=["plane", "revolution", "space"])
+@pytest.mark.parametrize("scene", [PUSHED | {"mesh_size": 0.01, "contact_mesh_size": 0.01}, ROUND, SOLID], ids=["plane", "revolution", "space"])
 def test_loads_do_exact_work(tmp_path, scene):
     """Dead and follower loads and a gas, on bodies with supports, motion and friction."""
     run = bodies(tmp_path, scene)

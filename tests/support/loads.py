@@ -23,7 +23,7 @@ def assert_exact(run) -> None:
 
 # ---- exactness
 
-PUSHED = SOFT | {"end_time": 0.02, "mesh_size": 0.01, "contact_mesh_size": 0.01, "contact": {"friction_static": 0.4}, "obstacle": [FLOOR], "body": [
+PUSHED = SOFT | {"end_time": 0.02, "contact": {"friction_static": 0.4}, "obstacle": [FLOOR], "body": [
     {"name": "pad", "shape": "rectangle", "width": 0.1, "height": 0.05, "position": [0, 0.0255],
      "support": [{"where": "top", "motion": ["0.003*sin(400*t)", "-0.002*(1-cos(600*t))"]}],
      "load": [{"where": "right", "pressure": "2e4*sin(300*t)"}, {"where": "left", "traction": ["1e4*t/0.02", -3e3]}]},
