@@ -441,8 +441,7 @@ def refuse_nothing(scene: Scene, onsets: list[Onset]) -> None:
     """Raises BadInput if a run whose end is automatic would have none: a body is driven, no bodies
     ever come into contact, or a body set down on an obstacle does not leave it.
     """
-    driven = [f"body.{k}" for k, body in enumerate(scene.bodies, 1) if body.driven]
-    driven += [f"obstacle.{k}" for k, other in enumerate(scene.obstacles, 1) if other.driven]
+    driven = [surface.entry for surface in scene.surfaces if surface.driven]
     if driven and (scene.values["end_time"] == 0 or scene.values["until"] == "rest"):
         raise BadInput(
             f"end_time: {scene.values['end_time']:g} with until = '{scene.values['until']}', but "

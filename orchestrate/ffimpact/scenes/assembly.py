@@ -515,7 +515,7 @@ def _with_viscosity(k: int, auto: AutomaticValues) -> Body:
     viscosity = _disc_like(k, auto).viscosity(material.loss)
     if material.viscosity and not math.isclose(material.viscosity, viscosity):
         raise BadInput(
-            f"body.{k + 1}.loss: {material.loss:g} asks for viscosity {viscosity:g} Pa s of '{body.own_name}', which "
+            f"{body.at('loss')}: {material.loss:g} asks for viscosity {viscosity:g} Pa s of '{body.own_name}', which "
             f"is {material.viscosity:g} (accepted: one of the two)"
         )
     return body.model_copy(update={"made_of": material.model_copy(update={"viscosity": viscosity})})
@@ -589,7 +589,7 @@ def _first_normal(k: int, auto: AutomaticValues) -> np.ndarray:
     onsets = [onset for onset in auto.onsets if k in (onset.first, onset.second)]
     if not onsets:
         raise BadInput(
-            f"body.{k + 1}.mesh_stretch: {body.mesh_stretch or 0.0:g}, but '{body.own_name}' never comes into "
+            f"{body.at('mesh_stretch')}: {body.mesh_stretch or 0.0:g}, but '{body.own_name}' never comes into "
             f"contact (accepted: 0 or 1)"
         )
     return min(onsets, key=lambda onset: onset.time).own_normal(k, body)

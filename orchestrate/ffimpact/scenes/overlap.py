@@ -28,44 +28,26 @@ SUNK = 0.05
 def refuse_overlaps(scene: Scene) -> None:
     """Raises BadInput if a body overlaps another one or an obstacle at the start."""
     placed = [body.placed for body in scene.bodies]
-    centres, reaches = (
-        np.array([shape.area_centre for shape in placed]),
-        np.array([shape.reach for shape in placed]),
-    )
+    centres = np.array([shape.area_centre for shape in placed])
+    reaches = np.array([shape.reach for shape in placed])
     distances = np.linalg.norm(centres[:, None] - centres, axis=2)
+    sinks = _sinks(scene)
     for i, j in np.argwhere(np.triu(distances <= reaches[:, None] + reaches, 1)):
-        body, other = scene.bodies[i], scene.bodies[j]
-        _refuse_overlap(
-            f"body.{i + 1}",
-            body,
-            f"body.{j + 1}",
-            other.own_name,
-            gap_between(placed[i], placed[j]),
-            _sinks(scene),
-            _units(body) or _units(other),
-        )
-    for (i, body), (j, other) in itertools.product(
-        enumerate(scene.bodies, 1), enumerate(scene.obstacles, 1)
-    ):
-        _refuse_overlap(
-            f"body.{i}",
-            body,
-            f"obstacle.{j}",
-            other.own_name,
-            gap_to_obstacle(body.placed, other),
-            _sinks(scene),
-            _units(body),
-        )
+        gap = gap_between(placed[i], placed[j])
+        _refuse_overlap(scene.bodies[i], scene.bodies[j], gap, sinks)
+    for body, obstacle in itertools.product(scene.bodies, scene.obstacles):
+        _refuse_overlap(body, obstacle, gap_to_obstacle(body.placed, obstacle), sinks)
 
 
-def _units(body: Body) -> str:
+def _units(surface: Body | Obstacle) -> str:
     """Returns a hint for a message if a body comes from a file and is wider than WIDE."""
-    width, file = 2 * body.outline.reach, getattr(body, "file", None)
-    return (
-        f"; its file is {width:.3g} m wide: other units? {body.at('scale')} = 0.001 takes them as mm"
-        if file and width > WIDE and not declares_unit(body.context.folder / file)
-        else ""
-    )
+    file = getattr(surface, "file", None)
+    if not file or isinstance(surface, Obstacle) or declares_unit(surface.context.folder / file):
+        return ""
+    if (width := 2 * surface.outline.reach) <= WIDE:
+        return ""
+    scale = surface.at("scale")
+    return f"; its file is {width:.3g} m wide: other units? {scale} = 0.001 takes them as mm"
 
 
 def _sinks(scene: Scene) -> float:
@@ -74,14 +56,12 @@ def _sinks(scene: Scene) -> float:
     return SUNK if presses or any(body.loads for body in scene.bodies) else TOUCHING
 
 
-def _refuse_overlap(
-    path: str, body: Body, other_path: str, other: str, gap: float, sinks: float, hint: str = ""
-) -> None:
+def _refuse_overlap(body: Body, other: Body | Obstacle, gap: float, sinks: float) -> None:
     if gap < -sinks * body.outline.half_thickness:
+        side = ", on the side that its normal points to" if isinstance(other, Obstacle) else ""
         raise BadInput(
-            f"{path}.position: '{body.own_name}' overlaps '{other}' ({other_path}) by {-gap:.3g} m at the start "
-            f"(accepted: apart or touching{'' if other_path.startswith('body') else ', on the side that its normal points to'})"
-            f"{hint}"
+            f"{body.at('position')}: '{body.own_name}' overlaps '{other.own_name}' ({other.entry}) by {-gap:.3g} m at the start "
+            f"(accepted: apart or touching{side}){_units(body) or _units(other)}"
         )
 
 

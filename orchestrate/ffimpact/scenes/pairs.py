@@ -30,21 +30,17 @@ STIFF = 1e5
 FOLDING = 0.2
 
 
-def names(all_bodies: list[Body], all_obstacles: list[Obstacle]) -> dict[str, int]:
-    """Returns the index of each body and obstacle by name, as in a Pair. Raises BadInput if a name
-    occurs twice.
-    """
+def names(bodies: list[Body], obstacles: list[Obstacle]) -> dict[str, int]:
+    """Returns the index of each body and obstacle by name. Raises BadInput if a name occurs twice."""
     index: dict[str, int] = {}
     where: dict[str, str] = {}
-    for path, number, name in [
-        *((f"body.{k + 1}", k, body.own_name) for k, body in enumerate(all_bodies)),
-        *((f"obstacle.{k + 1}", -1 - k, other.own_name) for k, other in enumerate(all_obstacles)),
-    ]:
-        if name in index:
+    surfaces: list[tuple[int, Body | Obstacle]] = list(enumerate(bodies))
+    for number, surface in [*surfaces, *((-1 - k, other) for k, other in enumerate(obstacles))]:
+        if (name := surface.own_name) in index:
             raise BadInput(
-                f"{path}.name: '{brief(name)}' is the name of {where[name]} too (accepted: each name once)"
+                f"{surface.at('name')}: '{brief(name)}' is the name of {where[name]} too (accepted: each name once)"
             )
-        index[name], where[name] = number, path
+        index[name], where[name] = number, surface.entry
     return index
 
 

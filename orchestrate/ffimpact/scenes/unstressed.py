@@ -85,9 +85,5 @@ def _write(file: Path, state: str, change: np.ndarray) -> None:
 
 def _entry(scene: Scene) -> str:
     """The entry of the first gas under which the given shape of its body is."""
-    return next(
-        f"body.{b}.load.{k}.gas.given_shape"
-        for b, body in enumerate(scene.bodies, 1)
-        for k, load in enumerate(body.loads, 1)
-        if body.inflated and load.inflated
-    )
+    loads = [load for body in scene.bodies if body.inflated for load in body.loads]
+    return next(f"{load.entry}.gas.given_shape" for load in loads if load.inflated)
