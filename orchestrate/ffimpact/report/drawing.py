@@ -52,8 +52,7 @@ def pictures(folder: Path) -> dict[str, Callable[[], Figure | None]]:
     scene["touched"] = contact_bounds(read_json(folder / "summary.json"))
     if "body" not in scene:
         raise Unreadable(
-            f"{folder}: of a run without Python, which keeps neither names of bodies nor obstacles (accepted: a folder of "
-            "ffimpact run)"
+            f"{folder}: its scene.toml has no bodies (accepted: a folder of ffimpact run)"
         )
     snapshots, touches, names = (
         vtu.series(folder / "fields.pvd"),
