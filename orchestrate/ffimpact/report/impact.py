@@ -8,6 +8,7 @@ from typing import Any
 
 from ..input import dimension
 from ..input.materials import MATERIAL
+from ..output.results import Contents
 
 __all__ = ["KINDS", "impact_of"]
 
@@ -53,7 +54,7 @@ def impact_of(scene: Mapping[str, Any]) -> dict[str, Any] | None:
     }
     # Left and right are alike: the angle is at most 90 degrees, the body moves along x.
     angle = math.degrees(math.atan2(-vy, abs(vx))) if vx or vy else 90.0
-    return (
+    impact = (
         entries
         | contact
         | own
@@ -68,6 +69,7 @@ def impact_of(scene: Mapping[str, Any]) -> dict[str, Any] | None:
             else 0.0,
         }
     )
+    return Contents(impact, scene.path) if isinstance(scene, Contents) else impact
 
 
 def _is_ground(obstacle: Mapping[str, Any]) -> bool:
