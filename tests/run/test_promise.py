@@ -45,7 +45,7 @@ def test_a_mixture_has_all_dimensions_friction_and_two_bodies(count):
     assert {name for name, _ in drawn} == set(draws.MIXTURE) and abs(len(drawn) - count) < 3
     for name, point in drawn:
         made = promise.open_scene(name, point)
-        assert (made.contact or made.values)["penalty"] == "auto" and draws.words(point)
+        assert made.contact_values["penalty"] == "auto" and draws.words(point)
     if count == 60:
         hasFriction = [point.get("friction_static", point.get("contact.friction_static", 0)) > 0 for _, point in drawn]
         assert 15 < sum(hasFriction) < 45 and len({point["accuracy"] for _, point in drawn}) > 3
