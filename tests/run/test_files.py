@@ -18,21 +18,11 @@ from ffimpact.running import run
 from ffimpact.scene import read
 from ffimpact.scenes import approach, assembly
 from ffimpact.sweeps import sweep
-from tests.support.files import FLOOR, solid, tables, write_step
+from tests.support.files import FLOOR, solid, tables, write_mesh, write_step
 
 BALL = {"name": "ball", "shape": "disc", "radius": 0.02, "position": [0, 0.05], "velocity": [0, -2]}
 BOX = 'SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 100, 60, 40};\n'  # mm
 VOLUME = 0.1 * 0.06 * 0.04  # volume of the box [m3]
-
-
-def write_plane(path, draw, size: float = 0.01, version: float = 4.1) -> None:
-    """Writes a gmsh file with the triangles of the shape that draw(gmsh.model) makes."""
-    with mesh.gmsh_session() as gmsh:
-        draw(gmsh.model)
-        gmsh.option.setNumber("Mesh.MeshSizeMax", size)
-        gmsh.option.setNumber("Mesh.MshFileVersion", version)
-        gmsh.model.mesh.generate(gmsh.model.getDimension())
-        gmsh.write(str(path))
 
 
 def block(contact: str = ""):
@@ -111,8 +101,8 @@ def test_elements_in_two_groups_are_read_once_in_the_plane(tmp_path, side):
                 if side:
                     model.addPhysicalGroup(1, [1, 2, 3, 4], name=f"side {k}")
         return model_of
-    write_plane(tmp_path / "once.msh", draw(False))
-    write_plane(tmp_path / "twice.msh", draw(True), version=2.2)
+    write_mesh(tmp_path / "once.msh", draw(False))
+    write_mesh(tmp_path / "twice.msh", draw(True), version=2.2)
     assert (tmp_path / "twice.msh").read_text().startswith("$MeshFormat\n2.2")
     both = []
     for name in ("once", "twice"):
@@ -137,7 +127,7 @@ def test_elements_in_two_groups_are_read_once_in_space(tmp_path, side):
         if side:
             model.addPhysicalGroup(2, [3], name=side)
             model.addPhysicalGroup(2, [3, 4], name="sides")
-    write_plane(tmp_path / "solid.msh", draw, 0.02, 2.2)
+    write_mesh(tmp_path / "solid.msh", draw, 0.02, 2.2)
     m = solid_file.read(tmp_path / "solid.msh")
     assert m.volumes.sum() == pytest.approx(0.1 * 0.03 * 0.04, rel=1e-9)
     assert len(np.unique(np.sort(m.cells), axis=0)) == len(m.cells)
@@ -153,9 +143,9 @@ def plane(tmp_path_factory):
     """A folder with all.msh, of which all sides may come into contact, and lower.msh and upper.msh,
     of which only that side may."""
     folder = tmp_path_factory.mktemp("plane")
-    write_plane(folder / "all.msh", block())
+    write_mesh(folder / "all.msh", block())
     for side in ("lower", "upper"):
-        write_plane(folder / f"{side}.msh", block(side))
+        write_mesh(folder / f"{side}.msh", block(side))
     return folder
 
 

@@ -18,6 +18,17 @@ def solid(file: str, **entries) -> dict:
     return tables(body | entries, obstacles=[FLOOR_3D], dimension="3d", accuracy=0.3)
 
 
+def write_mesh(path, draw, size: float = 0.01, version: float = 4.1):
+    """Writes a gmsh file with the elements of the shape that draw(gmsh.model) makes. Returns its path."""
+    with mesh.gmsh_session() as gmsh:
+        draw(gmsh.model)
+        gmsh.option.setNumber("Mesh.MeshSizeMax", size)
+        gmsh.option.setNumber("Mesh.MshFileVersion", version)
+        gmsh.model.mesh.generate(gmsh.model.getDimension())
+        gmsh.write(str(path))
+    return path
+
+
 def write_step(path, radius: float = 0.0) -> None:
     """Writes a STEP file of a box of 100 x 60 x 40 mm, with edges rounded by fillets of this radius
     [mm]."""

@@ -6,7 +6,7 @@ import pytest
 from ffimpact.failure import BadInput
 from ffimpact.mesh import gmsh_file, mesh, solid_file, surface_file
 from ffimpact.mesh.mesh import AXIS, FREE, Sizes
-from tests.support.files import write_step
+from tests.support.files import write_mesh, write_step
 from tests.support.surfaces import slab, sphere, stl
 
 BOX = np.array([0.1, 0.06, 0.04])
@@ -17,17 +17,6 @@ def here(monkeypatch):
     """Reads files in this process."""
     for module in (mesh, solid_file, surface_file):
         monkeypatch.setattr(module, "in_own_process", lambda read, path, *given: read(path, *given))
-
-
-def write(path, draw, size: float, version: float = 4.1):
-    """Writes the mesh of a gmsh model that draw(model) makes."""
-    with mesh.gmsh_session() as gmsh:
-        draw(gmsh.model)
-        gmsh.option.setNumber("Mesh.MeshSizeMax", size)
-        gmsh.option.setNumber("Mesh.MshFileVersion", version)
-        gmsh.model.mesh.generate(gmsh.model.getDimension())
-        gmsh.write(str(path))
-    return path
 
 
 def rectangle(**curves):
@@ -61,7 +50,7 @@ def on(points: np.ndarray, sides: np.ndarray, axis: int, place: float) -> np.nda
 @pytest.mark.parametrize("version", [2.2, 4.1])
 def test_curves_of_a_plane_mesh_have_their_labels(tmp_path, version):
     """`contact` and `symmetry` by name, other curves never touch. Triangles are counter-clockwise."""
-    made = gmsh_file.load(write(tmp_path / "part.msh", rectangle(contact=[1], symmetry=[4], top=[3]), 0.02, version))
+    made = gmsh_file.load(write_mesh(tmp_path / "part.msh", rectangle(contact=[1], symmetry=[4], top=[3]), 0.02, version))
     corners = made.points[made.triangles]
     areas = np.linalg.det(np.stack([corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]], axis=1)) / 2
     assert (areas > 0).all() and areas.sum() == pytest.approx(0.006)
@@ -71,7 +60,7 @@ def test_curves_of_a_plane_mesh_have_their_labels(tmp_path, version):
 
 def test_all_of_a_plane_mesh_without_names_may_touch(tmp_path):
     """The whole boundary has the label of contact, 0.32 m long."""
-    made = gmsh_file.load(write(tmp_path / "part.msh", rectangle(), 0.02))
+    made = gmsh_file.load(write_mesh(tmp_path / "part.msh", rectangle(), 0.02))
     lengths = np.linalg.norm(np.diff(made.points[made.edges], axis=1)[:, 0], axis=1)
     assert (made.labels == FREE).all() and lengths.sum() == pytest.approx(0.32)
 
@@ -82,7 +71,7 @@ def test_all_of_a_plane_mesh_without_names_may_touch(tmp_path):
 def test_what_a_plane_mesh_must_not_be(tmp_path, draw, message):
     """No contact boundary, a curve with two meanings, a solid."""
     with pytest.raises(BadInput, match=message):
-        gmsh_file.load(write(tmp_path / "part.msh", draw, 0.02))
+        gmsh_file.load(write_mesh(tmp_path / "part.msh", draw, 0.02))
 
 
 # ---- in space
@@ -90,7 +79,7 @@ def test_what_a_plane_mesh_must_not_be(tmp_path, draw, message):
 @pytest.mark.parametrize("surfaces, at", [({}, None), ({"contact": [3], "clamp": [4]}, 0.0)])
 def test_surfaces_of_a_solid_mesh_have_their_labels(tmp_path, surfaces, at):
     """All faces may touch, or those of the surface `contact`."""
-    made = solid_file.read(write(tmp_path / "part.msh", box(**surfaces), 0.02))
+    made = solid_file.read(write_mesh(tmp_path / "part.msh", box(**surfaces), 0.02))
     assert made.volumes.sum() == pytest.approx(BOX.prod())
     expected = np.ones(len(made.faces), bool) if at is None else on(made.points, made.faces, 1, at)
     assert np.array_equal(made.labels == FREE, expected) and expected.any()
@@ -130,7 +119,7 @@ def test_a_solid_that_cannot_be_read_is_named(tmp_path, text, message):
 @pytest.mark.parametrize("surfaces, message", [({"top": [4]}, r"none of its physical surfaces \(top\) has the name 'contact'")])
 def test_a_solid_without_contact_is_refused(tmp_path, surfaces, message):
     with pytest.raises(BadInput, match=message):
-        solid_file.read(write(tmp_path / "part.msh", box(**surfaces), 0.03))
+        solid_file.read(write_mesh(tmp_path / "part.msh", box(**surfaces), 0.03))
 
 
 # ---- surfaces of obstacles
@@ -149,7 +138,7 @@ def test_a_surface_is_closed_and_seen_from_outside(tmp_path):
 
 def test_the_surface_of_a_solid_mesh_is_one(tmp_path):
     """The boundary of the tetrahedra of a box."""
-    points, triangles = surface_file.read(write(tmp_path / "part.msh", box(), 0.02))
+    points, triangles = surface_file.read(write_mesh(tmp_path / "part.msh", box(), 0.02))
     a, b, c = points[triangles].transpose(1, 0, 2)
     assert np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2 == pytest.approx(2 * (0.006 + 0.004 + 0.0024))
 
