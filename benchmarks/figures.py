@@ -256,12 +256,14 @@ def users(tables: Tables, path: Path) -> None:
     for name, panel in panels.items():
         panel.set(ylabel=names[name])
         panel.grid(alpha=0.3)
+    for name in ("steps", "seconds") if len(ratios) else ():
+        plain(panels[name].yaxis, (1, 2, 5))
     panels["error %"].set_xlabel("Young's modulus of the block / of the disc")
-    figure.legend(
-        *(scenes if len(rows) else panels["steps"]).get_legend_handles_labels(),
-        loc="outside lower center",
-        ncols=2,
-    )
+    marks, labels = (scenes if len(rows) else panels["steps"]).get_legend_handles_labels()
+    if len(ratios):
+        marks.append(plt.Line2D([], [], color=BLACK, linewidth=0.9, linestyle=DASHED))
+        labels.append("on a rigid plane")
+    figure.legend(marks, labels, loc="outside lower center", ncols=3)
     save(figure, path)
 
 

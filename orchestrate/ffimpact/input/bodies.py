@@ -371,7 +371,7 @@ class Body(OfMaterial):
             return (0.0,) * 6
         if self.dimension is AXISYMMETRIC:
             raise BadInput(
-                f"{self.at('inertia')}: no body of revolution turns in its scene (accepted: without inertia)"
+                f"{self.at('inertia')}: no body of revolution rotates in its scene (accepted: without inertia)"
             )
         if self.dimension is PLANE_STRAIN:
             return (float(np.array(self.inertia)), *(0.0,) * 5)

@@ -80,7 +80,7 @@ class Part:
 
     def is_mirrored(self, axis: int, rotation: np.ndarray) -> bool:
         """Whether the part is its own mirror image in the plane normal to an axis. `rotation` is
-        that of the body, which turns its sides.
+        that of the body and of its sides.
         """
         if self.kind == "":
             side = SIDES.get(self.name)

@@ -70,9 +70,9 @@ class Obstacle(OfContact):
     rotation: Annotated[
         Timed | None, Function(single=True), "turned by [degrees], a function of t"
     ] = None
-    pivot: Annotated[list[float] | None, Vector(), "what it turns about [m]"] = None
+    pivot: Annotated[list[float] | None, Vector(), "what it rotates about [m]"] = None
     axis: Annotated[
-        list[float] | None, Vector(count=3), "in space, the direction that it turns about"
+        list[float] | None, Vector(count=3), "in space, the direction that it rotates about"
     ] = None
 
     def refusals(self) -> Iterator[tuple[str, str]]:
@@ -118,7 +118,7 @@ class Obstacle(OfContact):
         dimension = self.context.dimension
         if dimension is AXISYMMETRIC and self.rotation is not None:
             raise BadInput(
-                f"{self.at('rotation')}: nothing turns in a scene of revolution (accepted: motion)"
+                f"{self.at('rotation')}: nothing rotates in a scene of revolution (accepted: motion)"
             )
         if self.axis is not None and dimension is not SOLID:
             raise BadInput(
