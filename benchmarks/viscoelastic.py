@@ -146,14 +146,19 @@ def theory(kind: str, speed: float) -> tuple[float, float]:
 
 # ---- the runs
 
+def damping(kind: str) -> dict:
+    """The entries of a ball of the kind `kind`."""
+    first, second = (float(f"{value:.6g}") for value in KINDS[kind])
+    return {"branches": [[first, second]]} if kind == "branch" else {"viscosity": first, "bulk_viscosity": second}
+
+
 def balls(out: Path) -> pd.DataFrame:
     """A row for each kind and speed."""
     bar = math.sqrt(YOUNG / DENSITY)
     base = {"law": "neohookean", "young": YOUNG, "nu": NU, "density": DENSITY, "fields": 0, "accuracy": 0.002}
     cases = list(itertools.product(KINDS, SPEEDS))
-    names = {kind: ("relaxation_modulus", "relaxation_time") if kind == "branch" else ("viscosity", "bulk_viscosity") for kind in KINDS}
     points = [{"speed": speed, "penalty": float(f"{STIFF * YOUNG * 200 / math.pi / (1.31 * RADIUS * (speed / bar) ** 0.4):.4g}")}
-              | {name: float(f"{value:.6g}") for name, value in zip(names[kind], KINDS[kind])} for kind, speed in cases]
+              | damping(kind) for kind, speed in cases]
     table, rows = study.study(points, out / "ball", base, LIMIT, "ball-axisymmetric"), []
     period = 2 * math.pi * RADIUS / 2.65 / math.sqrt(MU / DENSITY)
     for (kind, speed), (_, run) in zip(cases, table.iterrows()):
@@ -171,7 +176,7 @@ def discs(out: Path) -> pd.DataFrame:
     viscous = study.study([{"loss": loss} for loss in LOSSES], out / "disc", DISC, LIMIT)
     contact = viscous.thresholded_contact_time.iloc[0]
     mu = YOUNG / (2 * (1 + DISC["nu"]))
-    points = [{"relaxation_modulus": float(f"{BRANCH * mu:.6g}"), "relaxation_time": float(f"{share * contact:.4g}")} for share in TIMES]
+    points = [{"branches": [[float(f"{BRANCH * mu:.6g}"), float(f"{share * contact:.4g}")]]} for share in TIMES]
     relaxing = study.study(points, out / "disc", DISC, LIMIT)
     rows = [{"loss": loss} | measured(run) for loss, (_, run) in zip(LOSSES, viscous.iterrows())]
     rows += [{"tau/T": share} | measured(run) for share, (_, run) in zip(TIMES, relaxing.iterrows())]

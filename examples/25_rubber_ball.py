@@ -25,8 +25,7 @@ rubber = ff.MooneyRivlin(
     nu=nu,
     density=1150,
     share=0.2,
-    relaxation_modulus=10e6,
-    relaxation_time=1 / 920,
+    branches=[[10e6, 1 / 920]],  # modulus and relaxation time
 )
 heights, speeds = [0.2, 0.4, 0.8], [1.8254, 2.6935, 3.8859]
 ball = ff.Ball(radius=0.03, material=rubber, position=(0, 0.0301), velocity=(0, -speeds[0]))
@@ -61,7 +60,7 @@ plt.show()
 # Restitution
 # -----------
 # The restitution. The same rubber that never relaxes is nearly elastic: the branch takes the rest.
-elastic = ff.run(scene, {"body.1.velocity.2": -speeds[1], "body.1.relaxation_time": 1.0})
+elastic = ff.run(scene, {"body.1.velocity.2": -speeds[1], "body.1.branches": [[10e6, 1.0]]})
 restitutions = study.table.restitution
 bars = [run.errors["restitution"] for run in study.results]
 fig, ax = plt.subplots(figsize=(6, 4), layout="constrained")

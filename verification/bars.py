@@ -85,7 +85,7 @@ def relaxing_bar(folder: Path, elements: int, share: float, tau: float) -> Itera
     """
     size, contact = 10 / elements, 20 / math.sqrt(1 + share)
     run = bodies(folder, {"accuracy": 0.05, "law": "neohookean", "young": 1, "nu": 0, "density": 1, "dt": size / 4, "chatter": "continue", "end_time": 1.5 * contact,
-                          "body": [_bar(10, 3 * size, position=[0, 5], velocity=[0, -SPEED], relaxation_modulus=share / 2, relaxation_time=tau)],
+                          "body": [_bar(10, 3 * size, position=[0, 5], velocity=[0, -SPEED], branches=[[share / 2, tau]])],
                           "obstacle": [{"kind": "plane", "point": [0, 0], "normal": [0, 1]}], "contact": {"penalty": 1e3}})
     impulse = _inverted(lambda s: np.sqrt(1 + share * s * tau / (1 + s * tau)) / s**2, contact)
     group = f"tau = {tau / contact:.2g} T"

@@ -58,7 +58,7 @@ def measure(script: str, **flags: Value | Path) -> dict[str, float]:
 
 # Entries of the scripts of one falling body (falling-flags.idp), with their defaults.
 FALLING = {"law": "svk", "young": 7e6, "nu": 0.45, "density": 1722, "viscosity": 0, "bulk_viscosity": 0,
-           "relaxation_modulus": 0, "relaxation_time": 0, "radius": 0.05, "speed": 8, "angle": 90, "spin": 0, "height": 0,
+           "radius": 0.05, "speed": 8, "angle": 90, "spin": 0, "height": 0,
            "symmetry": "auto", "mesh_size": 0, "contact_mesh_size": 0, "penalty": 1e10, "slip_velocity": 0.1}
 OF_THE_RUN = ("scene", "out", "restart")  # flags of the scripts; all others are entries of their file
 # The paper's bodies by name: dimension, and the shapes with the entries of their own.
@@ -141,7 +141,8 @@ def entries(script: str, flags: dict[str, Value | Path]) -> Entries:
         made = parameter_arrays({name: own[name] for name in parameters.PARAMETERS if name in own})
         terms = {name: own.pop(name) for name in ("share", "alpha", "mu") if name in own}
         numbers = Material.model_construct(law=own["law"], **terms).numbers
-        made |= joined("law_numbers", [np.array(numbers, dtype=float)])
+        branches = np.array(own.pop("branches", []), dtype=float)
+        made |= joined("law_numbers", [np.array(numbers, dtype=float)]) | joined("branches", [branches.ravel()])
     whole = [name for name, row in parameters.PARAMETERS.items() if row.kind == "int"]
     made |= {name: value if name in whole else str(value) if isinstance(value, str | Path) else float(value) for name, value in own.items()}
     return made | {"script": Path(script).stem, "identity": str(sorted(own.items()))}

@@ -12,7 +12,7 @@ void Bodies::make() {
   terms.push_back(std::make_unique<Elasticity>(elements));
   if (any([](const Material &m) { return m.eta > 0 || m.zeta > 0; }))
     terms.push_back(std::make_unique<Viscosity>(elements));
-  if (any([](const Material &m) { return m.relaxing > 0; }))
+  if (any([](const Material &m) { return !m.branches->empty(); }))
     terms.push_back(std::make_unique<Relaxation>(elements));
   if (any([](const Material &m) { return m.bulk > 0; }))
     terms.emplace_back(volume = new Volume(elements));

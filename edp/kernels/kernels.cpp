@@ -6,7 +6,8 @@
 #include "input.hpp"
 #include "step.hpp"
 
-static std::vector<const laws::Law *> law;           // of the bodies
+struct OfBody { const laws::Law *law;  std::vector<laws::Branch> branches; };
+static std::deque<OfBody> ofBody;          // by number
 static Factor factor;
 namespace scene {
 bodies::Elements elements;
@@ -32,20 +33,24 @@ static void addBodies() {
   add("kernelComponent", +[](long i, long dimensions, Sparse pick) {
     elements.component(int(i), int(dimensions), entries(pick));
   });
-  add("kernelLawOf", +[](long body, std::string &name) {
-    law.resize(std::max(law.size(), size_t(body + 1)));
-    law[body] = laws::find(name);
+  add("kernelLawOf", +[](long body, std::string &name, Reals branches) {
+    // Of bodies 0, 1 ... in this order; branches: modulus and time of each.
+    ffassert(body == long(ofBody.size()));
+    ofBody.push_back({laws::find(name), {}});
+    for (long j = 0; j < branches.N(); j += 2)
+      ofBody.back().branches.push_back({branches[j], branches[j + 1]});
   });
-  add("kernelMaterial", +[](Reals lambda, Reals mu, Reals own, Reals eta, Reals zeta,
-                           Reals relaxing, Reals relaxTime, Reals bulk, Ints bodyOfPoint,
-                           Ints volumeByTrace, Ints incompressible, Reals weight) {
+  add("kernelMaterial", +[](Reals lambda, Reals mu, Reals own, Reals eta, Reals zeta, Reals bulk,
+                           Ints bodyOfPoint, Ints volumeByTrace, Ints incompressible,
+                           Reals weight) {
     // Arrays over the nq quadrature points; `own` has mostOwn stacked components.
     const long nq = weight.N();
     ffassert(own.N() == laws::mostOwn * nq);
     elements.weight = copied<double>(weight);
     for (long q = 0; q < nq; q++) {
-      laws::Material m = {law[bodyOfPoint[q]], lambda[q], mu[q], {}, eta[q], zeta[q], relaxing[q],
-                          relaxTime[q], bulk[q], volumeByTrace[q], incompressible[q]};
+      const OfBody &body = ofBody[bodyOfPoint[q]];
+      laws::Material m = {body.law, lambda[q], mu[q], {}, eta[q], zeta[q], &body.branches, bulk[q],
+                          volumeByTrace[q], incompressible[q]};
       for (int k = 0; k < laws::mostOwn; k++) m.own[k] = own[k * nq + q];
       elements.addPoint(m);
     }

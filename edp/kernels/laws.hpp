@@ -4,6 +4,7 @@
 #pragma once
 #include <cstring>
 #include <string>
+#include <vector>
 #include "tensors.hpp"
 
 namespace laws {
@@ -17,13 +18,16 @@ struct Moduli {
   void add(const Symmetric &A, const Symmetric &B, double l, double m);
 };
 
+// A Maxwell branch: shear modulus [Pa] and relaxation time [s].
+struct Branch { double G, tau; };
+
 constexpr int mostOwn = 8;                 // numbers of a law, as in material.idp
 struct Law;
 struct Material {
   const Law *law;
   double lambda, mu, own[mostOwn];         // Lame's constants; further parameters of the law
   double eta, zeta;                        // viscosities [Pa s]
-  double relaxing, relaxTime;              // G [Pa], tau [s] of the Maxwell branch
+  const std::vector<Branch> *branches;     // of the body
   double bulk;                             // kappa [Pa]: part of lambda that acts on element means
                                            // of the volume (volume.idp)
   long volumeByTrace;                      // 1: W is quadratic in C, the volume measure is tr E

@@ -87,16 +87,17 @@ class Viscosity : public StressTerm {
 
  private:
   History::Column &lost;                   // "dissipated" [J/m3]
-  Symmetric stress(double rate, const Deformed &e, int p) const;
 };
 
-// A Maxwell branch, a spring G in series with a dashpot G tau, in parallel with the law. Its state
-// A is the inverse of the viscous part of C, A = I at the start:
+// Maxwell branches beside the law, each a spring G in series with a dashpot G tau. The state A of a
+// branch is the inverse of the viscous part of C, A = I at the start:
 //   W = G/2 [tr(C A) - 3 - ln det(C A)],   S = G (A - C^-1),   dA/dt = (C^-1 - A)/tau.
 // In a step, with K = (C0 + C1)/2, H = (C1 - C0)/2 and theta = 1 - exp(-dt/tau),
 //   A1 = A0 + theta (K^-1 - A0),   S = G (1 - theta/2)(A0 - K^-1) + correction along H,
 // so that S : H = W1 - W0 + D exactly, with the dissipation D = G/2 [f(A0) - f(A1)] >= 0,
-// f(A) = tr(K A) - ln det A, for steps of any size.
+// f(A) = tr(K A) - ln det A, for steps of any size. Such a step has the viscosity
+// G dt (1/theta - 1/2) in place of G tau. In steps longer than tau a branch is its dashpot alone,
+// the viscosity G tau, and A1 = C1^-1.
 class Relaxation : public StressTerm {
  public:
   explicit Relaxation(const Elements &all);
@@ -109,9 +110,11 @@ class Relaxation : public StressTerm {
   void relax(const Deformed &e) override;
 
  private:
-  History::Column &state, &lost;           // "A", "dissipated" [J/m3]
-  Symmetric A(Time time, int q) const {
-    return Eigen::Map<const Symmetric>(state.at(time == atEnd, q));
+  std::vector<History::Column *> states;   // "A0", "A1" ...
+  History::Column &lost;                   // "dissipated" [J/m3]
+  const std::vector<laws::Branch> &branches(int q) const { return *material(q).branches; }
+  Symmetric A(size_t k, Time time, int q) const {
+    return Eigen::Map<const Symmetric>(states[k]->at(time == atEnd, q));
   }
 };
 

@@ -17,7 +17,7 @@ def test_a_branch_is_a_viscosity_where_it_is_fast_and_a_spring_where_it_is_slow(
     """
     flags = {"law": "neohookean", "nu": 0.4, "speed": 1, "accuracy": 0.1, "dt": 1e-5}
     elastic, viscous, fast, slow = (disc(tmp_path / str(k), **flags, **more) for k, more in enumerate(
-        ({}, {"viscosity": 600}, {"relaxation_modulus": 2e7, "relaxation_time": 3e-5}, {"relaxation_modulus": 2e6, "relaxation_time": 1})))
+        ({}, {"viscosity": 600}, {"branches": [[2e7, 3e-5]]}, {"branches": [[2e6, 1]]})))
     assert fast.summary["restitution"] == pytest.approx(viscous.summary["restitution"], abs=0.02)
     assert fast.summary["restitution"] < elastic.summary["restitution"] - 0.1
     assert fast.summary["viscous_work"] == pytest.approx(viscous.summary["viscous_work"], rel=0.05)

@@ -34,6 +34,8 @@ else:
 # Former entries and what has taken their place.
 FORMER = {
     "law_parameters": "share of mooney-rivlin, alpha and mu of ogden",
+    "relaxation_modulus": "branches = [[G, tau]], the modulus in Pa and the time in s",
+    "relaxation_time": "branches = [[G, tau]], the modulus in Pa and the time in s",
     "angle": "body.1.direction, the angle from the x axis: -60 for an impact at 60 degrees",
     "height": "body.1.position, that of the centre of mass",
     "block_width": "body.2.width",

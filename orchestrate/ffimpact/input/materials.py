@@ -11,13 +11,13 @@ from typing import Annotated, Any
 import numpy as np
 
 from ..failure import BadInput, brief
+from .damping import Branches, Damping, flat
 from .dimension import Dimension
 from .entries import Entries, no_more, rule_of
 from .parameter import real, word
-from .rules import Numbers, number
+from .rules import Numbers, Vector, number
 
 __all__ = [
-    "DAMPING",
     "Incompressible",
     "LAWS",
     "LAW_ENTRIES",
@@ -46,7 +46,7 @@ NU = real(0.45, 0, 0.5, "-").means(
     "Poisson's ratio; the paper says only nu -> 0.5; 0.5: J = 1, of all laws but svk"
 )
 DENSITY = real(1722, 1e-15, 1e12, "kg/m3").means("reference density")
-DAMPING = ("viscosity", "bulk_viscosity", "relaxation_modulus", "relaxation_time")
+LOSS_MODELS = ("kelvin-voigt", "flat")
 # Largest nu in the speed of waves. The stiffness by a larger nu acts on the volume of elements.
 STIFFEST = 0.45
 # The entries of some laws beside young and nu. Those of ogden replace young.
@@ -81,27 +81,33 @@ class OfMaterial(Entries):
         real(0, 0, 1e18, "Pa s"),
         "viscosity zeta of volume: beside it zeta tr(D) I",
     ] = None
-    relaxation_modulus: Annotated[
-        float | None,
-        real(0, 0, 1e18, "Pa"),
-        "shear modulus G of a Maxwell branch beside the law, which relaxes in relaxation_time; 0 "
-        "= none",
-    ] = None
-    relaxation_time: Annotated[
-        float | None,
-        real(0, 0, 1e9, "s"),
-        "its time tau: G exp(-t/tau) is left of G after t",
+    branches: Annotated[
+        list[list[float]] | None,
+        Branches(),
+        "Maxwell branches [G, tau] beside the law: G exp(-t/tau) [Pa] is left of the shear modulus "
+        "G after t [s]",
     ] = None
     loss: Annotated[
         float | None,
         real(0, 0, 10, "-"),
-        "loss factor tan delta of shear at the first mode of the disc or ball: sets viscosity; 0 "
-        "= by viscosity",
+        "loss factor tan delta of shear, by loss_model; 0 = by viscosity and branches",
+    ] = None
+    loss_model: Annotated[
+        str | None,
+        word("kelvin-voigt", LOSS_MODELS),
+        "what `loss` sets: kelvin-voigt: viscosity, for the first mode of the disc or ball; flat: "
+        "branches, for all of loss_range",
+    ] = None
+    loss_range: Annotated[
+        list[float] | None,
+        Vector(1e-9, 1e12, 2),
+        "flat: lowest and highest frequency [Hz]; without it a tenth to ten times that of the "
+        "first mode",
     ] = None
 
     @classmethod
     def refused(cls, name: str, value: Any, dimension: Dimension | None) -> str:
-        if name == "law_parameters":
+        if name in ("law_parameters", "relaxation_modulus", "relaxation_time"):
             return no_more(name, value)
         return super().refused(name, value, dimension)
 
@@ -110,8 +116,8 @@ class Material(OfMaterial):
     """The material of a body; `law` is a constitutive law, and the classes below are the laws.
 
     The laws are in edp/program/law. The damping is of the Kelvin-Voigt type with `viscosity` and
-    `bulk_viscosity` [Pa s], or with `loss`, the loss factor at the first mode. A Maxwell branch has
-    `relaxation_modulus` [Pa] and `relaxation_time` [s].
+    `bulk_viscosity` [Pa s], or by Maxwell `branches` [Pa, s]; `loss` sets one or the other. With
+    branches `young` is the relaxed modulus, that of slow motions.
     """
 
     law: Annotated[str, LAW]
@@ -152,6 +158,8 @@ class Material(OfMaterial):
             )
         if self.alpha and self.mu:
             yield from self._of_terms(self.alpha, self.mu)
+        if self.loss_range and self.loss_range[0] >= self.loss_range[1]:
+            yield "loss_range", f": {brief(self.loss_range)} does not grow (accepted: low, high)"
 
     def _of_terms(self, alpha: list[float], mu: list[float]) -> Iterator[tuple[str, str]]:
         """Yields what the terms of ogden lack."""
@@ -192,12 +200,16 @@ class Material(OfMaterial):
     @property
     def damped(self) -> bool:
         """Whether it has any damping."""
-        return any((self.viscosity, self.bulk_viscosity, self.relaxation_modulus, self.loss))
+        return any((self.viscosity, self.bulk_viscosity, self.branches, self.loss))
 
     @property
-    def damping(self) -> tuple[float, ...]:
-        """The values of DAMPING."""
-        return tuple(float(getattr(self, name) or 0.0) for name in DAMPING)
+    def damping(self) -> Damping:
+        """Its viscosities and Maxwell branches, without what loss_model = "kelvin-voigt" sets."""
+        branches = self.branches or []
+        if self.loss and self.loss_model == "flat" and self.loss_range:
+            shear = self.young / (2 * (1 + self.nu))
+            branches = flat(self.loss, *self.loss_range).branches(shear)
+        return Damping(self.viscosity or 0.0, self.bulk_viscosity or 0.0, branches)
 
     def moduli(self, thickness: float) -> tuple[float, float]:
         """lambda + 2 mu and mu [Pa] in a wave across a body of this thickness [m]. Damping adds to
@@ -210,11 +222,9 @@ class Material(OfMaterial):
         mu, wave = self.young / (2 * (1 + nu)), self.young * (1 - nu) / ((1 + nu) * (1 - 2 * nu))
         if not self.damped:
             return wave, mu
-        viscosity, bulk_viscosity, modulus, time = self.damping
-        turn = 1j * math.pi * math.sqrt(wave / self.density) / thickness
-        branch = modulus * turn / (1 / (time or 1) + turn)
-        shear = abs(mu + turn * viscosity + branch)
-        return abs(wave - 2 * mu + turn * bulk_viscosity) + 2 * shear, shear
+        omega = math.pi * math.sqrt(wave / self.density) / thickness
+        shear = abs(self.damping.shear(mu, omega))
+        return abs(self.damping.bulk(wave - 2 * mu, omega)) + 2 * shear, shear
 
 
 class SaintVenantKirchhoff(Material):
@@ -268,7 +278,15 @@ def accepted(name: str) -> str:
 
 
 NEEDED = ("law", "young", "nu", "density")
-UNDAMPED: dict[str, Any] = dict.fromkeys((*DAMPING, "loss"), 0.0)
+UNDAMPED: dict[str, Any] = dict.fromkeys(("viscosity", "bulk_viscosity", "loss"), 0.0)
+UNDAMPED["loss_model"] = LOSS_MODELS[0]
+
+
+def _replaced(name: str, table: OfMaterial) -> bool:
+    """Whether damping of the body itself replaces this entry at the top of the file."""
+    if name.startswith("loss"):
+        return "viscosity" in table or "branches" in table
+    return name in ("viscosity", "branches") and "loss" in table
 
 
 def rigid(density: float) -> Material:
@@ -280,8 +298,8 @@ def completed(table: OfMaterial, top: OfMaterial) -> Material:
     """Returns the material of a body: its own entries, else those at the top of the scene, else
     defaults. Raises BadInput if one without a default is in neither.
 
-    A viscosity of the body replaces a loss at the top of the file, and a loss of the body a
-    viscosity there; the law of a body replaces the entries of another law there.
+    Viscosity or branches of the body replace a loss at the top of the file, and a loss of the body
+    both; the law of a body replaces the entries of another law there.
     """
     law = table.law or top.law
     of_law = LAW_ENTRIES.get(law or "", ())
@@ -298,18 +316,20 @@ def completed(table: OfMaterial, top: OfMaterial) -> Material:
         )
     values: dict[str, Any] = dict.fromkeys(MATERIAL) | UNDAMPED
     for name in MATERIAL:
-        other = {"viscosity": "loss", "loss": "viscosity"}.get(name)
         of_another_law = table.law not in (None, top.law) and name in ("share", "alpha", "mu")
         if name in table:
             values[name] = getattr(table, name)
-        elif name in top and not (other and other in table) and not of_another_law:
+        elif name in top and not of_another_law and not _replaced(name, table):
             values[name] = getattr(top, name)
-    if values["relaxation_modulus"] == 0 and "relaxation_modulus" in table:
-        values["relaxation_time"] = 0.0
-    if (values["relaxation_modulus"] > 0) != (values["relaxation_time"] > 0):
+    if (
+        values["loss"]
+        and values["loss_model"] == "flat"
+        and (values["branches"] or values["viscosity"])
+    ):
+        name = "branches" if values["branches"] else "viscosity"
         raise BadInput(
-            f"{table.at('relaxation_time')}: {values['relaxation_time']:g} s with relaxation_modulus "
-            f"{values['relaxation_modulus']:g} Pa (accepted: both above 0, or none)"
+            f"{table.at(name)}: '{brief(values[name])}' beside loss_model = 'flat', which sets branches "
+            "(accepted: one of the two)"
         )
     if has_terms and "mu" in table and "young" not in table:
         values["young"] = None  # that at the top is of other bodies

@@ -31,13 +31,15 @@ __all__ = [
 
 # Entries of a scene that depend on other entries. If one of the other entries is changed and the
 # dependent entry is not, the dependent entry is reset to automatic (auto, 0, none).
-# `friction_static` sets both coefficients of friction, and `loss` sets the viscosity. A law has
+# `friction_static` sets both coefficients of friction, and `loss` sets the viscosity; the range of a
+# flat loss belongs to a material and a size. A law has
 # parameters of its own. A penalty belongs to a material, a size and an exponent; a time step
 # belongs to a material and a size; mesh sizes belong to a size. `slip_velocity` and `end_time` are
 # not reset; they have their own warnings.
 DEPENDS_ON = {
     "friction_dynamic": ("friction_static",),
     "viscosity": ("loss",),
+    "loss_range": ("young", "mu", "density", "radius"),
     **dict.fromkeys(("share", "alpha", "mu"), ("law",)),
     "young": ("mu",),
     "penalty": ("young", "mu", "density", "radius", "exponent"),

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from ..input.damping import Damping
 from ..input.parameters import Table
 from . import points
 from .contacts import THRESHOLD, Interval, thresholds
@@ -839,20 +840,26 @@ def _discretisation(e: Evidence) -> Iterator[Sentence]:
             f"{percent(turn**2 / 8)} too small: take a dt of at most "
             f"{rounded(facts['dt_largest'] * largest / turn)}"
         )
-    # At a constant strain rate steps of dt give the viscosity G dt (1/theta - 1/2) of
-    # kernels/laws.cpp in place of G tau.
-    excess = 0.0
-    for body in e.bodies:
-        if body["relaxation_modulus"] > 0:
-            ratio = facts["dt_largest"] / body["relaxation_time"]
-            excess = max(excess, ratio * (1 / -math.expm1(-ratio) - 0.5) - 1)
-    if excess > facts["accuracy"]:
+    lasts = e.numbers["contact_time"] or 3 * facts["transit"]
+    wrong = max(_of_steps(body, facts["dt_largest"], lasts) for body in e.bodies)
+    if wrong > facts["accuracy"]:
         yield warn(
-            f"relaxation: steps of {facts['dt_largest']:g} s make a body more viscous by "
-            f"{percent(excess)}{e.request}. The steps are long compared with "
-            "the relaxation_time, and the error estimates do not include this: take a smaller dt, "
-            "or viscosity in place of a relaxation this short"
+            f"relaxation: steps of {facts['dt_largest']:g} s make the shear modulus of a relaxing "
+            f"body wrong by {percent(wrong)}{e.request}, mostly its loss, and the error estimates "
+            "hardly include this: take a smaller dt, or viscosity in place of a relaxation this "
+            "short"
         )
+
+
+def _of_steps(body: Table, dt: float, lasts: float) -> float:
+    """The error of the complex shear modulus by steps dt [s] in an impact of this duration [s], over
+    its amount.
+    """
+    branches = body.get("branches", [])  # a record of a former version has none
+    damping = Damping(branches=list(zip(branches[::2], branches[1::2])))
+    mu, omega = body["young"] / (2 * (1 + body["nu"])), math.pi / lasts
+    exact = damping.shear(mu, omega)
+    return abs(damping.shear_in_steps(mu, omega, dt) - exact) / abs(exact)
 
 
 def _friction(e: Evidence) -> Iterator[Sentence]:

@@ -196,8 +196,15 @@ def material(body: Table) -> str:
         for name, sign in (("viscosity", "η"), ("bulk_viscosity", "ζ"))
         if body.get(name)
     )
-    if body.get("relaxation_modulus"):
-        viscosities += f", G = {1e-6 * body['relaxation_modulus']:.3g} MPa for τ = {body['relaxation_time']:.3g} s"
+    branches = body.get("branches", [])
+    if len(branches) == 1:
+        viscosities += f", G = {1e-6 * branches[0][0]:.3g} MPa for τ = {branches[0][1]:.3g} s"
+    elif branches:
+        viscosities += f", {len(branches)} Maxwell branches"
+    if body.get("loss") and body.get("loss_model") == "flat":
+        viscosities += ", tan δ = {:g} from {:g} to {:g} Hz".format(
+            body["loss"], *body["loss_range"]
+        )
     law = LAWS.get(body["law"], body["law"])
     return f"{law}{own}, E = {1e-6 * body['young']:g} MPa, ν = {body['nu']:g}, ρ = {body['density']:g} kg/m³{viscosities}"
 

@@ -10,8 +10,8 @@ from .impact import impact_of
 __all__ = ["REFERENCE", "published", "references"]
 
 REFERENCE = Path(__file__).resolve().parent / "reference"
-# No source has damping: a parameter of these that `when` does not list is 0.
-UNDAMPED = dict.fromkeys(("viscosity", "bulk_viscosity", "relaxation_modulus", "loss"), 0)
+# No source has damping: a parameter of these that `when` does not list is 0 or none.
+UNDAMPED = dict.fromkeys(("viscosity", "bulk_viscosity", "loss"), 0) | {"branches": None}
 
 
 def references(scene: Table) -> dict[str, list[Table]]:
@@ -45,7 +45,7 @@ def published(scene: Table, whatever: Container[str] = ()) -> list[Table]:
         for run in every
         if run["kind"] == impact["kind"]
         and all(
-            impact.get(name, 0) == value
+            (impact.get(name) or 0) == (value or 0)
             for name, value in (UNDAMPED | run["when"]).items()
             if name not in whatever
         )

@@ -101,6 +101,10 @@ def scene_arrays(scene: Scene, centres: np.ndarray, pairs: list[dict[str, Value]
             "bodies.law_numbers",
             [np.array(body.made_of.numbers, dtype=float) for body in scene.bodies],
         )
+        | joined(
+            "bodies.branches",
+            [np.array(body.made_of.damping.branches, dtype=float).ravel() for body in scene.bodies],
+        )
         | _obstacles(scene)
         | table("pairs", of_pairs)
         | table("rigid", rigid)
@@ -125,7 +129,7 @@ def _bodies(scene: Scene, centres: np.ndarray) -> list[Entries]:
             "young": float(body.made_of.young),
             "nu": float(body.made_of.nu),
             "density": float(body.made_of.density),
-            "damping": body.made_of.damping,
+            "viscosity": (body.made_of.damping.viscosity, body.made_of.damping.bulk_viscosity),
             "centre": padded(centre),
             "shift": padded(body.start_position - centre),
             "turn": 0.0 if solid else float(body.start_angle),

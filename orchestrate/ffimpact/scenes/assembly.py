@@ -27,6 +27,7 @@ from ..freefem.arrays import Entries, packed
 from ..geometry.outlines import Loop, TubeOutline, rotation
 from ..input.bodies import Body
 from ..input.contact import OWN, Pair
+from ..input.damping import flat, refuse_uneven
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID
 from ..input.parameters import NOT_DECISIVE, Table, Value
 from ..input.toml_text import to_toml
@@ -163,7 +164,7 @@ def assemble(
     auto = AutomaticValues(scene, onsets_of(scene) if onsets is None else onsets)
     why = implicit_for(scene) if scene.values["integrator"] == "auto" else ""
     scene = scene.replaced(
-        bodies=[_with_viscosity(k, auto) for k in range(len(scene.bodies))],
+        bodies=[_with_loss(k, auto) for k in range(len(scene.bodies))],
         values=scene.values | ({"integrator": IMPLICIT} if why else {}),
     )
     auto = replace(auto, scene=scene)
@@ -189,10 +190,12 @@ def assemble(
         strike.rise_on(penalties.get(both, penalty), scene.bodies, exponent)
         for both, strike in auto.fronts.items()
     ]
+    deformable = [k for k, body in enumerate(scene.bodies) if not body.rigid]
     on_mesh = mesh_arrays(together, regions, arcs, files)
     arrays: Entries = (
         {
             "implicit_why": why,
+            "relaxed_step": min(1e300, *(_disc_like(k, auto).relaxed_step for k in deformable)),
             "front_transit": float(min((strike.tau for strike in auto.fronts.values()), default=0)),
             "front_rise": float(max(rises, default=0)),
         }
@@ -504,14 +507,20 @@ def _disc_like(k: int, auto: AutomaticValues, **more: Any) -> Impact:
     return auto.of_disc([body], body.outline.half_thickness, **more)
 
 
-def _with_viscosity(k: int, auto: AutomaticValues) -> Body:
-    """Returns body k with the viscosity that its loss factor sets. Raises BadInput if it has
-    another viscosity.
+def _with_loss(k: int, auto: AutomaticValues) -> Body:
+    """Returns body k with the viscosity, or the loss_range, that its loss factor sets. Raises
+    BadInput if it has another viscosity, or if no branches have a loss as flat.
     """
     body = auto.scene.bodies[k]
     material = body.made_of
     if not material.loss:
         return body
+    if material.loss_model == "flat":
+        between = material.loss_range or _disc_like(k, auto).loss_range
+        refuse_uneven(body.at("loss"), flat(material.loss, *between))
+        return body.model_copy(
+            update={"made_of": material.model_copy(update={"loss_range": between})}
+        )
     viscosity = _disc_like(k, auto).viscosity(material.loss)
     if material.viscosity and not math.isclose(material.viscosity, viscosity):
         raise BadInput(

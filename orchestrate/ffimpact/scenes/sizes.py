@@ -10,11 +10,11 @@ nu^2. This holds up to v/c = 0.1 and beyond. Its weight alone acts like v = 1.31
 """
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 from ..failure import BadInput
+from ..input.damping import Damping
 
 __all__ = ["Impact", "made_for"]
 
@@ -38,6 +38,7 @@ ELEMENTS = 3
 # too large, by 0.02 to 0.045 tan delta for viscous discs at v/c = 0.005 to 0.02. A penalty that is
 # stiffer by this number times tan delta over the accuracy keeps this error near accuracy/10.
 DAMPED = 0.4
+RELAXED = 0.1  # largest error of the complex shear modulus by steps, over the accuracy
 # Frequency of the first mode over sqrt(mu/rho)/R, ovalling with two waves around: 2.336 (nu = 0) to
 # 2.354 (0.5) for a free disc in plane strain, 2.59 to 2.67 for a free ball (Lamb).
 OVALLING_DISC, OVALLING_BALL = 2.35, 2.65
@@ -53,9 +54,8 @@ class Impact:
     """A disc, or a ball (`sphere`), that hits a plane.
 
     `closing` and `sliding` are the speeds [m/s] along and across the normal, `pressing` and
-    `pulling` the accelerations [m/s2], `spin` the angular velocity [rad/s]. `damping` holds the
-    viscosities of shear and volume [Pa s], the relaxing modulus [Pa] and its time [s]. `endless`
-    means that the motion is followed after the impact until it rests, `end_time` [s] until then.
+    `pulling` the accelerations [m/s2], `spin` the angular velocity [rad/s]. `endless` means that
+    the motion is followed after the impact until it rests, `end_time` [s] until then.
     """
 
     sphere: bool
@@ -73,41 +73,54 @@ class Impact:
     pulling: float = 0.0
     end_time: float = 0.0
     endless: bool = False
-    damping: Sequence[float] = (0.0, 0.0, 0.0, 0.0)
+    damping: Damping = Damping()
     given_contact_size: float = 0.0  # of a mesh whose elements at the contact are given [m]
+
+    @property
+    def _shear(self) -> float:
+        return self.young / (2 * (1 + self.nu))  # mu [Pa]
+
+    @property
+    def first_mode(self) -> float:
+        """The angular frequency [1/s] of the first mode without damping."""
+        mode = OVALLING_BALL if self.sphere else OVALLING_DISC
+        return mode * math.sqrt(self._shear / self.density) / self.radius
 
     def viscosity(self, loss: float) -> float:
         """Returns the viscosity [Pa s] for the loss factor tan delta = eta omega/mu at the first
         mode.
         """
-        mu = self.young / (2 * (1 + self.nu))
-        mode = OVALLING_BALL if self.sphere else OVALLING_DISC
-        return _rounded(loss * self.radius * math.sqrt(mu * self.density) / mode)
+        return _rounded(loss * self._shear / self.first_mode)
+
+    @property
+    def relaxed_step(self) -> float:
+        """The longest step [s] that is short enough for the branches, at omega = pi/T."""
+        omega = math.pi / self._duration(self._in_impact[0])
+        return self.damping.longest_step(self._shear, omega, RELAXED * self.accuracy)
+
+    @property
+    def loss_range(self) -> list[float]:
+        """The frequencies [Hz] of an impact: a tenth to ten times that of the first mode."""
+        frequency = self.first_mode / (2 * math.pi)
+        return [_rounded(frequency / 10), _rounded(frequency * 10)]
 
     @cached_property
     def _in_impact(self) -> tuple[float, float]:
         """The modulus E [Pa] in the impact, and tan delta of shear.
 
         Damping stiffens a body. An impact is half a period of omega = pi/T. Moduli are absolute
-        values of mu + i omega eta + G i omega tau/(1 + i omega tau) and lambda + i omega zeta.
+        values of the complex ones.
         """
         young, tangent = self.young, 0.0
-        if not any(self.damping[:3]):
+        if not self.damping:
             return young, tangent
-        eta, zeta, relaxing, time = self.damping
-        mu = young / (2 * (1 + self.nu))
-        volume = 2 * mu * self.nu / max(1e-9, 1 - 2 * self.nu)
+        volume = 2 * self._shear * self.nu / max(1e-9, 1 - 2 * self.nu)
         # A stiffer body has a shorter impact, which stiffens it further, each time by less.
         for _ in range(60):
             omega = math.pi / self._duration(young)
-            turn = omega * time
-            branch = relaxing * turn / (1 + turn**2)
-            stored, lost = mu + branch * turn, omega * eta + branch
-            shear, bulk, tangent = (
-                math.hypot(stored, lost),
-                math.hypot(volume, omega * zeta),
-                lost / stored,
-            )
+            complex_shear = self.damping.shear(self._shear, omega)
+            shear, bulk = abs(complex_shear), abs(self.damping.bulk(volume, omega))
+            tangent = complex_shear.imag / complex_shear.real
             young = shear * (3 * bulk + 2 * shear) / (bulk + shear)
         return young, tangent
 
