@@ -73,5 +73,9 @@ from .result import (
 from .scene import (
     Scene as Scene,
 )
+from .spectrum import (
+    Spectrum as Spectrum,
+    dma as dma,
+)
 
 __version__: str

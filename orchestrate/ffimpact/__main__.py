@@ -30,11 +30,13 @@ OWN_MAIN = {
     "sweep": "ffimpact.sweeps.sweep",
     "compare": "ffimpact.report.compare",
     "movie": "ffimpact.report.movie",
+    "dma": "ffimpact.spectrum",
 }
 HELP = {
     "sweep": "run a scene for every combination of some entries: a table and a figure",
     "compare": "several runs in one figure, with a table",
     "movie": "a film of a scene",
+    "dma": "Maxwell branches from a measured spectrum: the entries of a material",
 }
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 # Matches each accepted value that argparse lists in its message.

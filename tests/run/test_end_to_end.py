@@ -137,9 +137,9 @@ def test_material_breakdown_is_12(tmp_path):
 
 
 def test_files_that_may_not_grow_are_14(tmp_path):
-    """If no file may exceed 8 kB, the run gives one line with exit code 14 and leaves no files."""
+    """If no file may exceed 16 kB, the run gives one line with exit code 14 and leaves no files."""
     command = [sys.executable, "-m", "ffimpact", "run", "disc-normal", "--set", "accuracy=0.1", "--out", str(tmp_path / "out")]
-    ended = subprocess.run(command, cwd=run.ROOT, capture_output=True, text=True, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (8192, 8192)))
+    ended = subprocess.run(command, cwd=run.ROOT, capture_output=True, text=True, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (16384, 16384)))
     assert (ended.returncode, ended.stderr.count("\n")) == (14, 1) and "ulimit -f" in ended.stderr and not list(tmp_path.iterdir())
 
 

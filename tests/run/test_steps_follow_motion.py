@@ -149,7 +149,7 @@ def test_a_jump_of_the_residual_does_not_shorten_steps(tmp_path):
     jumps. Steps that balance but for a jump are accepted; their work stays in the balance."""
     problem = scene.load(str(draws.OWN / "weight-pad-plate.toml"))
     summary = run_scene(problem, {"end_time": 0.003, "accuracy": 0.1}, tmp_path / "run", estimate=False).summary
-    assert summary["steps"] < 200 and summary["rejected_steps"] < 0.1 * summary["steps"]
+    assert summary["steps"] < 200 and summary["rejected_steps"] < 0.2 * summary["steps"]
     assert summary["impulse"] == pytest.approx(84.5958, rel=2e-3)   # with 547 steps, of which none ends at a jump
     assert summary["energy_drift"] < 1e-7
 

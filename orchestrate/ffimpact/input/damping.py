@@ -17,7 +17,15 @@ from .dimension import Dimension
 from .parameter import Rule
 from .rules import number
 
-__all__ = ["Branches", "Damping", "FlatLoss", "flat", "refuse_uneven"]
+__all__ = [
+    "Branches",
+    "Damping",
+    "FlatLoss",
+    "flat",
+    "nonnegative",
+    "refuse_uneven",
+    "times_between",
+]
 
 MOST_BRANCHES = 100
 PER_DECADE = 2  # number of branches for a decade of frequency
@@ -134,21 +142,34 @@ class FlatLoss:
         return [[mu * share, time] for share, time in zip(self.shares, self.times)]
 
 
+def times_between(lowest: float, highest: float) -> np.ndarray:
+    """Returns relaxation times [s] for angular frequencies [1/s] between two ends, equally spaced on a
+    logarithmic scale, PER_DECADE for each decade.
+    """
+    decades = math.log10(highest / lowest) + 2 * BEYOND
+    count = min(round(decades * PER_DECADE) + 1, MOST_BRANCHES)
+    return np.geomspace(10**-BEYOND / highest, 10**BEYOND / lowest, count)
+
+
+def nonnegative(parts: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    """Returns the moduli (n,) >= 0 whose sum of parts (m, n) is nearest to the `wanted` numbers (m,)."""
+    from scipy.optimize import nnls  # takes long to load
+
+    moduli: np.ndarray = nnls(parts, wanted)[0]
+    return moduli
+
+
 @cache
 def flat(loss: float, lowest: float, highest: float) -> FlatLoss:
     """Returns the branches with a flat loss factor from `lowest` to `highest` [Hz].
 
     With x = omega tau_i the condition sum g_i (x - loss x^2)/(1 + x^2) = loss is linear in the
-    shares g_i >= 0 (nonnegative least squares). The times are equally spaced on a logarithmic
-    scale, PER_DECADE for each decade.
+    shares g_i >= 0.
     """
-    from scipy.optimize import nnls  # takes long to load
-
-    ends = np.log10([2 * np.pi * lowest, 2 * np.pi * highest])
-    count = round((np.diff(ends)[0] + 2 * BEYOND) * PER_DECADE) + 1
-    times = 10 ** -np.linspace(ends[1] + BEYOND, ends[0] - BEYOND, min(count, MOST_BRANCHES))
-    x = np.logspace(ends[0], ends[1], 40 * len(times))[:, None] * times
-    shares, _ = nnls((x - loss * x**2) / (1 + x**2), np.full(len(x), loss))
+    ends = 2 * np.pi * lowest, 2 * np.pi * highest
+    times = times_between(*ends)
+    x = np.geomspace(*ends, 40 * len(times))[:, None] * times
+    shares = nonnegative((x - loss * x**2) / (1 + x**2), np.full(len(x), loss))
     used = shares > 0
     tangent = (x / (1 + x**2)) @ shares / (1 + (x**2 / (1 + x**2)) @ shares)
     return FlatLoss(

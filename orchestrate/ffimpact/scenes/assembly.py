@@ -195,7 +195,7 @@ def assemble(
     arrays: Entries = (
         {
             "implicit_why": why,
-            "relaxed_step": min(1e300, *(_disc_like(k, auto).relaxed_step for k in deformable)),
+            "relaxed_step": min([1e300, *(_disc_like(k, auto).relaxed_step for k in deformable)]),
             "front_transit": float(min((strike.tau for strike in auto.fronts.values()), default=0)),
             "front_rise": float(max(rises, default=0)),
         }
