@@ -141,8 +141,9 @@ def entries(script: str, flags: dict[str, Value | Path]) -> Entries:
         made = parameter_arrays({name: own[name] for name in parameters.PARAMETERS if name in own})
         terms = {name: own.pop(name) for name in ("share", "alpha", "mu") if name in own}
         numbers = Material.model_construct(law=own["law"], **terms).numbers
-        branches = np.array(own.pop("branches", []), dtype=float)
-        made |= joined("law_numbers", [np.array(numbers, dtype=float)]) | joined("branches", [branches.ravel()])
+        made |= joined("law_numbers", [np.array(numbers, dtype=float)])
+        for name in ("branches", "bulk_branches"):
+            made |= joined(name, [np.array(own.pop(name, ()), dtype=float).ravel()])
     whole = [name for name, row in parameters.PARAMETERS.items() if row.kind == "int"]
     made |= {name: value if name in whole else str(value) if isinstance(value, str | Path) else float(value) for name, value in own.items()}
     return made | {"script": Path(script).stem, "identity": str(sorted(own.items()))}

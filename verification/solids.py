@@ -133,7 +133,7 @@ def entries(scene: Scene) -> Entries:
     return (parameter_arrays({"penalty": 1.0, "slip_velocity": 1.0, "friction_dynamic": 0.0})
             | {"script": "bodies-3d", "symmetry_factor": scene.copies, "implicit_why": "", "relaxed_step": 1e300, "front_transit": 0.0, "front_rise": 0.0}
             | table("bodies", bodies) | joined("bodies.law_numbers", [np.zeros(0)] * len(bodies))
-            | joined("bodies.branches", [np.zeros(0)] * len(bodies)) | table("obstacles", obstacles)
+            | joined("bodies.branches", [np.zeros(0)] * len(bodies)) | joined("bodies.bulk_branches", [np.zeros(0)] * len(bodies)) | table("obstacles", obstacles)
             | joined("obstacles.numbers", [np.array(numbers, float) for _, numbers, _ in scene.obstacles]) | table("pairs", pairs)
             | {name: 0 for name in ("rigid", "functions", "kinks", "drives", "supports", "loads", "start_fields")}
             | mesh_arrays(*stack(meshes, np.zeros((len(meshes), 3))), spheres, []))

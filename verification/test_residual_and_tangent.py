@@ -57,7 +57,7 @@ def test_tangent_is_the_derivative_of_the_residual(measure, body, flags):
 
 ELASTIC = [{"law": "neohookean", "nu": 0.3}, {"law": "svk", "nu": 0.4999}, {"law": "neohookean", "nu": 0.4999}]
 DAMPED = [{"law": "neohookean", "nu": 0.3, "viscosity": 300, "bulk_viscosity": 100},
-          {"law": "neohookean", "nu": 0.3, "branches": ((7e6, 1e-3), (2e6, 1e-4))}]
+          {"law": "neohookean", "nu": 0.3, "branches": ((7e6, 1e-3), (2e6, 1e-4)), "bulk_branches": ((3e6, 1e-3), (1e6, 1e-4))}]
 
 
 @pytest.mark.few(4)

@@ -1,6 +1,7 @@
 // bodies.cpp: the bodies and their inertia, the terms of bodies.hpp.
 #include <algorithm>
 #include "bodies.hpp"
+#include "relaxation.hpp"
 
 namespace bodies {
 
@@ -12,8 +13,10 @@ void Bodies::make() {
   terms.push_back(std::make_unique<Elasticity>(elements));
   if (any([](const Material &m) { return m.eta > 0 || m.zeta > 0; }))
     terms.push_back(std::make_unique<Viscosity>(elements));
-  if (any([](const Material &m) { return !m.branches->empty(); }))
+  if (any([](const Material &m) { return !m.dampers->shear.empty(); }))
     terms.push_back(std::make_unique<Relaxation>(elements));
+  if (any([](const Material &m) { return !m.dampers->bulk.empty(); }))
+    terms.push_back(std::make_unique<BulkRelaxation>(elements));
   if (any([](const Material &m) { return m.bulk > 0; }))
     terms.emplace_back(volume = new Volume(elements));
   Fs.resize(elements.sizeOfF());

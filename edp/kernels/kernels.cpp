@@ -6,7 +6,7 @@
 #include "input.hpp"
 #include "step.hpp"
 
-struct OfBody { const laws::Law *law;  std::vector<laws::Branch> branches; };
+struct OfBody { const laws::Law *law;  laws::Dampers dampers; };
 static std::deque<OfBody> ofBody;          // by number
 static Factor factor;
 namespace scene {
@@ -28,17 +28,21 @@ static const Terms besideContact = {&body, &inertia, &loads, &supports};   // of
 static ImplicitStep step(elements, body, terms, factor, touching);
 static ExplicitContact substep(touching);
 
+static laws::Branches branchesOf(Reals pairs) {
+  laws::Branches all;
+  for (long j = 0; j < pairs.N(); j += 2) all.push_back({pairs[j], pairs[j + 1]});
+  return all;
+}
+
 static void addBodies() {
   // Kernels of bodies.hpp: materials, discretisation, forces of the terms.
   add("kernelComponent", +[](long i, long dimensions, Sparse pick) {
     elements.component(int(i), int(dimensions), entries(pick));
   });
-  add("kernelLawOf", +[](long body, std::string &name, Reals branches) {
+  add("kernelLawOf", +[](long body, std::string &name, Reals branches, Reals bulkBranches) {
     // Of bodies 0, 1 ... in this order; branches: modulus and time of each.
     ffassert(body == long(ofBody.size()));
-    ofBody.push_back({laws::find(name), {}});
-    for (long j = 0; j < branches.N(); j += 2)
-      ofBody.back().branches.push_back({branches[j], branches[j + 1]});
+    ofBody.push_back({laws::find(name), {branchesOf(branches), branchesOf(bulkBranches)}});
   });
   add("kernelMaterial", +[](Reals lambda, Reals mu, Reals own, Reals eta, Reals zeta, Reals bulk,
                            Ints bodyOfPoint, Ints volumeByTrace, Ints incompressible,
@@ -49,7 +53,7 @@ static void addBodies() {
     elements.weight = copied<double>(weight);
     for (long q = 0; q < nq; q++) {
       const OfBody &body = ofBody[bodyOfPoint[q]];
-      laws::Material m = {body.law, lambda[q], mu[q], {}, eta[q], zeta[q], &body.branches, bulk[q],
+      laws::Material m = {body.law, lambda[q], mu[q], {}, eta[q], zeta[q], &body.dampers, bulk[q],
                           volumeByTrace[q], incompressible[q]};
       for (int k = 0; k < laws::mostOwn; k++) m.own[k] = own[k * nq + q];
       elements.addPoint(m);

@@ -18,8 +18,10 @@ struct Moduli {
   void add(const Symmetric &A, const Symmetric &B, double l, double m);
 };
 
-// A Maxwell branch: shear modulus [Pa] and relaxation time [s].
+// A Maxwell branch: modulus of shear or volume [Pa], relaxation time [s].
 struct Branch { double G, tau; };
+using Branches = std::vector<Branch>;
+struct Dampers { Branches shear, bulk; };
 
 constexpr int mostOwn = 8;                 // numbers of a law, as in material.idp
 struct Law;
@@ -27,7 +29,7 @@ struct Material {
   const Law *law;
   double lambda, mu, own[mostOwn];         // Lame's constants; further parameters of the law
   double eta, zeta;                        // viscosities [Pa s]
-  const std::vector<Branch> *branches;     // of the body
+  const Dampers *dampers;                  // Maxwell branches, of the body
   double bulk;                             // kappa [Pa]: part of lambda that acts on element means
                                            // of the volume (volume.idp)
   long volumeByTrace;                      // 1: W is quadratic in C, the volume measure is tr E

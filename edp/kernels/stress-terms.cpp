@@ -25,8 +25,7 @@ void Elasticity::addEnergy(Time, const Deformed &e, double *W) const {
 Viscosity::Viscosity(const Elements &all)
   : StressTerm(all), lost(history.add("dissipated", all.nq, {0})) {}
 
-// S of the viscosities eta, zeta [Pa s] in a step of element e, at its point p.
-static Symmetric viscous(double eta, double zeta, double rate, const Deformed &e, int p) {
+Symmetric viscous(double eta, double zeta, double rate, const Deformed &e, int p) {
   const Symmetric H = 0.5 * (e.C1[p] - e.C0[p]), B = tensors::inverse(0.5 * (e.C0[p] + e.C1[p]));
   return 2 * rate * eta * tensors::symmetric(laws::full(B) * laws::full(H) * laws::full(B))
     + rate * zeta * tensors::contract(B, H) * B;
@@ -56,108 +55,6 @@ void Viscosity::advance(const Step &step, const Deformed &e) {
     if (!step.isStatic()) *lost.trialAt(q) += tensors::contract(
       viscous(m.eta, m.zeta, step.rate(), e, p), 0.5 * (e.C1[p] - e.C0[p]));
   }
-}
-
-// G (1 - theta/2) [Pa] of a branch.
-static double relaxedShare(const laws::Branch &branch, const Step &step) {
-  return branch.G * (1 + std::exp(-step.dt / branch.tau)) / 2;
-}
-// Whether a branch relaxes within the step and is its dashpot G tau alone.
-static bool isDashpot(const laws::Branch &branch, const Step &step) {
-  return step.dt > branch.tau;
-}
-
-// Invariants of X = C A - I: tr X, [(tr X)^2 - tr X^2]/2, det X.
-static tensors::Vector<3> invariantsBeyond(const Symmetric &C, const Symmetric &A) {
-  const Tensor X = laws::full(C) * laws::full(A) - Tensor::Identity();
-  const double minors = X.topLeftCorner<2, 2>().determinant()
-    + X.bottomRightCorner<2, 2>().determinant() + X(0, 0) * X(2, 2) - X(0, 2) * X(2, 0);
-  return {X.trace(), minors, X.determinant()};
-}
-
-// [tr(s X) - ln det(I + s X)]/2, I the invariants of X.
-static double storedOverG(const tensors::Vector<3> &I, double s) {
-  double r = s * s * (I[1] + s * I[2]), p = s * I[0] + r, z = p / (2 + p);
-  return (p * z - 2 * laws::atanhRest(z) - r) / 2;
-}
-
-Relaxation::Relaxation(const Elements &all)
-  : StressTerm(all), lost(history.add("dissipated", all.nq, {0})) {
-  size_t most = 0;
-  for (const laws::Material &m : all.materials) most = std::max(most, m.branches->size());
-  for (size_t k = 0; k < most; k++)
-    states.push_back(&history.add("A" + std::to_string(k), all.nq, {1, 1, 1, 0, 0, 0}));
-}
-
-void Relaxation::addStress(const Step &step, Deformed &e) {
-  if (step.isStatic()) return;
-  for (int p = 0; p < e.points; p++) {
-    const int q = e.first + p;
-    if (branches(q).empty()) continue;
-    const Symmetric K = 0.5 * (e.C0[p] + e.C1[p]), H = 0.5 * (e.C1[p] - e.C0[p]),
-      inverse = tensors::inverse(K);
-    double G = 0, eta = 0;                 // of springs, of dashpots
-    for (size_t k = 0; k < branches(q).size(); k++) {
-      const laws::Branch &branch = branches(q)[k];
-      if (isDashpot(branch, step)) { eta += branch.G * branch.tau;  continue; }
-      e.S[p] += relaxedShare(branch, step) * (A(k, atStart, q) - inverse);
-      G += branch.G;
-    }
-    e.S[p] += laws::Logarithm{0, G}.gradientCorrection(K, H)
-      / (2 * tensors::contract(H, H) + 1e-300) * H;
-    if (eta > 0) e.S[p] += viscous(eta, 0, step.rate(), e, p);
-  }
-}
-
-void Relaxation::addModuli(const Step &step, size_t, int q, const Symmetric &C,
-                           laws::Moduli &D) const {
-  if (step.isStatic() || branches(q).empty()) return;
-  const Symmetric inverse = tensors::inverse(C);
-  double share = 0;
-  for (const laws::Branch &branch : branches(q))
-    share += isDashpot(branch, step)
-      ? branch.G * branch.tau * step.rate() / step.stiffnessScale : relaxedShare(branch, step);
-  D.add(inverse, inverse, 0, share);
-}
-
-void Relaxation::addEnergy(Time time, const Deformed &e, double *W) const {
-  for (int p = 0; p < e.points; p++) {
-    const int q = e.first + p;
-    for (size_t k = 0; k < branches(q).size(); k++)
-      W[p] += branches(q)[k].G * storedOverG(invariantsBeyond(e.C1[p], A(k, time, q)), 1);
-  }
-}
-
-void Relaxation::advance(const Step &step, const Deformed &e) {
-  if (step.isStatic()) return;
-  for (int p = 0; p < e.points; p++) {
-    const int q = e.first + p;
-    if (branches(q).empty()) continue;
-    const Symmetric K = 0.5 * (e.C0[p] + e.C1[p]), inverse = tensors::inverse(K);
-    *lost.trialAt(q) = *lost.startAt(q);
-    for (size_t k = 0; k < branches(q).size(); k++) {
-      const laws::Branch &branch = branches(q)[k];
-      const Symmetric A0 = A(k, atStart, q);
-      Eigen::Map<Symmetric> A1(states[k]->trialAt(q));
-      if (isDashpot(branch, step)) {       // what its spring has stored is lost
-        *lost.trialAt(q) += branch.G * storedOverG(invariantsBeyond(e.C0[p], A0), 1)
-          + tensors::contract(viscous(branch.G * branch.tau, 0, step.rate(), e, p),
-                              0.5 * (e.C1[p] - e.C0[p]));
-        A1 = tensors::inverse(e.C1[p]);
-        continue;
-      }
-      const double s = std::exp(-step.dt / branch.tau);
-      const tensors::Vector<3> I = invariantsBeyond(K, A0);
-      *lost.trialAt(q) += branch.G * std::max(0., storedOverG(I, 1) - storedOverG(I, s));
-      A1 = s * (A0 - inverse) + inverse;
-    }
-  }
-}
-
-void Relaxation::relax(const Deformed &e) {
-  for (int p = 0; p < e.points; p++)
-    for (History::Column *state : states)
-      state->set(e.first + p, Symmetric(tensors::inverse(e.C0[p])).data());
 }
 
 // The volume measure j = J or tr E and its derivative T = 2 dj/dC. The second direction() is T of a

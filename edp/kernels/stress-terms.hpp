@@ -1,7 +1,7 @@
 // stress-terms.hpp: the stresses of a body, each a term that the bodies (bodies.hpp) add up at the
 // quadrature points of an element: its stress and moduli, the energy that it stores and dissipates,
 // and its history. A new one is a class derived from StressTerm and a line in Bodies::make().
-// Exports StressTerm, Deformed, Elasticity, Viscosity, Relaxation and Volume.
+// Exports StressTerm, Deformed, Elasticity, Viscosity, viscous() and Volume.
 #pragma once
 #include <memory>
 #include "elements.hpp"
@@ -74,6 +74,9 @@ class Elasticity : public StressTerm {
   void addEnergy(Time time, const Deformed &e, double *W) const override;
 };
 
+// S [Pa] of the viscosities eta, zeta [Pa s] in a step of element e, at its point p; rate = 1/dt.
+Symmetric viscous(double eta, double zeta, double rate, const Deformed &e, int p);
+
 // S = eta C^-1 (dC/dt) C^-1 + zeta/2 tr(C^-1 dC/dt) C^-1 with C = (C0 + C1)/2 (Kelvin-Voigt). Its
 // work is never negative, and a rigid rotation has none.
 class Viscosity : public StressTerm {
@@ -87,35 +90,6 @@ class Viscosity : public StressTerm {
 
  private:
   History::Column &lost;                   // "dissipated" [J/m3]
-};
-
-// Maxwell branches beside the law, each a spring G in series with a dashpot G tau. The state A of a
-// branch is the inverse of the viscous part of C, A = I at the start:
-//   W = G/2 [tr(C A) - 3 - ln det(C A)],   S = G (A - C^-1),   dA/dt = (C^-1 - A)/tau.
-// In a step, with K = (C0 + C1)/2, H = (C1 - C0)/2 and theta = 1 - exp(-dt/tau),
-//   A1 = A0 + theta (K^-1 - A0),   S = G (1 - theta/2)(A0 - K^-1) + correction along H,
-// so that S : H = W1 - W0 + D exactly, with the dissipation D = G/2 [f(A0) - f(A1)] >= 0,
-// f(A) = tr(K A) - ln det A, for steps of any size. Such a step has the viscosity
-// G dt (1/theta - 1/2) in place of G tau. In steps longer than tau a branch is its dashpot alone,
-// the viscosity G tau, and A1 = C1^-1.
-class Relaxation : public StressTerm {
- public:
-  explicit Relaxation(const Elements &all);
-  void addStress(const Step &step, Deformed &e) override;
-  void addModuli(const Step &step, size_t g, int q, const Symmetric &C,
-                 laws::Moduli &D) const override;
-  void addEnergy(Time time, const Deformed &e, double *W) const override;
-  double dissipated(Time time, int q) const override { return *lost.at(time == atEnd, q); }
-  void advance(const Step &step, const Deformed &e) override;
-  void relax(const Deformed &e) override;
-
- private:
-  std::vector<History::Column *> states;   // "A0", "A1" ...
-  History::Column &lost;                   // "dissipated" [J/m3]
-  const std::vector<laws::Branch> &branches(int q) const { return *material(q).branches; }
-  Symmetric A(size_t k, Time time, int q) const {
-    return Eigen::Map<const Symmetric>(states[k]->at(time == atEnd, q));
-  }
 };
 
 // The volume term (volume.idp): a function U(theta) of the mean theta of the volume measure j over

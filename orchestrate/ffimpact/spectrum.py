@@ -81,7 +81,7 @@ def dma(
     T0) of Williams, Landel and Ferry (1955): frequencies become a times as high.
 
     The moduli of the branches are nonnegative and fit the complex modulus relative to its amount.
-    lambda stays elastic. Raises BadInput if the measurement is not accepted, Unreadable if there is
+    The bulk modulus stays elastic. Raises BadInput if the measurement is not accepted, Unreadable if there is
     no such file.
     """
     if not 0 <= nu <= LARGEST_NU:
@@ -91,7 +91,7 @@ def dma(
     if wlf is not None:
         frequency = frequency * _shift(table[:, 3], *_constants(wlf))
     measured, omega = storage + 1j * loss, 2 * np.pi * frequency
-    # The shear modulus needs lambda, which follows from the relaxed modulus, which is fitted.
+    # The shear modulus needs K, which follows from the relaxed modulus, which is fitted.
     young = float(storage.min())
     for _ in range(ROUNDS):
         mu, branches = _fitted(_shear(measured, young, nu), omega)
@@ -175,17 +175,16 @@ def _read(path: Path, columns: Sequence[str]) -> np.ndarray:
     return np.array(numbers).reshape(len(numbers), len(columns))
 
 
-def _lambda(young: float, nu: float) -> float:
-    return young * nu / ((1 + nu) * (1 - 2 * nu))
+def _bulk(young: float, nu: float) -> float:
+    return young / (3 * (1 - 2 * nu))
 
 
 def _shear(measured: np.ndarray, young: float, nu: float) -> np.ndarray:
-    """The complex shear modulus mu [Pa] (n,) for a modulus of tension (n,), E = mu (3 lambda + 2 mu)/
-    (lambda + mu) with an elastic lambda.
+    """The complex shear modulus mu [Pa] (n,) for a modulus of tension (n,), E = 9 K mu/(3 K + mu) with
+    an elastic K.
     """
-    own = _lambda(young, nu)
-    half = (3 * own - measured) / 4
-    mu: np.ndarray = np.sqrt(half**2 + own * measured / 2) - half
+    bulk = _bulk(young, nu)
+    mu: np.ndarray = 3 * bulk * measured / (9 * bulk - measured)
     return mu
 
 
@@ -193,9 +192,9 @@ def _modulus(
     young: float, nu: float, branches: Sequence[Sequence[float]], omega: np.ndarray
 ) -> np.ndarray:
     """The complex modulus of tension [Pa] (n,) at angular frequencies (n,)."""
-    own, damping = _lambda(young, nu), Damping(branches=branches)
+    bulk, damping = _bulk(young, nu), Damping(branches=branches)
     shear = np.array([damping.shear(young / (2 * (1 + nu)), rate) for rate in omega])
-    modulus: np.ndarray = shear * (3 * own + 2 * shear) / (own + shear)
+    modulus: np.ndarray = 9 * bulk * shear / (3 * bulk + shear)
     return modulus
 
 

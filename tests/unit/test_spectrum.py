@@ -15,10 +15,10 @@ YOUNG = 5e6                                # relaxed [Pa]
 
 
 def measured(nu, branches, frequency=FREQUENCY):
-    """Moduli of tension from the definitions: lambda elastic, mu complex."""
-    turn, mu, own = 2j * np.pi * frequency, YOUNG / (2 * (1 + nu)), YOUNG * nu / ((1 + nu) * (1 - 2 * nu))
+    """Moduli of tension from the definitions: K elastic, mu complex."""
+    turn, mu, bulk = 2j * np.pi * frequency, YOUNG / (2 * (1 + nu)), YOUNG / (3 * (1 - 2 * nu))
     shear = mu + sum(G * turn * tau / (1 + turn * tau) for G, tau in branches)
-    modulus = 9 * (own + 2 / 3 * shear) * shear / (3 * (own + 2 / 3 * shear) + shear)   # 9 K mu/(3 K + mu)
+    modulus = 1 / (1 / (3 * shear) + 1 / (9 * bulk))
     return np.column_stack([frequency, modulus.real, modulus.imag])
 
 

@@ -72,31 +72,38 @@ class Branches(Rule):
 
 @dataclass(frozen=True)
 class Damping:
-    """Viscosities of shear and of volume [Pa s], and Maxwell branches, each a shear modulus [Pa]
+    """Viscosities of shear and of volume [Pa s], and Maxwell branches of both, each a modulus [Pa]
     and a relaxation time [s]. It is false if there is none.
     """
 
     viscosity: float = 0.0
     bulk_viscosity: float = 0.0
     branches: Sequence[Sequence[float]] = ()
+    bulk_branches: Sequence[Sequence[float]] = ()
 
     def __bool__(self) -> bool:
-        return bool(self.viscosity or self.bulk_viscosity or self.branches)
+        return any((self.viscosity, self.bulk_viscosity, self.branches, self.bulk_branches))
 
     def shear(self, mu: float, omega: float) -> complex:
         """The complex shear modulus [Pa] at the angular frequency omega [1/s]; mu [Pa]: that of the
         law, to which all branches have relaxed.
         """
-        turn = 1j * omega
-        relaxing = sum(G * turn * tau / (1 + turn * tau) for G, tau in self.branches)
-        return mu + turn * self.viscosity + relaxing
+        return mu + 1j * omega * self.viscosity + _relaxing(self.branches, omega)
+
+    def wave(self, modulus: float, omega: float) -> complex:
+        """The complex modulus [Pa] of a pressure wave at omega [1/s]; modulus [Pa]: lambda + 2 mu of
+        the law. Branches of shear act on the deviator.
+        """
+        viscous = 1j * omega * (self.bulk_viscosity + 2 * self.viscosity)
+        of_branches = _relaxing(self.bulk_branches, omega) + 4 / 3 * _relaxing(self.branches, omega)
+        return modulus + viscous + of_branches
 
     def shear_in_steps(self, mu: float, omega: float, dt: float) -> complex:
         """The complex shear modulus [Pa] that steps dt [s] have at omega [1/s].
 
         With the strain e in the middle of a step and theta = 1 - exp(-dt/tau) the dashpot of a branch
         has the strain a, a1 = a0 + theta (e - a0), and the branch the stress G (1 - theta/2) (e - a0);
-        in steps dt > tau it is the viscosity G tau (edp/kernels/stress-terms.hpp).
+        in steps dt > tau it is the viscosity G tau (edp/kernels/relaxation.hpp).
         """
         turned, rate = np.exp(1j * omega * dt), 2j * math.tan(omega * dt / 2) / dt
         modulus = mu + 1j * omega * self.viscosity
@@ -117,9 +124,11 @@ class Damping:
             dt /= 1.1
         return dt
 
-    def bulk(self, modulus: float, omega: float) -> complex:
-        """The complex modulus [Pa] beside a `modulus` [Pa] of volume at omega [1/s]."""
-        return modulus + 1j * omega * self.bulk_viscosity
+
+def _relaxing(branches: Sequence[Sequence[float]], omega: float) -> complex:
+    """The sum of G i omega tau/(1 + i omega tau) [Pa] over branches."""
+    turn = 1j * omega
+    return complex(sum(G * turn * tau / (1 + turn * tau) for G, tau in branches))
 
 
 @dataclass(frozen=True)

@@ -87,6 +87,11 @@ class OfMaterial(Entries):
         "Maxwell branches [G, tau] beside the law: G exp(-t/tau) [Pa] is left of the shear modulus "
         "G after t [s]",
     ] = None
+    bulk_branches: Annotated[
+        list[list[float]] | None,
+        Branches(),
+        "Maxwell branches [K, tau] of volume: K exp(-t/tau) [Pa] is left of the bulk modulus K",
+    ] = None
     loss: Annotated[
         float | None,
         real(0, 0, 10, "-"),
@@ -200,7 +205,9 @@ class Material(OfMaterial):
     @property
     def damped(self) -> bool:
         """Whether it has any damping."""
-        return any((self.viscosity, self.bulk_viscosity, self.branches, self.loss))
+        return any(
+            (self.viscosity, self.bulk_viscosity, self.branches, self.bulk_branches, self.loss)
+        )
 
     @property
     def damping(self) -> Damping:
@@ -209,7 +216,9 @@ class Material(OfMaterial):
         if self.loss and self.loss_model == "flat" and self.loss_range:
             shear = self.young / (2 * (1 + self.nu))
             branches = flat(self.loss, *self.loss_range).branches(shear)
-        return Damping(self.viscosity or 0.0, self.bulk_viscosity or 0.0, branches)
+        return Damping(
+            self.viscosity or 0.0, self.bulk_viscosity or 0.0, branches, self.bulk_branches or []
+        )
 
     def moduli(self, thickness: float) -> tuple[float, float]:
         """lambda + 2 mu and mu [Pa] in a wave across a body of this thickness [m]. Damping adds to
@@ -223,8 +232,7 @@ class Material(OfMaterial):
         if not self.damped:
             return wave, mu
         omega = math.pi * math.sqrt(wave / self.density) / thickness
-        shear = abs(self.damping.shear(mu, omega))
-        return abs(self.damping.bulk(wave - 2 * mu, omega)) + 2 * shear, shear
+        return abs(self.damping.wave(wave, omega)), abs(self.damping.shear(mu, omega))
 
 
 class SaintVenantKirchhoff(Material):

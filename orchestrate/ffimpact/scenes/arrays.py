@@ -101,9 +101,9 @@ def scene_arrays(scene: Scene, centres: np.ndarray, pairs: list[dict[str, Value]
             "bodies.law_numbers",
             [np.array(body.made_of.numbers, dtype=float) for body in scene.bodies],
         )
-        | joined(
-            "bodies.branches",
-            [np.array(body.made_of.damping.branches, dtype=float).ravel() for body in scene.bodies],
+        | _branches("bodies.branches", [body.made_of.damping.branches for body in scene.bodies])
+        | _branches(
+            "bodies.bulk_branches", [body.made_of.damping.bulk_branches for body in scene.bodies]
         )
         | _obstacles(scene)
         | table("pairs", of_pairs)
@@ -118,6 +118,11 @@ def parameter_arrays(values: Mapping[str, Value]) -> Entries:
         name: float(value) if PARAMETERS[name].kind == "real" else value
         for name, value in chosen.items()
     }
+
+
+def _branches(name: str, of_bodies: list[Sequence[Sequence[float]]]) -> Entries:
+    """The Maxwell branches of each body, modulus [Pa] and time [s] of each behind each other."""
+    return joined(name, [np.array(branches, dtype=float).ravel() for branches in of_bodies])
 
 
 def _bodies(scene: Scene, centres: np.ndarray) -> list[Entries]:

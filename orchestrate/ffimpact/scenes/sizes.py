@@ -38,6 +38,7 @@ ELEMENTS = 3
 # too large, by 0.02 to 0.045 tan delta for viscous discs at v/c = 0.005 to 0.02. A penalty that is
 # stiffer by this number times tan delta over the accuracy keeps this error near accuracy/10.
 DAMPED = 0.4
+STIFFEST_NU = 0.5 - 1e-9  # that has a bulk modulus
 RELAXED = 0.1  # largest error of the complex shear modulus by steps, over the accuracy
 # Frequency of the first mode over sqrt(mu/rho)/R, ovalling with two waves around: 2.336 (nu = 0) to
 # 2.354 (0.5) for a free disc in plane strain, 2.59 to 2.67 for a free ball (Lamb).
@@ -114,14 +115,15 @@ class Impact:
         young, tangent = self.young, 0.0
         if not self.damping:
             return young, tangent
-        volume = 2 * self._shear * self.nu / max(1e-9, 1 - 2 * self.nu)
+        nu, mu = min(self.nu, STIFFEST_NU), self._shear
+        wave = 2 * mu * (1 - nu) / (1 - 2 * nu)
         # A stiffer body has a shorter impact, which stiffens it further, each time by less.
         for _ in range(60):
             omega = math.pi / self._duration(young)
-            complex_shear = self.damping.shear(self._shear, omega)
-            shear, bulk = abs(complex_shear), abs(self.damping.bulk(volume, omega))
-            tangent = complex_shear.imag / complex_shear.real
-            young = shear * (3 * bulk + 2 * shear) / (bulk + shear)
+            shear = self.damping.shear(mu, omega)
+            bulk = self.damping.wave(wave, omega) - 4 / 3 * shear
+            young = abs(9 * bulk * shear / (3 * bulk + shear))
+            tangent = shear.imag / shear.real
         return young, tangent
 
     def _share(self, young: float) -> float:
