@@ -10,7 +10,9 @@ import pytest
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
+import ffimpact as ff
 from ffimpact.failure import BadInput
+from ffimpact.input.damping import Damping, flat
 from ffimpact.places import ROOT
 from ffimpact.running import run
 from ffimpact.scene import read
@@ -266,3 +268,42 @@ def test_waves_are_faster_by_damping(tmp_path):
     assert speeds[0] == pytest.approx(np.sqrt(5e6 / 1000), rel=1e-6) == pytest.approx(speeds[1], rel=1e-6)
     steps = [run.run(scene, {}, tmp_path / f"{k}", estimate=False).history["dt"].max() for k, scene in enumerate(scenes)]
     assert steps[0] == pytest.approx(steps[1], rel=1e-6)
+
+
+# ---- loss over frequency
+
+
+@pytest.mark.parametrize("frequency", [1, 100, 10000])
+def test_a_sheared_pad_has_the_loss_of_its_series(tmp_path, frequency):
+    """tan delta of force over displacement of an incompressible pad, without inertia, is that of the
+    branches to 0.5 %, over four decades."""
+    ends, young = [1, 1e4], 1e7
+    rubber = ff.Incompressible(young=young, density=0.01, loss=0.2, loss_model="flat", loss_range=ends)
+    moved = ff.Support(where="top", motion=[f"1e-6*sin(2*pi*{frequency}*t)", 0])
+    pad = ff.Rectangle(width=0.01, height=0.01, position=(0, 0.005), mesh_size=0.00125, material=rubber, support=[ff.Support(where="bottom"), moved])
+    result = ff.run(ff.Scene(bodies=[pad], end_time=3 / frequency, dt=1 / (100 * frequency)), out=tmp_path / "pad", estimate=False, figures=False)
+    t = result.history["t"] - result.history["dt"] / 2
+    phase, last = 2 * np.pi * frequency * t, np.array(t > 2 / frequency)
+    parts = np.column_stack([np.sin(phase), np.cos(phase), np.ones(len(t)), phase])[last]
+    stored, lost, *_ = np.linalg.lstsq(parts, np.array(result.history["support_force_x_2"])[last], rcond=None)[0]
+    series = Damping(branches=flat(0.2, *ends).branches(young / 3)).shear(young / 3, 2 * np.pi * frequency)
+    assert lost / stored == pytest.approx(series.imag / series.real, rel=5e-3)
+    assert result["energy_drift"] < 1e-9
+
+
+def test_restitution_over_speed_shows_the_loss_model(tmp_path):
+    """From 1 mm/s to 0.1 m/s a ball with a flat loss keeps its restitution within 0.1 %; with
+    Kelvin-Voigt 1 - e grows with the fifth root of the speed (Kuwabara and Kono 1987). Contact times fall with that root."""
+    speeds = [1e-3, 1e-2, 1e-1]
+    slopes = {}
+    for model in ("flat", "kelvin-voigt"):
+        ball = {"speed": 1e-3, "nu": 0.45, "accuracy": 0.02, "penalty": "auto", "body.1.loss": 0.05, "body.1.loss_model": model}
+        ball |= {"body.1.loss_range": [1, 3000]} if model == "flat" else {}
+        runs = [ff.run(ff.Scene.load("ball-axisymmetric").override(ball | {"speed": speed}), out=tmp_path / f"{model} {speed}", estimate=False, figures=False) for speed in speeds]
+        lost = [1 - run["restitution"] for run in runs]
+        slopes[model] = np.diff(np.log(lost)) / np.diff(np.log(speeds))
+        assert np.diff(np.log([run["contact_time"] for run in runs])) / np.diff(np.log(speeds)) == pytest.approx(-0.2, abs=0.015)
+        assert max(run["energy_drift"] for run in runs) < 1e-9
+        if model == "flat":
+            assert np.ptp(lost) < 1e-3
+    assert abs(slopes["flat"]).max() < 0.01 and slopes["kelvin-voigt"] == pytest.approx(0.2, abs=0.04)

@@ -840,7 +840,7 @@ def _discretisation(e: Evidence) -> Iterator[Sentence]:
             f"{percent(turn**2 / 8)} too small: take a dt of at most "
             f"{rounded(facts['dt_largest'] * largest / turn)}"
         )
-    lasts = e.numbers["contact_time"] or 3 * facts["transit"]
+    lasts = e.numbers["contact_time"] or math.inf
     wrong = max(_of_steps(body, facts["dt_largest"], lasts) for body in e.bodies)
     if wrong > facts["accuracy"]:
         yield warn(
