@@ -28,8 +28,8 @@ from verification import commands
 from . import draws, page
 
 # Seeds and numbers of the scenes by option. estimate.SAFETY and estimate.SLOWEST are calibrated on
-# the seeds 410 of `round`, 411 of `others`, 413 of `held`, 414 of its drop weights and of `flat`;
-# the compared histories also on 1001 and 1002 of all kinds of scenes, 301 of `held` and `others`,
+# the seeds 410 and 451 of `round`, 411 of `others`, 413 and 451 of `held`, 414 of its drop weights
+# and of `flat`; the compared histories also on 1001 and 1002 of all kinds of scenes, 301 of `held` and `others`,
 # 302 and 401 of `held`.
 # Mesh sizes are calibrated on the seeds 1, 2, 5, 40 and 7.
 SCENES = {"round": (69, 240), "coarse": (73, 180), "flat": (79, 60), "held": (85, 60), "others": (87, 30)}

@@ -15,6 +15,7 @@ an impact runs agree by chance. So the error estimate of a result is
        in a flat strike, as its penalty follows the elements (scenes/front.py). Elsewhere errors
        fall more slowly. So q is the median of the orders of all results, by the differences of the
        two pairs, but at least SLOWEST p and at most p. The order of a single result scatters.
+       Contact times always have the order SLOWEST p: vibration decides when forces end.
 
 If errors are of order q, the two differences have the ratio r^q; if they scatter, they are about
 equal. Most errors are in between, so the second difference is divided by r^(q/2). All results of
@@ -87,7 +88,7 @@ REGULARISED = ("penalty", "slip_velocity")
 NO_ANSWER = (11, 12)  # exit codes of runs that the step or the material ended
 # Error estimate over that of the differences, by the number of their pairs. A single pair agrees by
 # chance more often.
-SAFETY = {1: 2.2, 2: 0.9}
+SAFETY = {1: 2.2, 2: 0.87}
 SLOWEST = 0.75  # smallest order of the errors over the order of the elements and steps
 TINY = 1e-5  # differences below it show no order, but round-off
 PROMISED = (
@@ -101,6 +102,7 @@ PROMISED = (
 RESULTS = (*PROMISED, "contact_time", "peak_force")
 # Results of the whole impact: a later contact changes them.
 OF_IMPACT = ("impulse", "rebound", "rebound_spin", "thresholded_contact_time", "contact_time")
+TIMES = ("thresholded_contact_time", "contact_time")
 AT_END = ("rebound", "final")  # velocities at the end of contact and of the run
 # First words of the messages `skipped` about steps that integrator = auto has not chosen.
 STEPS = ("explicit steps (", "implicit steps (")
@@ -263,9 +265,9 @@ def error_estimates(runs: Sequence[Answers]) -> dict[str, float]:
     """
     pairs = [_sizes(*pair) for pair in pairwise(runs)]
     ratio = _ratio(pairs, _order(runs[0]))
-    factor = SAFETY[len(pairs)] / (ratio - 1)
+    slowest = math.pow(COARSER, SLOWEST * _order(runs[0]))
     estimates = {
-        name: factor * math.sqrt(sum(pair[name] ** 2 / ratio**k for k, pair in enumerate(pairs)))
+        name: _extrapolated([pair[name] for pair in pairs], slowest if name in TIMES else ratio)
         for name in pairs[0]
     }
     # All levels may have the same drift, so their differences do not show it.
@@ -273,6 +275,14 @@ def error_estimates(runs: Sequence[Answers]) -> dict[str, float]:
     estimates |= rest_errors(*runs[:2])
     missing = OF_IMPACT if runs[0].summary.get("later_contact_possible") else ()
     return {name: error for name, error in estimates.items() if name not in missing}
+
+
+def _extrapolated(apart: Sequence[float], ratio: float) -> float:
+    """Returns the error estimate from the differences of successive levels, whose errors have this
+    ratio.
+    """
+    squares = sum(difference**2 / ratio**k for k, difference in enumerate(apart))
+    return SAFETY[len(apart)] / (ratio - 1) * math.sqrt(squares)
 
 
 def _order(run: Answers) -> int:
