@@ -205,7 +205,7 @@ def _harder(chance: random.Random, point: Point, c: float) -> Point:
         if point["law"] == "neohookean" and not more.keys() & {"integrator", "degree"} and beside.random() < 0.5:
             more |= {"law": "incompressible", "nu": 0.5}
     if more.get("integrator", "midpoint") == "midpoint" and beside.random() < 0.15:
-        more["loss"] = beside.choice([0.01, 0.1, 0.5])
+        more |= {"loss": beside.choice([0.01, 0.1, 0.5]), "loss_model": "kelvin-voigt"}
     return more
 
 

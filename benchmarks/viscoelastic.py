@@ -173,7 +173,7 @@ def balls(out: Path) -> pd.DataFrame:
 
 def discs(out: Path) -> pd.DataFrame:
     """A row for each loss factor and each relaxation time."""
-    viscous = study.study([{"loss": loss} for loss in LOSSES], out / "disc", DISC, LIMIT)
+    viscous = study.study([{"loss": loss, "loss_model": "kelvin-voigt"} for loss in LOSSES], out / "disc", DISC, LIMIT)
     contact = viscous.thresholded_contact_time.iloc[0]
     mu = YOUNG / (2 * (1 + DISC["nu"]))
     points = [{"branches": [[float(f"{BRANCH * mu:.6g}"), float(f"{share * contact:.4g}")]]} for share in TIMES]

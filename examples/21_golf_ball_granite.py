@@ -24,7 +24,9 @@ density = mass / (4 / 3 * np.pi * radius**3)
 
 def golf_ball(loss, friction=0.18):
     """The ball just above the plane."""
-    material = ff.NeoHookean(young=80e6, nu=0.45, density=density, loss=loss)
+    material = ff.NeoHookean(
+        young=80e6, nu=0.45, density=density, loss=loss, loss_model="kelvin-voigt"
+    )
     velocity = (speed * np.sin(angle), -speed * np.cos(angle), 0)
     ball = ff.Ball(
         radius=radius, material=material, position=(0, 1.001 * radius, 0), velocity=velocity

@@ -26,7 +26,9 @@ along, across = speed * np.cos(angle), speed * np.sin(angle)
 
 def superball(loss):
     """The ball just above the plane. `loss` is tan delta of shear at its first mode."""
-    rubber = ff.NeoHookean(young=5e6, nu=0.49, density=density, loss=loss)
+    rubber = ff.NeoHookean(
+        young=5e6, nu=0.49, density=density, loss=loss, loss_model="kelvin-voigt"
+    )
     ball = ff.Ball(
         radius=radius,
         material=rubber,

@@ -24,7 +24,9 @@ density = mass / (4 / 3 * np.pi * radius**3)
 
 def golf_ball(loss, **where):
     """A golf ball just above the granite."""
-    material = ff.NeoHookean(young=80e6, nu=0.45, density=density, loss=loss)
+    material = ff.NeoHookean(
+        young=80e6, nu=0.45, density=density, loss=loss, loss_model="kelvin-voigt"
+    )
     ball = ff.Ball(radius=radius, material=material, **where)
     contact = ff.Contact(friction_static=friction)
     return ff.Scene(title="golf ball over the angle", bodies=[ball], obstacles=[ff.Plane()],

@@ -28,7 +28,7 @@ outline = [
     *((float(inner * np.cos(angle)), float(inner * np.sin(angle))) for angle in arc[::-1]),
     (length, inner),
 ]
-rubber = ff.NeoHookean(young=1e6, nu=0.4, density=1100, loss=0.05)
+rubber = ff.NeoHookean(young=1e6, nu=0.4, density=1100, loss=0.05, loss_model="kelvin-voigt")
 pin = ff.Polygon(
     name="pin",
     vertices=outline,

@@ -28,7 +28,7 @@ from verification.measure import bodies, disc
 def test_a_ball_comes_to_rest(tmp_path):
     """A ball of revolution: its contact is Hertz' circle, a^3 = 3 P R (1 - nu^2)/(4 E), to an
     element."""
-    result = disc(tmp_path, "ball-axisymmetric", **FALL | {"height": 0.02, "contact_mesh_size": 0.001, "loss": 2})
+    result = disc(tmp_path, "ball-axisymmetric", **FALL | {"height": 0.02, "contact_mesh_size": 0.001, "loss": 2, "loss_model": "kelvin-voigt"})
     load = weight(4 / 3 * math.pi * RADIUS**3)
     rests(result, load)
     assert result.history["contact_half_width"][-1] == pytest.approx((0.75 * load * RADIUS * (1 - NU**2) / YOUNG)**(1 / 3), abs=0.001)
@@ -52,7 +52,7 @@ def test_what_rolls_on_ends_the_run(tmp_path):
 
     Its outline is fine all around. With an end_time the run continues.
     """
-    rolls = REST | {"young": 7e5, "speed": 0.5, "angle": 0, "spin": -10, "friction_static": 0.5, "loss": 0.2, "accuracy": 0.2, "symmetry": "full", "mesh_size": 0.025,
+    rolls = REST | {"young": 7e5, "speed": 0.5, "angle": 0, "spin": -10, "friction_static": 0.5, "loss": 0.2, "loss_model": "kelvin-voigt", "accuracy": 0.2, "symmetry": "full", "mesh_size": 0.025,
                     "contact_mesh_size": 0.003}
     result = disc(tmp_path / "on", **rolls)
     assert result.summary["ended"] == "rolling" and result.summary["energy_drift"] < 1e-9 and any(warning.startswith("rest: ") for warning in result.summary["warnings"])
@@ -65,7 +65,7 @@ def test_what_rolls_on_ends_the_run(tmp_path):
 def test_a_scene_says_it_in_toml_and_python(tmp_path):
     """The built-in scene, coarser: the figure of its height is drawn, an unknown word is refused,
     and a free block cannot come to rest."""
-    coarse = {"mesh_size": 0.02, "contact_mesh_size": 0.005, "loss": 2, "penalty": 1e10, "height": 0.05, "accuracy": 0.2}
+    coarse = {"mesh_size": 0.02, "contact_mesh_size": 0.005, "loss": 2, "loss_model": "kelvin-voigt", "penalty": 1e10, "height": 0.05, "accuracy": 0.2}
     result = run.run(scene.load("disc-rest"), coarse, tmp_path / "out", estimate=False)
     assert result.scene["until"] == "rest" and result.summary["ended"] == "rest"
     drawing.draw(result.folder)
@@ -73,14 +73,14 @@ def test_a_scene_says_it_in_toml_and_python(tmp_path):
     with pytest.raises(BadInput, match="until: 'sleep'"):
         scene.load("disc-rest").override({"until": "sleep"})
     with pytest.raises(Failure, match="until: rest needs an obstacle"):
-        run.run(scene.load("disc-block"), {"until": "rest", "gravity": 9.81, "loss": 1, "accuracy": 0.3}, tmp_path / "block", estimate=False)
+        run.run(scene.load("disc-block"), {"until": "rest", "gravity": 9.81, "loss": 1, "loss_model": "kelvin-voigt", "accuracy": 0.3}, tmp_path / "block", estimate=False)
 
 
 @pytest.mark.robustness
 def test_two_bodies_rest(tmp_path):
     """A disc falls on another one in a hollow circle: both come to rest, with their weights on the
     circle."""
-    body = {"shape": "disc", "radius": 0.05, "law": "neohookean", "young": 2e6, "nu": 0.3, "density": 1000.0, "loss": 2.0, "mesh_size": 0.03,
+    body = {"shape": "disc", "radius": 0.05, "law": "neohookean", "young": 2e6, "nu": 0.3, "density": 1000.0, "loss": 2.0, "loss_model": "kelvin-voigt", "mesh_size": 0.03,
             "contact_mesh_size": 0.01}
     tables = {"gravity": 9.81, "until": "rest", "accuracy": 0.2, "contact": {"friction_static": 0.3},
               "body": [body | {"name": "low", "position": [0.0, 0.051]}, body | {"name": "high", "position": [0.0, 0.16]}],
@@ -95,8 +95,8 @@ def test_two_bodies_rest(tmp_path):
 def test_nothing_rests_while_another_body_falls(tmp_path):
     """A slab lies still long before the disc above it lands. The run ends when both rest, each
     weight on its support."""
-    slab = {"name": "slab", "shape": "rectangle", "width": 0.4, "height": 0.1, "position": [0, 0.05], "loss": 2.0, "mesh_size": 0.05, "contact_mesh_size": 0.05}
-    falls = {"name": "disc", "shape": "disc", "radius": 0.005, "position": [0, 0.16], "loss": 1.0, "mesh_size": 0.004}
+    slab = {"name": "slab", "shape": "rectangle", "width": 0.4, "height": 0.1, "position": [0, 0.05], "loss": 2.0, "loss_model": "kelvin-voigt", "mesh_size": 0.05, "contact_mesh_size": 0.05}
+    falls = {"name": "disc", "shape": "disc", "radius": 0.005, "position": [0, 0.16], "loss": 1.0, "loss_model": "kelvin-voigt", "mesh_size": 0.004}
     result = bodies(tmp_path / "out", REST | {"young": 1e6, "density": DENSITY, "loss": 0, "accuracy": 0.2, "body": [slab, falls], "obstacle": [
         {"name": "floor", "kind": "plane", "point": [0, 0], "normal": [0, 1]}]})
     table = np.genfromtxt(tmp_path / "out/run/contacts.csv", delimiter=",", names=True)

@@ -16,7 +16,7 @@ FINE = BALL | {"mesh_size": 0.02, "contact_mesh_size": 0.0008, "accuracy": 0.02}
 @pytest.mark.parametrize("script, flags, chosen, why", [
     ("disc", BALL | {"accuracy": 0.0025, "end_time": 1e-3}, "central-difference", "implicit steps (a step takes "),
     ("disc", FINE | {"end_time": 1e-3}, "energy-momentum", "explicit steps (a step takes "),
-    ("disc", BALL | {"loss": 0.1, "end_time": 1e-3}, "energy-momentum", "explicit steps (viscosity or relaxation needs implicit steps)")], ids=["small elements", "fine contact", "viscous"])
+    ("disc", BALL | {"loss": 0.1, "loss_model": "kelvin-voigt", "end_time": 1e-3}, "energy-momentum", "explicit steps (viscosity or relaxation needs implicit steps)")], ids=["small elements", "fine contact", "viscous"])
 def test_the_cheaper_one_is_taken_and_said(tmp_path, script, flags, chosen, why):
     """The choice depends on the substeps of a step and the unknowns.
 

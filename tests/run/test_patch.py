@@ -184,7 +184,7 @@ def test_a_uniform_pressure_on_a_face_stays_uniform(tmp_path):
     there and without values around the corners.
     """
     block = {"shape": "rectangle", "width": 0.1, "height": 0.05, "mesh_size": 0.025, "contact_mesh_size": 0.0125}
-    tables = {"law": "neohookean", "young": 1e5, "nu": 0.0, "density": 1000.0, "loss": 2.0, "gravity": 9.81, "until": "rest",
+    tables = {"law": "neohookean", "young": 1e5, "nu": 0.0, "density": 1000.0, "loss": 2.0, "loss_model": "kelvin-voigt", "gravity": 9.81, "until": "rest",
               "accuracy": 0.1, "fields": 1,
               "body": [block | {"name": name, "position": [x, 0.025]} for name, x in (("left", 0.0), ("right", 0.3))],
               "obstacle": [{"kind": "plane", "point": [0.0, 0.0], "normal": [0.0, 1.0]}]}

@@ -93,7 +93,7 @@ def test_end_time_is_the_latest(tmp_path):
 def pulled(shape: dict, normal: list[float], **more) -> dict:
     """A soft body with damping that an acceleration of 9.81 m/s2 moves to a plane through the
     origin."""
-    body = {"law": "neohookean", "young": 2e5, "nu": 0.3, "density": 1000.0, "loss": 2.0, "mesh_size": 0.02, "contact_mesh_size": 0.01}
+    body = {"law": "neohookean", "young": 2e5, "nu": 0.3, "density": 1000.0, "loss": 2.0, "loss_model": "kelvin-voigt", "mesh_size": 0.02, "contact_mesh_size": 0.01}
     return {"until": "rest", "accuracy": 0.2, "body": [body | shape], "obstacle": [{"kind": "plane", "point": [0.0, 0.0], "normal": normal}]} | more
 
 

@@ -18,7 +18,7 @@ from ffimpact.scenes.mirror import symmetric_along
 
 RECORDS = Path(__file__).parents[1] / "records"
 FILES = ("record.json", "scene.toml", "history.csv", "contacts.bin", "states.bin", "modes.bin")
-FALL = {"law": "neohookean", "loss": 4, "speed": 0, "gravity": 9.81, "until": "rest", "body.1.position.2": 0.06}
+FALL = {"law": "neohookean", "loss": 4, "loss_model": "kelvin-voigt", "speed": 0, "gravity": 9.81, "until": "rest", "body.1.position.2": 0.06}
 RUNS = {
     "slide": ("disc-oblique", {"fields": 3, "degree": 1}),
     "discs": ("two-discs", {"fields": 2, "contact.friction_static": 0.3}),

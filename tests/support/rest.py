@@ -3,7 +3,7 @@
 import pytest
 
 RADIUS, YOUNG, NU, DENSITY, GRAVITY, ACCURACY = 0.05, 7e6, 0.4, 1722, 9.81, 0.1
-REST = {"law": "neohookean", "nu": NU, "loss": 1, "gravity": GRAVITY, "until": "rest", "accuracy": ACCURACY}
+REST = {"law": "neohookean", "nu": NU, "loss": 1, "loss_model": "kelvin-voigt", "gravity": GRAVITY, "until": "rest", "accuracy": ACCURACY}
 FALL = REST | {"speed": 0, "height": 0.5, "mesh_size": 0.015, "contact_mesh_size": 0.0005, "penalty": 2e11}
 
 

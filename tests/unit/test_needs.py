@@ -23,7 +23,7 @@ IMPLICIT, MIDDLE = ("energy-momentum", "midpoint", "backward-euler", "bdf2"), ("
 SCENES = {
     "supports and loads need": ({"body": [DISC, BAR | {"support": [{"where": "left"}]}]}, {"integrator": MIDDLE}),
     "rigid bodies need": ({"body": [DISC, RIGID]}, {"integrator": IMPLICIT}),
-    "viscosity or relaxation needs": ({"body": [DISC | {"loss": 0.1}]}, {"integrator": MIDDLE}),
+    "viscosity or relaxation needs": ({"body": [DISC | {"loss": 0.1, "loss_model": "kelvin-voigt"}]}, {"integrator": MIDDLE}),
     "nu = 0.5 (J = 1) needs": ({"body": [DISC | {"nu": 0.5}]}, {"integrator": ("energy-momentum",), "degree": (2,), "volume": ("projected", "auto"),
                                                               "body.1.law": ("neohookean", "mooney-rivlin", "ogden", "incompressible")}),
     "volume = 'projected' needs": ({"volume": "projected"}, {"degree": (2,)}),

@@ -197,5 +197,5 @@ def refuse_uneven(entry: str, series: FlatLoss) -> None:
         raise BadInput(
             f"{entry}: {series.loss:g} deviates by {100 * series.deviation:.2g} % between "
             f"{series.lowest:g} and {series.highest:g} Hz, with {len(series.times)} branches "
-            f"(accepted: to {100 * UNEVEN:g} %: a smaller loss, or a narrower loss_range)"
+            f"(accepted: to {100 * UNEVEN:g} %: a smaller loss, a narrower loss_range, or loss_model = kelvin-voigt)"
         )

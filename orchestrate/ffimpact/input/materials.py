@@ -46,7 +46,7 @@ NU = real(0.45, 0, 0.5, "-").means(
     "Poisson's ratio; the paper says only nu -> 0.5; 0.5: J = 1, of all laws but svk"
 )
 DENSITY = real(1722, 1e-15, 1e12, "kg/m3").means("reference density")
-LOSS_MODELS = ("kelvin-voigt", "flat")
+LOSS_MODELS = ("flat", "kelvin-voigt")
 # Largest nu in the speed of waves. The stiffness by a larger nu acts on the volume of elements.
 STIFFEST = 0.45
 # The entries of some laws beside young and nu. Those of ogden replace young.
@@ -99,9 +99,9 @@ class OfMaterial(Entries):
     ] = None
     loss_model: Annotated[
         str | None,
-        word("kelvin-voigt", LOSS_MODELS),
-        "what `loss` sets: kelvin-voigt: viscosity, for the first mode of the disc or ball; flat: "
-        "branches, for all of loss_range",
+        word("flat", LOSS_MODELS),
+        "what `loss` sets: flat: branches, for all of loss_range; kelvin-voigt: viscosity, for the "
+        "first mode of the disc or ball",
     ] = None
     loss_range: Annotated[
         list[float] | None,
