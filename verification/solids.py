@@ -122,8 +122,9 @@ def _mesh(body: Body, copies: int) -> solid_mesh.SolidMesh:
 
 def entries(scene: Scene) -> Entries:
     """The entries of the scene file (edp/program/input/scene.idp)."""
-    bodies = [{"name": f"body{b}", "law": body.material[0], **dict(zip(("young", "nu", "density"), map(float, body.material[1:]))),
-               "viscosity": [0.0] * 2, "centre": padded(body.centre), "shift": padded(body.shift), "turn": 0.0, "velocity": padded(body.velocity),
+    materials = [{"law": body.material[0], **dict(zip(("young", "nu", "density"), map(float, body.material[1:]))), "viscosity": [0.0] * 2, "body": b}
+                 for b, body in enumerate(scene.bodies)]
+    bodies = [{"name": f"body{b}", **dict(zip(("young", "nu", "density"), map(float, body.material[1:]))), "centre": padded(body.centre), "shift": padded(body.shift), "turn": 0.0, "velocity": padded(body.velocity),
                "spin": padded(body.spin), "thickness": 1e30, "of_file": 0} for b, body in enumerate(scene.bodies)]
     obstacles = [{"name": f"obstacle{k}", "kind": SHAPES.index(kind.replace("sphere", "circle")), "velocity": padded(velocity)}
                  for k, (kind, _, velocity) in enumerate(scene.obstacles, 1)]
@@ -132,8 +133,8 @@ def entries(scene: Scene) -> Entries:
     meshes = [_mesh(body, scene.copies) for body in scene.bodies]
     return (parameter_arrays({"penalty": 1.0, "slip_velocity": 1.0, "friction_dynamic": 0.0})
             | {"script": "bodies-3d", "symmetry_factor": scene.copies, "implicit_why": "", "relaxed_step": 1e300, "front_transit": 0.0, "front_rise": 0.0}
-            | table("bodies", bodies) | joined("bodies.law_numbers", [np.zeros(0)] * len(bodies))
-            | joined("bodies.branches", [np.zeros(0)] * len(bodies)) | joined("bodies.bulk_branches", [np.zeros(0)] * len(bodies)) | table("obstacles", obstacles)
+            | table("bodies", bodies) | table("materials", materials) | joined("materials.law_numbers", [np.zeros(0)] * len(bodies))
+            | joined("materials.branches", [np.zeros(0)] * len(bodies)) | joined("materials.bulk_branches", [np.zeros(0)] * len(bodies)) | table("obstacles", obstacles)
             | joined("obstacles.numbers", [np.array(numbers, float) for _, numbers, _ in scene.obstacles]) | table("pairs", pairs)
             | {name: 0 for name in ("rigid", "functions", "kinks", "drives", "supports", "loads", "start_fields")}
-            | mesh_arrays(*stack(meshes, np.zeros((len(meshes), 3))), spheres, []))
+            | mesh_arrays(*(stacked := stack(meshes, np.zeros((len(meshes), 3)))), stacked[1], spheres, []))

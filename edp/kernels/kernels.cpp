@@ -6,8 +6,8 @@
 #include "input.hpp"
 #include "step.hpp"
 
-struct OfBody { const laws::Law *law;  laws::Dampers dampers; };
-static std::deque<OfBody> ofBody;          // by number
+struct OfMaterial { const laws::Law *law;  laws::Dampers dampers; };
+static std::deque<OfMaterial> ofMaterial;  // by number
 static Factor factor;
 namespace scene {
 bodies::Elements elements;
@@ -39,21 +39,21 @@ static void addBodies() {
   add("kernelComponent", +[](long i, long dimensions, Sparse pick) {
     elements.component(int(i), int(dimensions), entries(pick));
   });
-  add("kernelLawOf", +[](long body, std::string &name, Reals branches, Reals bulkBranches) {
-    // Of bodies 0, 1 ... in this order; branches: modulus and time of each.
-    ffassert(body == long(ofBody.size()));
-    ofBody.push_back({laws::find(name), {branchesOf(branches), branchesOf(bulkBranches)}});
+  add("kernelLawOf", +[](long number, std::string &name, Reals branches, Reals bulkBranches) {
+    // Of materials 0, 1 ... in this order; branches: modulus and time of each.
+    ffassert(number == long(ofMaterial.size()));
+    ofMaterial.push_back({laws::find(name), {branchesOf(branches), branchesOf(bulkBranches)}});
   });
   add("kernelMaterial", +[](Reals lambda, Reals mu, Reals own, Reals eta, Reals zeta, Reals bulk,
-                           Ints bodyOfPoint, Ints volumeByTrace, Ints incompressible,
+                           Ints materialOfPoint, Ints volumeByTrace, Ints incompressible,
                            Reals weight) {
     // Arrays over the nq quadrature points; `own` has mostOwn stacked components.
     const long nq = weight.N();
     ffassert(own.N() == laws::mostOwn * nq);
     elements.weight = copied<double>(weight);
     for (long q = 0; q < nq; q++) {
-      const OfBody &body = ofBody[bodyOfPoint[q]];
-      laws::Material m = {body.law, lambda[q], mu[q], {}, eta[q], zeta[q], &body.dampers, bulk[q],
+      const OfMaterial &of = ofMaterial[materialOfPoint[q]];
+      laws::Material m = {of.law, lambda[q], mu[q], {}, eta[q], zeta[q], &of.dampers, bulk[q],
                           volumeByTrace[q], incompressible[q]};
       for (int k = 0; k < laws::mostOwn; k++) m.own[k] = own[k * nq + q];
       elements.addPoint(m);

@@ -29,7 +29,7 @@ struct Material {
   const Law *law;
   double lambda, mu, own[mostOwn];         // Lame's constants; further parameters of the law
   double eta, zeta;                        // viscosities [Pa s]
-  const Dampers *dampers;                  // Maxwell branches, of the body
+  const Dampers *dampers;                  // Maxwell branches, of the material
   double bulk;                             // kappa [Pa]: part of lambda that acts on element means
                                            // of the volume (volume.idp)
   long volumeByTrace;                      // 1: W is quadratic in C, the volume measure is tr E

@@ -181,7 +181,7 @@ def test_a_body_has_the_viscosity_of_its_loss():
     made = assembly.assemble(read({"viscosity": 3.0} | scene(loss=0.1, loss_model="kelvin-voigt"), ROOT, "scene"))
     damped, elastic = made.used["body"]
     assert damped["viscosity"] == pytest.approx(used({"nu": 0.4, "loss": 0.1, "loss_model": "kelvin-voigt"})["viscosity"]) and elastic["viscosity"] == 0
-    assert made.arrays["bodies.viscosity"].tolist()[0] == [damped["viscosity"], 0.0]
+    assert made.arrays["materials.viscosity"].tolist()[0] == [damped["viscosity"], 0.0]
     assert assembly.assemble(read(made.used, ROOT, "scene")).data == made.data
 
 

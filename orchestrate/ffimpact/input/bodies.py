@@ -341,6 +341,11 @@ class Body(OfMaterial):
         by_mass = self.mass / self.outline.content if self.mass else None
         return rigid(float(by_mass or self.density or top.density or 0.0))
 
+    @property
+    def materials(self) -> list[Material]:
+        """Its material outside of its layers, and those of its layers."""
+        return [self.made_of]
+
     def _size(self, name: str) -> float:
         """An element size [m] of the body, else that at the top of the scene; 0 is automatic."""
         own = getattr(self, name)

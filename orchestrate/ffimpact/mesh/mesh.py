@@ -39,6 +39,7 @@ __all__ = [
     "DIGITS",
     "FREE",
     "GROWTH",
+    "INTERFACE",
     "Mesh",
     "Sizes",
     "WIDEST",
@@ -50,6 +51,8 @@ __all__ = [
     "graded",
     "in_own_process",
     "inner_outlines",
+    "interfaces",
+    "layers_of",
     "mesh_body",
     "nearest",
     "nodes_on",
@@ -61,6 +64,7 @@ __all__ = [
 ]
 
 FREE, AXIS = 1, 2  # boundary labels
+INTERFACE = -2  # label of sides between layers of a body
 # Vertices of the sides of a triangle (counter-clockwise) and of the faces of a tetrahedron
 # (counter-clockwise seen from outside).
 SIDES = {
@@ -95,7 +99,8 @@ class Mesh:
     `points` (n, 2) are in m, `triangles` (t, 3) are counter-clockwise, `edges` (e, 2) of the
     boundary have the `labels` (e,). `arc_centres` (e, 2) [m], of meshes of files, are the centres of the
     circles on which edges lie, nan for straight edges. `groups` are the numbers of the edges of parts
-    of the boundary by name.
+    of the boundary by name. `layers` (t,) are the numbers of the layers of triangles, from 1, 0 for
+    those in none.
     """
 
     points: np.ndarray
@@ -104,6 +109,7 @@ class Mesh:
     labels: np.ndarray
     arc_centres: np.ndarray | None = None
     groups: dict[str, np.ndarray] = field(default_factory=dict)
+    layers: np.ndarray | None = None
     NEVER: ClassVar[int] = 3  # label of edges that never come into contact
 
     @property
@@ -113,6 +119,11 @@ class Mesh:
     @property
     def sides(self) -> np.ndarray:
         return self.edges
+
+    @property
+    def layer_of(self) -> np.ndarray:
+        """`layers`, 0 for all triangles of a mesh without layers."""
+        return layers_of(self)
 
     @property
     def circle_centres(self) -> np.ndarray:
@@ -590,6 +601,26 @@ def boundary(cells: np.ndarray) -> np.ndarray:
     )
     outer: np.ndarray = sides[np.sort(first[count == 1])]
     return outer
+
+
+def interfaces(cells: np.ndarray, layers: np.ndarray) -> np.ndarray:
+    """The sides (e, corners) between cells (t, corners + 1) of different layers (t,), each as the
+    first of its two cells has it.
+    """
+    corners = SIDES[cells.shape[1]]
+    if not layers.any():
+        return np.empty((0, corners.shape[1]), dtype=int)
+    sides = cells[:, corners].reshape(-1, corners.shape[1])
+    order = np.lexsort(np.sort(sides, axis=1).T)
+    ordered, layer = np.sort(sides[order], axis=1), np.repeat(layers, len(corners))[order]
+    same = (ordered[1:] == ordered[:-1]).all(axis=1)
+    between: np.ndarray = sides[order[:-1][same & (layer[1:] != layer[:-1])]]
+    return between
+
+
+def layers_of(made: "Mesh | SolidMesh") -> np.ndarray:
+    """The layer (t,) of each cell, 0 for all cells of a mesh without layers."""
+    return np.zeros(len(made.elements), dtype=int) if made.layers is None else made.layers
 
 
 def pieces(points: int, elements: np.ndarray) -> np.ndarray:

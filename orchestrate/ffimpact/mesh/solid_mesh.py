@@ -89,6 +89,7 @@ class SolidMesh:
     labels: np.ndarray
     curved: tuple[Curved, ...] = ()
     groups: dict[str, np.ndarray] = field(default_factory=dict)
+    layers: np.ndarray | None = None  # (t,) numbers of the layers of tetrahedra, 0: in none
     NEVER: ClassVar[int] = 4  # label of faces that never come into contact
 
     @property
@@ -98,6 +99,11 @@ class SolidMesh:
     @property
     def sides(self) -> np.ndarray:
         return self.faces
+
+    @property
+    def layer_of(self) -> np.ndarray:
+        """`layers`, 0 for all tetrahedra of a mesh without layers."""
+        return mesh.layers_of(self)
 
     def moved(self, by: np.ndarray) -> "SolidMesh":
         """The mesh, translated by the vector `by` (3,) [m]."""

@@ -7,7 +7,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -97,14 +97,7 @@ def scene_arrays(scene: Scene, centres: np.ndarray, pairs: list[dict[str, Value]
         {"script": scene.kind.script}
         | {"symmetry_factor": 2 if scene.kind is AXISYMMETRIC else copies(scene)}
         | table("bodies", _bodies(scene, centres))
-        | joined(
-            "bodies.law_numbers",
-            [np.array(body.made_of.numbers, dtype=float) for body in scene.bodies],
-        )
-        | _branches("bodies.branches", [body.made_of.damping.branches for body in scene.bodies])
-        | _branches(
-            "bodies.bulk_branches", [body.made_of.damping.bulk_branches for body in scene.bodies]
-        )
+        | _materials(scene)
         | _obstacles(scene)
         | table("pairs", of_pairs)
         | table("rigid", rigid)
@@ -120,9 +113,31 @@ def parameter_arrays(values: Mapping[str, Value]) -> Entries:
     }
 
 
-def _branches(name: str, of_bodies: list[Sequence[Sequence[float]]]) -> Entries:
-    """The Maxwell branches of each body, modulus [Pa] and time [s] of each behind each other."""
-    return joined(name, [np.array(branches, dtype=float).ravel() for branches in of_bodies])
+def _materials(scene: Scene) -> Entries:
+    """The materials of all bodies, that of a body outside its layers before those of its layers."""
+    bodies = [(k, material) for k, body in enumerate(scene.bodies) for material in body.materials]
+    rows = [
+        {
+            "body": k,
+            "law": material.law,
+            "young": float(material.young),
+            "nu": float(material.nu),
+            "density": float(material.density),
+            "viscosity": (material.damping.viscosity, material.damping.bulk_viscosity),
+        }
+        for k, material in bodies
+    ]
+    # modulus [Pa] and time [s] of each Maxwell branch behind each other
+    lists: dict[str, list[Sequence[Any]]] = {
+        "law_numbers": [material.numbers for _, material in bodies],
+        "branches": [material.damping.branches for _, material in bodies],
+        "bulk_branches": [material.damping.bulk_branches for _, material in bodies],
+    }
+    entries = table("materials", rows)
+    for name, of_materials in lists.items():
+        flat = [np.array(numbers, dtype=float).ravel() for numbers in of_materials]
+        entries |= joined(f"materials.{name}", flat)
+    return entries
 
 
 def _bodies(scene: Scene, centres: np.ndarray) -> list[Entries]:
@@ -130,11 +145,9 @@ def _bodies(scene: Scene, centres: np.ndarray) -> list[Entries]:
     return [
         {
             "name": body.own_name,
-            "law": body.made_of.law,
-            "young": float(body.made_of.young),
-            "nu": float(body.made_of.nu),
+            "young": float(min(material.young for material in body.materials)),
+            "nu": float(max(material.nu for material in body.materials)),
             "density": float(body.made_of.density),
-            "viscosity": (body.made_of.damping.viscosity, body.made_of.damping.bulk_viscosity),
             "centre": padded(centre),
             "shift": padded(body.start_position - centre),
             "turn": 0.0 if solid else float(body.start_angle),
@@ -161,10 +174,15 @@ def _obstacles(scene: Scene) -> Entries:
 
 
 def mesh_arrays(
-    together: Mesh | SolidMesh, regions: np.ndarray, arcs: Sequence[Arc], of_files: Sequence[int]
+    together: Mesh | SolidMesh,
+    regions: np.ndarray,
+    materials: np.ndarray,
+    arcs: Sequence[Arc],
+    of_files: Sequence[int],
 ) -> Entries:
     """Returns the mesh of all bodies, the arcs, and the arc of each boundary element, -1 if it has
-    none. Region k is body k. `of_files` are the numbers of bodies whose mesh is from a file.
+    none. Region k is body k; `materials` (t,) are the numbers of the materials of cells. `of_files`
+    are the numbers of bodies whose mesh is from a file.
     """
     cells = together.cells if isinstance(together, SolidMesh) else together.triangles
     of_point = np.zeros(len(together.points), dtype=int)
@@ -185,6 +203,7 @@ def mesh_arrays(
         "mesh.points": together.points,
         "mesh.cells": cells,
         "mesh.regions": regions,
+        "mesh.materials": materials,
         "mesh.sides": together.sides,
         "mesh.labels": together.labels,
         "mesh.arc_of": arc_of,

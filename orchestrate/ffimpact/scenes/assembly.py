@@ -191,7 +191,8 @@ def assemble(
         for both, strike in auto.fronts.items()
     ]
     deformable = [k for k, body in enumerate(scene.bodies) if not body.rigid]
-    on_mesh = mesh_arrays(together, regions, arcs, files)
+    first = np.cumsum([0, *(len(body.materials) for body in scene.bodies)])
+    on_mesh = mesh_arrays(together, regions, first[regions] + together.layer_of, arcs, files)
     arrays: Entries = (
         {
             "implicit_why": why,
@@ -742,13 +743,21 @@ def stack(
     meshes: Sequence[mesh.Mesh | solid_mesh.SolidMesh], centres: np.ndarray
 ) -> tuple[mesh.Mesh | solid_mesh.SolidMesh, np.ndarray]:
     """Returns all bodies as one mesh, and the number (t,) of the body of each triangle or
-    tetrahedron.
+    tetrahedron. Behind the sides on the boundary are those between layers, with the label INTERFACE.
     """
     first = np.cumsum([0, *(len(made.points) for made in meshes)])
+    between = [mesh.interfaces(made.elements, made.layer_of) for made in meshes]
     together = type(meshes[0])(
         np.vstack([made.points + centre for made, centre in zip(meshes, centres)]),
         np.vstack([made.elements + k for made, k in zip(meshes, first)]),
-        np.vstack([made.sides + k for made, k in zip(meshes, first)]),
-        np.concatenate([made.labels for made in meshes]),
+        np.vstack(
+            [made.sides + k for made, k in zip(meshes, first)]
+            + [sides + k for sides, k in zip(between, first)]
+        ),
+        np.concatenate(
+            [made.labels for made in meshes]
+            + [np.full(len(sides), mesh.INTERFACE) for sides in between]
+        ),
+        layers=np.concatenate([made.layer_of for made in meshes]),
     )
     return together, np.repeat(np.arange(len(meshes)), [len(made.elements) for made in meshes])
