@@ -128,11 +128,11 @@ def entries(scene: Scene) -> Entries:
                "spin": padded(body.spin), "thickness": 1e30, "of_file": 0} for b, body in enumerate(scene.bodies)]
     obstacles = [{"name": f"obstacle{k}", "kind": SHAPES.index(kind.replace("sphere", "circle")), "velocity": padded(velocity)}
                  for k, (kind, _, velocity) in enumerate(scene.obstacles, 1)]
-    pairs = [{"first": a, "second": b, "values": [float(x) for x in values]} for a, b, *values in scene.pairs]
+    pairs = [{"first": a, "second": b, "values": [*map(float, values), 1.0]} for a, b, *values in scene.pairs]
     spheres = [Arc(b, padded(sphere[:3]), np.zeros(3), float(sphere[3])) for b, body in enumerate(scene.bodies) for sphere in body.spheres]
     meshes = [_mesh(body, scene.copies) for body in scene.bodies]
     return (parameter_arrays({"penalty": 1.0, "slip_velocity": 1.0, "friction_dynamic": 0.0})
-            | {"script": "bodies-3d", "symmetry_factor": scene.copies, "implicit_why": "", "relaxed_step": 1e300, "front_transit": 0.0, "front_rise": 0.0}
+            | {"script": "bodies-3d", "symmetry_factor": scene.copies, "implicit_why": "", "relaxed_step": 1e300, "friction": np.zeros(0), "front_transit": 0.0, "front_rise": 0.0}
             | table("bodies", bodies) | table("materials", materials) | joined("materials.law_numbers", [np.zeros(0)] * len(bodies))
             | joined("materials.branches", [np.zeros(0)] * len(bodies)) | joined("materials.bulk_branches", [np.zeros(0)] * len(bodies)) | table("obstacles", obstacles)
             | joined("obstacles.numbers", [np.array(numbers, float) for _, numbers, _ in scene.obstacles]) | table("pairs", pairs)

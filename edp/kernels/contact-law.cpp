@@ -65,11 +65,19 @@ void Law::regularise(double vOverEps, double &phi, double &dPhi) const {
   }
 }
 
-void Law::muPhiAt(double v, const Candidate &a, double &muPhi, double &slope) const {
+Law::MuPhi Law::muPhiAt(double v, const Candidate &a, double tN) const {
+  double muPhi, slope;
   const double pi = 3.14159265358979323846, vOverEps = std::abs(v) / slipVelocity,
     low = a.muStatic * (1 - bridge) / 2, rise = (a.muDynamic - low) / bridge;
   double phi = 0, dPhi = 0, mu = a.sticks ? a.muStatic : a.muDynamic, dMu = 0;
   regularise(vOverEps, phi, dPhi);
+  if (a.weight > 0) {                      // mu_f (|v|, p)
+    if (tN <= 0) return {};
+    const expressions::Expression::Dual of = friction->at({std::abs(v), tN / a.weight, 0});
+    return {(v < 0 ? -1 : 1) * of.value * phi,
+            of.value * dPhi / slipVelocity + of.slope[0] * phi,
+            (v < 0 ? -1 : 1) * of.slope[1] * phi / a.weight};
+  }
   if (!jumps) {   // mu_f falls smoothly from mu_e at eps to mu_d at 2 eps, as a half cosine
     const double half = (a.muStatic - a.muDynamic) / 2;
     mu = a.muDynamic + half * (1 + std::cos(pi * std::max(0., std::min(1., vOverEps - 1))));
@@ -89,38 +97,43 @@ void Law::muPhiAt(double v, const Candidate &a, double &muPhi, double &slope) co
       slope = muPhi >= a.muDynamic ? 0 : (vOverEps < 1 - bridge ? a.muStatic / 2 : rise);
     }
   }
-  if (v < 0) muPhi = -muPhi;
-  slope /= slipVelocity;
+  return {v < 0 ? -muPhi : muPhi, slope / slipVelocity, 0};
 }
 
-void Law::muPhiVector(const double *v, const Candidate &a, double *muPhi,
-                      double slope[2][2]) const {
-  if (slips == 1) return muPhiAt(v[0], a, muPhi[0], slope[0][0]);
+Law::MuPhiVector Law::muPhiVector(const double *v, const Candidate &a, double tN) const {
+  if (slips == 1) {
+    const MuPhi of = muPhiAt(v[0], a, tN);
+    return {{of.size, 0}, {{of.slope, 0}, {0, 0}}, {of.byNormal, 0}};
+  }
   const double speed = std::hypot(v[0], v[1]), scale = std::max(speed, 1e-300),
     e[2] = {v[0] / scale, v[1] / scale};
-  double size, along;                          // mu_f phi and its derivative at |v|
-  muPhiAt(speed, a, size, along);
-  const double across = speed > 1e-9 * slipVelocity ? size / speed : along,
-    more = std::max(along, 0.) - across;
-  for (int i = 0; i < 2; i++) muPhi[i] = size * e[i];
-  for (int i = 0; i < 2; i++) for (int j = 0; j < 2; j++)
-    slope[i][j] = (i == j ? across : 0) + more * e[i] * e[j];
+  const MuPhi of = muPhiAt(speed, a, tN);
+  const double across = speed > 1e-9 * slipVelocity ? of.size / speed : of.slope,
+    more = std::max(of.slope, 0.) - across;
+  MuPhiVector vector;
+  for (int i = 0; i < 2; i++) {
+    vector.size[i] = of.size * e[i];
+    vector.byNormal[i] = of.byNormal * e[i];
+    for (int j = 0; j < 2; j++)
+      vector.slope[i][j] = (i == j ? across : 0) + more * e[i] * e[j];
+  }
+  return vector;
 }
 
 void Law::at(const Candidate &a, const double *x, const double *linearisedAt, Forces &f) const {
   normal(a.vN0, x[0], a.k, f.t[0], f.slope[0][0]);
   if (slips == 0) return;
-  double v[2], muPhi[2], slope[2][2];
+  double v[2];
   for (int i = 0; i < slips; i++) v[i] = x[1 + i] / dt;
   const double *vOfLaw = linearisedAt ? linearisedAt : v;
-  muPhiVector(vOfLaw, a, muPhi, slope);
+  MuPhiVector of = muPhiVector(vOfLaw, a, f.t[0]);
   for (int i = 0; i < slips; i++) for (int j = 0; j < slips && linearisedAt; j++)
-    muPhi[i] += slope[i][j] * (v[j] - vOfLaw[j]);
+    of.size[i] += of.slope[i][j] * (v[j] - vOfLaw[j]);
   for (int i = 0; i < slips; i++) {
-    f.t[1 + i] = muPhi[i] * f.t[0];   // (11), (12): -t_T = mu_f phi(v_T) |t_N|; |t_T| <= mu_f t_N
-    f.slope[1 + i][0] = muPhi[i] * f.slope[0][0];
+    f.t[1 + i] = of.size[i] * f.t[0];   // (11), (12): -t_T = mu_f phi(v_T) |t_N|; |t_T| <= mu_f t_N
+    f.slope[1 + i][0] = (of.size[i] + of.byNormal[i] * f.t[0]) * f.slope[0][0];
     f.slope[0][1 + i] = 0;
-    for (int j = 0; j < slips; j++) f.slope[1 + i][1 + j] = slope[i][j] * f.t[0] / dt;
+    for (int j = 0; j < slips; j++) f.slope[1 + i][1 + j] = of.slope[i][j] * f.t[0] / dt;
   }
 }
 

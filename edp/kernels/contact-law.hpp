@@ -3,7 +3,8 @@
 // (11)-(13), t_T = -mu_f(v_T) phi(v_T) |t_N|, v_T = slip/dt. k has the weight of the point. Exports
 // Law, Candidate, Forces.
 #pragma once
-#include "tensors.hpp"
+#include <memory>
+#include "expression.hpp"
 
 namespace contact {
 
@@ -13,8 +14,8 @@ using tensors::stepEnd;
 enum Regularization { linear, linearPrinted, sqrtOf, tanhOf };
 
 // A contact candidate: penetration at the start of the step [m], stiffness, coefficients of
-// friction, stick or slip status.
-struct Candidate { double vN0, k, muStatic, muDynamic; bool sticks; };
+// friction, stick or slip status; weight [m, m2] if mu_f is the expression of the law, else 0.
+struct Candidate { double vN0, k, muStatic, muDynamic;  bool sticks;  double weight = 0; };
 struct Forces { double t[3], slope[3][3]; };    // (t_N, -t_T) and d/d(penetration, slip)
 
 // m, epsilon [m/s], the share of epsilon that is a ramp, the step [s], the retardation time tau of
@@ -24,6 +25,8 @@ struct Law {
   double exponent = 1, slipVelocity = 1, bridge = 0.01, dt = 1, retardation = 0;
   bool jumps = false;
   int slips = 0, lawInstant = stepMean, regularization = linear;
+  // mu_f of |v_T| [m/s] and the pressure t_N/weight [Pa], in place of coefficients
+  std::shared_ptr<const expressions::Expression> friction;
 
   double penaltyForce(double vN, double k) const { return vN > 0 ? k * std::pow(vN, exponent) : 0; }
 
@@ -43,15 +46,19 @@ struct Law {
   // `bridge` of eps replaces the jump.
   void regularise(double vOverEps, double &phi, double &dPhi) const;
 
-  // mu_f phi [-] (12), (13) and its derivative [s/m] at the velocity v [m/s]. With a jump of mu_f
+  // mu_f phi [-] (12), (13) with its derivatives by v [s/m] and by t_N.
+  struct MuPhi { double size = 0, slope = 0, byNormal = 0; };
+
+  // mu_f phi at the velocity v [m/s] under the normal force tN. With a jump of mu_f
   // a step can have two solutions. The status selects the branch, mu_e phi or mu_d phi, and each
   // branch continues monotonically across epsilon. A point keeps its status while its velocity
   // agrees; then the converged solution satisfies the law as printed.
-  void muPhiAt(double v, const Candidate &a, double &muPhi, double &slope) const;
+  MuPhi muPhiAt(double v, const Candidate &a, double tN) const;
 
-  // The vector mu_f phi(|v|) e, e = v/|v|, of `slips` components, and its derivative
+  // The vector mu_f phi(|v|) e, e = v/|v|, of `slips` components, and its derivatives: by v
   // (mu_f phi)' e e^T + mu_f phi/|v| (I - e e^T). A negative (mu_f phi)' counts as 0 in space.
-  void muPhiVector(const double *v, const Candidate &a, double *muPhi, double slope[2][2]) const;
+  struct MuPhiVector { double size[2], slope[2][2], byNormal[2]; };
+  MuPhiVector muPhiVector(const double *v, const Candidate &a, double tN) const;
 
   // Forces on a point with the penetration x[0] at the end of the step and the slip x[1], x[2] in
   // it. If the velocity linearisedAt is not null, mu_f phi is linearised there.

@@ -200,7 +200,7 @@ void Contact::restore() {
 
 Candidate Contact::point(long s) const {
   return {gaps.q0[s], script.k[s], script.muStatic[s], script.muDynamic[s],
-          script.sticks[s] == 1};
+          script.sticks[s] == 1, script.weight[s]};
 }
 
 void Contact::takeUnknowns() {

@@ -263,8 +263,12 @@ static void addContactLaw() {
     touching.problem.sticksBelow = sticksBelow;
     touching.problem.mostStatusChanges = int(mostStatusChanges);
   });
+  add("kernelFriction", +[](Reals code) {
+    touching.law.friction = std::make_shared<expressions::Expression>(copied<double>(code));
+  });
   add("kernelTractions", +[](Reals vN0, Reals gapSlip, Reals k, Reals muStatic, Reals muDynamic,
-                            Ints sticks, double dt, long lawInstant, Reals t, Reals slope) {
+                            Reals weight, Ints sticks, double dt, long lawInstant, Reals t,
+                            Reals slope) {
     // Forces t on n points and their slopes by kernelLaw, for verification. vN0 (n): penetrations
     // at the start; gapSlip (m n): those at the end and the slips. slope: row i, column j at (3 i +
     // j) n.
@@ -276,7 +280,8 @@ static void addContactLaw() {
       contact::Forces forces = {};
       double x[3] = {};
       for (long c = 0; c < m; c++) x[c] = gapSlip[c * n + i];
-      law.at({vN0[i], k[i], muStatic[i], muDynamic[i], sticks[i] == 1}, x, nullptr, forces);
+      law.at({vN0[i], k[i], muStatic[i], muDynamic[i], sticks[i] == 1, weight[i]}, x, nullptr,
+             forces);
       for (long c = 0; c < m; c++) t[c * n + i] = forces.t[c];
       for (long c = 0; c < 9; c++) slope[c * n + i] = forces.slope[c / 3][c % 3];
     }
@@ -292,9 +297,10 @@ static void archiveAll(Archive &archive) {
 static void addStep() {
   // Kernels of contact.hpp, step.hpp and explicit.hpp. The first two are called once.
   add("kernelContactArrays", +[](Reals q1, Reals gapSlip, Reals candidateForces, Reals force,
-                                Reals k, Reals muStatic, Reals muDynamic, Ints sticks) {
+                                Reals k, Reals muStatic, Reals muDynamic, Reals weight,
+                                Ints sticks) {
     touching.script = {{&q1}, {&gapSlip}, {&candidateForces}, {&force}, {&k}, {&muStatic},
-                       {&muDynamic}, {&sticks}};
+                       {&muDynamic}, {&weight}, {&sticks}};
   });
   add("kernelStepArrays", +[](Reals d, Reals v, Reals frameMotion, Reals seconds, Ints counts,
                              Sparse translations) {

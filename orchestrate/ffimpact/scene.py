@@ -48,6 +48,9 @@ __all__ = ["RUN", "SCENES", "Scene", "absent", "built_in", "load", "read", "read
 
 # Entries, beside those of contact, on which the motion up to the first contacts does not depend.
 UNMOVED = (*SIZES, "mesh_stretch", "accuracy", "dt", "fields", "modes")
+# Largest slip velocity [m/s] and coefficient of an expression of friction; the modulus [Pa] that gives
+# the pressures of rigid bodies alone.
+FASTEST, LARGEST_MU, LIKE_STEEL = 100.0, 1e3, 2e11
 LONG = 100  # number of items from which on a list is a table
 
 
@@ -288,8 +291,22 @@ class Scene(models.Top):
 
     @cached_property
     def contact_values(self) -> dict[str, Value]:
-        """The parameters of [contact], likewise."""
-        return {name: _value(self.contact, name) for name in CONTACT}
+        """The parameters of [contact], likewise. With an expression of friction the coefficients are
+        its value for slow slip under a hundredth of the softest modulus.
+        """
+        values = {name: _value(self.contact, name) for name in CONTACT}
+        if self.contact.friction:
+            mu = float(self.contact.friction_at(np.zeros(1), np.array([self._pressures[1]]))[0])
+            values |= {"friction_static": mu, "friction_dynamic": mu}
+        return values
+
+    @property
+    def _pressures(self) -> tuple[float, float, float]:
+        """A small, a usual and the largest pressure [Pa] of contacts of the softest body."""
+        young = min(
+            (body.made_of.young for body in self.bodies if not body.rigid), default=LIKE_STEEL
+        )
+        return 1e-8 * young, 1e-2 * young, young
 
     @cached_property
     def pairs(self) -> list[Pair]:
@@ -444,6 +461,7 @@ class Scene(models.Top):
         self._resolve()
         overlap.refuse_overlaps(self)
         needs.refuse(self)
+        self._refuse_expression()
         self._refuse_friction()
         self._refuse_start()
         for k, body in enumerate(self.bodies, 1):
@@ -495,6 +513,23 @@ class Scene(models.Top):
                         f"{table.at(name)}: '{table.value_text(name)}' beside start = 'equilibrium', where all is at "
                         "rest (accepted: 0, or start = 'given')"
                     )
+
+    def _refuse_expression(self) -> None:
+        """Raises BadInput if an expression of friction is negative or not finite, for slip up to
+        FASTEST and pressures up to the softest modulus.
+        """
+        if not self.contact.friction:
+            return
+        low, _, high = self._pressures
+        slips = np.append(0.0, np.geomspace(1e-9, FASTEST, 200))
+        v, p = (axis.ravel() for axis in np.meshgrid(slips, np.geomspace(low, high, 60)))
+        mu = self.contact.friction_at(v, p)
+        if (wrong := ~((mu >= 0) & (mu <= LARGEST_MU))).any():
+            k = int(wrong.argmax())
+            raise BadInput(
+                f"{self.contact.at('friction')}: is {mu[k]:g} at v = {v[k]:.3g} m/s, p = {p[k]:.3g} Pa (accepted: "
+                f"0 to {LARGEST_MU:g} everywhere up to {FASTEST:g} m/s and {high:.3g} Pa)"
+            )
 
     def _refuse_friction(self) -> None:
         """Raises BadInput if a dynamic coefficient is larger than the static one, in [contact] or in a

@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Annotated, Any, ClassVar
 
+import numpy as np
 from pydantic import BeforeValidator, PrivateAttr
 
 from ..failure import brief
+from ..geometry import implicit
 from .dimension import Dimension
 from .entries import Entries, no_more, several
 from .parameter import Parameter, Value, real, word
-from .rules import Partners
+from .rules import Expression, Partners
 
 __all__ = ["CONTACT", "Contact", "OWN", "OfContact", "Pair"]
 
@@ -94,6 +96,12 @@ class Contact(OfContact):
 
     nested = {"pair": Pair}
     default_static = 0.0
+    friction: Annotated[
+        str | None,
+        Expression(),
+        "mu_f of (12) as an expression of the slip velocity v [m/s] and the pressure p [Pa], in "
+        "place of both coefficients: '0.3 + 0.4*exp(-v/0.05)'",
+    ] = None
     exponent: Annotated[float | None, real(1, 1, 4, "-"), "contact exponent m of (10)"] = None
     slip_velocity: Annotated[
         float | str | None,
@@ -125,6 +133,31 @@ class Contact(OfContact):
     ] = None
     pair: Annotated[list[Pair] | None, BeforeValidator(several)] = None
 
+    def refusals(self) -> Iterator[tuple[str, str]]:
+        yield from super().refusals()
+        if self.friction is None:
+            return
+        for name in ("friction_static", "friction_dynamic"):
+            if name in self:
+                yield name, ": beside friction (accepted: one of the two)"
+        if self.regularization == "linear-printed":
+            yield (
+                "regularization",
+                ": 'linear-printed' beside friction (accepted: linear|sqrt|tanh)",
+            )
+
+    @property
+    def friction_code(self) -> tuple[float, ...]:
+        """The expression `friction` of v and p as the kernels evaluate it; empty without one."""
+        if self.friction is None:
+            return ()
+        return implicit.program(self.at("friction"), self.friction, "vp")
+
+    def friction_at(self, v: np.ndarray, p: np.ndarray) -> np.ndarray:
+        """mu_f (n,) of the expression at slip velocities [m/s] (n,) and pressures [Pa] (n,)."""
+        with np.errstate(all="ignore"):
+            return implicit.run(self.friction_code, np.column_stack([v, p]))[0]
+
     @classmethod
     def refused(cls, name: str, value: Any, dimension: Dimension | None) -> str:
         if name.startswith("pairing"):
@@ -132,11 +165,13 @@ class Contact(OfContact):
         return super().refused(name, value, dimension)
 
 
-CONTACT = tuple(name for name in Contact.model_fields if name not in ("self_contact", "pair"))
+CONTACT = tuple(
+    name for name in Contact.model_fields if name not in ("self_contact", "pair", "friction")
+)
 
 
 def _of_all(name: str, value: Any) -> str:
     """The message about an entry that belongs to the contact of the whole scene; else empty."""
-    if name not in CONTACT:
+    if name not in (*CONTACT, "friction"):
         return ""
     return f": '{brief(value)}' holds for the whole scene (accepted: in [contact]; here {', '.join(OWN)})"

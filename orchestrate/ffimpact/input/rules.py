@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..failure import BadInput, brief, suggestion
+from ..geometry import implicit
 from ..geometry.limits import LONGEST, SHORTEST
 from .dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
 from .parameter import Parameter, Rule
@@ -21,6 +22,7 @@ from .parameter import Parameter, Rule
 __all__ = [
     "ALIAS",
     "Components",
+    "Expression",
     "Flag",
     "Function",
     "InSpace",
@@ -356,6 +358,20 @@ class Text(Rule):
 
     def schema(self) -> dict[str, Any]:
         return {"type": "string"}
+
+
+@dataclass(frozen=True)
+class Expression(Text):
+    """An expression of the slip velocity v and the pressure p."""
+
+    accepted: str = "an expression of v and p in quotes"
+
+    def checked(self, value: Any, dimension: Dimension | None) -> Any:
+        try:
+            implicit.program("", value, "vp")
+        except BadInput as error:
+            raise BadInput(str(error)) from None
+        return value
 
 
 @dataclass(frozen=True)

@@ -265,6 +265,8 @@ def _gases(summary: Table) -> list[str]:
 
 def _friction(contact: Table) -> str:
     friction = contact.get("friction_static")
+    if "friction" in contact:
+        return f", friction {contact['friction']}"
     return (
         f", friction {friction:g} static, {contact['friction_dynamic']:g} dynamic"
         if friction

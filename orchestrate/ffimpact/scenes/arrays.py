@@ -84,8 +84,16 @@ def scene_arrays(scene: Scene, centres: np.ndarray, pairs: list[dict[str, Value]
     """Returns bodies, obstacles, pairs and rigid bodies. `centres` (bodies, axes) [m] are those in
     the mesh; `pairs` has the contact parameters of scene.pairs.
     """
+    replaces = scene.contact.friction is not None  # pairs with coefficients an expression
     of_pairs = [
-        {"first": pair.first, "second": pair.second, "values": [float(x) for x in own.values()]}
+        {
+            "first": pair.first,
+            "second": pair.second,
+            "values": [
+                *map(float, own.values()),
+                float(replaces and "friction_static" in pair.own),
+            ],
+        }
         for pair, own in zip(scene.pairs, pairs)
     ]
     rigid = [
@@ -94,7 +102,7 @@ def scene_arrays(scene: Scene, centres: np.ndarray, pairs: list[dict[str, Value]
         if body.rigid
     ]
     return (
-        {"script": scene.kind.script}
+        {"script": scene.kind.script, "friction": np.array(scene.contact.friction_code)}
         | {"symmetry_factor": 2 if scene.kind is AXISYMMETRIC else copies(scene)}
         | table("bodies", _bodies(scene, centres))
         | _materials(scene)

@@ -486,8 +486,19 @@ def used_tables(
         for table, obstacle in zip(scene.content.get("obstacle", []), scene.obstacles)
     ]
     contact: Table = {key: values[key] for key in scene.contact_values}
+    if scene.contact.friction:
+        kept = {key: contact[key] for key in contact if not key.startswith("friction_")}
+        contact = {"friction": scene.contact.friction, **kept}
+        contact["friction_transition"] = values["friction_transition"]
     contact |= {"self_contact": scene.contact.self_contact or "auto"}
-    contact |= {"pair": [{"bodies": names(pair)} | own for pair, own in zip(scene.pairs, pairs)]}
+    of_expression = ("friction_static", "friction_dynamic") if scene.contact.friction else ()
+    contact |= {
+        "pair": [
+            {"bodies": names(pair)}
+            | {key: own[key] for key in own if key not in of_expression or key in pair.own}
+            for pair, own in zip(scene.pairs, pairs)
+        ]
+    }
     top = {
         "title": scene.title or scene.name,
         "script": scene.kind.script,
