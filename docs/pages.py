@@ -25,6 +25,7 @@ from ffimpact.input import (
     bodies,
     conditions,
     contact,
+    layers,
     materials,
     obstacles,
     parameters,
@@ -154,6 +155,9 @@ def entries() -> str:
         "Bodies", "`[[body]]`, `Body` in Python: what bodies of all shapes have.", bodies.Body
     )
     text += kinds("shape", shapes.BODIES, bodies.Body)
+    text += table_of(
+        "Layers", "`[[body.layer]]`, `Layer`: parts with a material of their own.", layers.Layer
+    )
     text += table_of("Supports", "`[[body.support]]`, `Support`.", conditions.Support)
     text += table_of(
         "Loads", "`[[body.load]]`, `Load`: one of traction, pressure and gas.", conditions.Load

@@ -31,6 +31,9 @@ from .input.contact import (
     Contact as Contact,
     Pair as Pair,
 )
+from .input.layers import (
+    Layer as Layer,
+)
 from .input.materials import (
     Incompressible as Incompressible,
     Material as Material,

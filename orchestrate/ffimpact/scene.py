@@ -404,19 +404,20 @@ class Scene(models.Top):
             supports=sum(len(body.supports) for body in self.bodies),
             loads=len(loads),
             gases=tuple(k for k, load in enumerate(loads, 1) if load.kind == "gas"),
+            layers=sum(len(body.layers) for body in self.bodies),
         )
 
     @property
     def damped(self) -> bool:
         """Whether any body is damped."""
-        return any(body.made_of.damped for body in self.bodies)
+        return any(material.damped for body in self.bodies for material in body.materials)
 
     @property
     def _projected(self) -> bool:
         """Whether the volume of the elements is projected. This needs quadratic elements, a
         `volume` that is not "plain" and a body with nu above STIFFEST.
         """
-        stiffest = max(body.made_of.nu for body in self.bodies)
+        stiffest = max(material.nu for body in self.bodies for material in body.materials)
         return (
             self.values["volume"] != "plain" and self.values["degree"] == 2 and stiffest > STIFFEST
         )
@@ -466,8 +467,10 @@ class Scene(models.Top):
         self._refuse_start()
         for k, body in enumerate(self.bodies, 1):
             prefix = f"body.{k}." if len(self.bodies) > 1 else ""
-            for entry, text in body.made_of.refusals():
-                raise BadInput(f"{prefix}{entry}{text}")
+            prefixes = [prefix, *(f"{layer.entry}." for layer in body.layers)]
+            for own, material in zip(prefixes, body.materials):
+                for entry, text in material.refusals():
+                    raise BadInput(f"{own}{entry}{text}")
         mirror.copies(self)
 
     def _resolve(self) -> None:

@@ -60,7 +60,7 @@ def names_of(text: str, call: str) -> list[tuple[str, str]]:
 
 @pytest.mark.parametrize("table, kind, name", [
     (0, "whole", "columns"), (0, "part", "columnsOfBody"), (1, "part", "columnsOfSupport"),
-    (2, "part", "columnsOfGas")])
+    (2, "part", "columnsOfGas"), (3, "part", "columnsOfLayer")])
 def test_scripts_write_the_columns_of_the_table(table, kind, name):
     """columns.idp lists the names of the table in its order, under the same conditions."""
     text = (SCRIPTS / "columns.idp").read_text()

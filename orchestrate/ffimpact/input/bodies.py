@@ -12,24 +12,27 @@ from functools import cached_property
 from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
-from pydantic import BeforeValidator, model_validator
+from pydantic import BeforeValidator
 
-from ..failure import BadInput, brief, gathered
+from ..failure import BadInput, gathered
 from ..geometry import place_functions, tumbling
 from ..geometry.limits import LONGEST, SHORTEST
 from ..geometry.outlines import Loop, Outline, Shape, Turn
 from ..geometry.place_functions import Field
 from ..mesh import mesh, revolution, solids
+from ..mesh.layers import Layers
 from ..mesh.solid_file import GEOMETRIES
 from ..mesh.solid_mesh import SolidMesh
 from ..mesh.solids import Solid
-from .conditions import Load, Support, refuse_mixed_gases
+from .conditions import Load, Part, Support, refuse_mixed_gases
 from .dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID, Dimension
 from .entries import several
+from .layers import THINNEST, Layer
 from .materials import (
     LAWS,
     MATERIAL,
     NOT_RIGID,
+    MadeOf,
     Material,
     OfMaterial,
     accepted,
@@ -57,11 +60,12 @@ SIZES = ("mesh_size", "contact_mesh_size")
 MEAN = 24  # number of points along an axis from which the mean of a field follows
 BESIDE = 0.01  # distance of the box of a body from its sampled points, over its extents
 FINEST = 1 / 20000  # smallest element size over the half thickness of a body
+MOST_LAYERS = 100
 MOST_STRETCH = 20.0  # largest accepted ratio of the lengths of an element
 FIELDS = ("initial_velocity", "initial_displacement")  # entries that are functions of place
 
 
-class Body(OfMaterial):
+class Body(MadeOf):
     """The entries of bodies of all shapes; the shapes are the classes below.
 
     `material` sets law, young, nu, density and damping together. A rigid body needs only a density
@@ -70,9 +74,9 @@ class Body(OfMaterial):
 
     shape: ClassVar[str]
     heading = ("shape",)
-    aliases = {"material": "a Material"}
     dimensions: ClassVar[tuple[Dimension, ...]] = (PLANE_STRAIN,)
-    nested = {"support": Support, "load": Load}
+    rounds: ClassVar[str] = ""  # what the radius of a layer is measured from: centre, axis
+    nested = {"support": Support, "load": Load, "layer": Layer}
     only = {
         "mesh_stretch": (PLANE_STRAIN, AXISYMMETRIC),
         "angle": (PLANE_STRAIN, SOLID), "turn": (SOLID,), "spin": (PLANE_STRAIN, SOLID),
@@ -97,6 +101,7 @@ class Body(OfMaterial):
     ] = None
     support: Annotated[list[Support] | None, BeforeValidator(several)] = None
     load: Annotated[list[Load] | None, BeforeValidator(several)] = None
+    layer: Annotated[list[Layer] | None, BeforeValidator(several)] = None
     rigid: Annotated[bool | None, Flag(), "moves without deforming"] = None
     mass: Annotated[
         float | None, number(1e-12, LONGEST, ""), "of a rigid body [kg, in the plane kg/m]"
@@ -134,20 +139,6 @@ class Body(OfMaterial):
         Placed | None, OfPlace(), "of the points of the body [m], which deforms it"
     ] = None
 
-    @model_validator(mode="before")
-    @classmethod
-    def _of_material(cls, entries: Any) -> Any:
-        """Replaces the entry `material` by the entries of the material; entries of the body win."""
-        if not isinstance(entries, dict):
-            return entries
-        if not isinstance(entries.get("material"), Material | None):
-            text = brief(entries["material"])
-            raise BadInput(
-                f"material: '{text}' is no material (accepted: NeoHookean(young=..., nu=..., density=...), say)"
-            )
-        own = {name: value for name, value in entries.items() if name != "material"}
-        return (entries["material"].table() if "material" in entries else {}) | own
-
     def refusals(self) -> Iterator[tuple[str, str]]:
         if self.velocity is not None and (self.speed is not None or self.direction is not None):
             yield (
@@ -168,11 +159,15 @@ class Body(OfMaterial):
                 "angle",
                 f": '{self.value_text('angle')}' stands beside turn (accepted: {accepted})",
             )
+        if len(self.layers) > MOST_LAYERS:
+            yield "layer", f": {len(self.layers)} of them (accepted: up to {MOST_LAYERS})"
         if not self.rigid:
             for name in [name for name in ("mass", "inertia") if name in self][:1]:
                 yield name, ": is of a rigid body (accepted: with rigid = true, or density)"
             return
-        for name in [name for name in (*NOT_RIGID, "support", *FIELDS) if name in self][:1]:
+        for name in [name for name in (*NOT_RIGID, "support", "layer", *FIELDS) if name in self][
+            :1
+        ]:
             accepted = "density, or mass; without rigid = true"
             yield name, f": a rigid body has none (accepted: {accepted})"
         if "mass" in self and "density" in self:
@@ -325,9 +320,82 @@ class Body(OfMaterial):
             fields["initial_velocity"] = rest
         return fields
 
+    @property
+    def layers(self) -> list[Layer]:
+        """Its layers."""
+        return self.layer or []
+
     @cached_property
+    def regions(self) -> Layers:
+        """The regions of its layers about its centre: smaller radii and later regions win. Raises
+        BadInput if the radius of a layer is not accepted.
+        """
+        numbered = sorted(
+            enumerate(self.layers, 1), key=lambda item: -(item[1].radius or -math.inf)
+        )
+        parts = [self._region(layer) for _, layer in numbered]
+        return Layers(parts, [k for k, _ in numbered], self.outline.reach)
+
+    def _region(self, layer: Layer) -> Part:
+        """The region of a layer about the centre of the body."""
+        if layer.radius is None:
+            part = layer.part
+            if self.dimension is AXISYMMETRIC and not part.is_mirrored(0, np.eye(2)):
+                raise BadInput(
+                    f"{layer.at('where')}: '{layer.value_text('where')}' is not of revolution (accepted: its own mirror "
+                    "image in the axis x = 0)"
+                )
+            return part
+        if not self.rounds:
+            raise BadInput(
+                f"{layer.at('radius')}: {layer.radius:g}, but '{self.own_name}' is not round (accepted: where)"
+            )
+        if self.rounds == "centre":
+            centre = np.zeros(self.dimension.axes)
+            return Part(layer.at("radius"), "", "ball", (centre, np.array(layer.radius)))
+        if self.dimension is SOLID:
+            raise BadInput(
+                f"{layer.at('radius')}: about the axis of a body in space (accepted: of revolution, or where)"
+            )
+        across = np.array([layer.radius, math.inf])
+        return Part(layer.at("radius"), "", "box", (-across, across))
+
+    @property
+    def radii(self) -> tuple[float, float]:
+        """Its inner and outer radius [m], 0 without them."""
+        return getattr(self, "inner_radius", 0.0), getattr(self, "radius", 0.0)
+
+    def _check_layers(self) -> None:
+        """Raises BadInput for the radius of a layer that is not apart from those of others and of the
+        body.
+        """
+        own = self.radii
+        radii = [layer.radius for layer in self.layers if layer.radius is not None]
+        for layer in self.layers:
+            if layer.radius is None or not self.rounds:
+                continue
+            others = [radius for radius in radii if radius is not layer.radius]
+            apart = min(abs(layer.radius - radius) for radius in (*own, *others))
+            if apart < THINNEST or not own[0] < layer.radius < own[1]:
+                raise BadInput(
+                    f"{layer.at('radius')}: {layer.radius:g} (accepted: between {own[0]:g} and {own[1]:g}, the radii of "
+                    f"'{self.own_name}', and {THINNEST:g} m apart from them and from other layers)"
+                )
+        _ = self.regions
+
+    @cached_property
+    def materials(self) -> list[Material]:
+        """Its material outside of its layers, and those of its layers."""
+        own = self._own_material()
+        return [own, *(completed(layer, own) for layer in self.layers)]
+
+    @property
     def made_of(self) -> Material:
-        """Its material: its own entries, else those at the top of the scene, else defaults."""
+        """Its material outside of its layers."""
+        return self.materials[0]
+
+    def _own_material(self) -> Material:
+        """Its own entries, else those at the top of the scene, else defaults."""
         top = self.context.top
         assert isinstance(top, OfMaterial)
         if not self.rigid:
@@ -340,11 +408,6 @@ class Body(OfMaterial):
         # For a body of revolution with a mass this density is only a scale.
         by_mass = self.mass / self.outline.content if self.mass else None
         return rigid(float(by_mass or self.density or top.density or 0.0))
-
-    @property
-    def materials(self) -> list[Material]:
-        """Its material outside of its layers, and those of its layers."""
-        return [self.made_of]
 
     def _size(self, name: str) -> float:
         """An element size [m] of the body, else that at the top of the scene; 0 is automatic."""
@@ -392,21 +455,43 @@ class Body(OfMaterial):
         return tuple(float(E[pair]) for pair in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)))
 
     @property
+    def touching(self) -> Material:
+        """The softest of the materials on its surface, which decides penalty and sizes in contact."""
+        if not self.layers:
+            return self.made_of
+        numbers = np.unique(self.regions.at(self.outline.points)).tolist()
+        materials: list[Material] = [self.materials[k] for k in numbers]
+        return min(materials, key=lambda material: material.young)
+
+    @cached_property
+    def mean_density(self) -> float:
+        """Its mass over its area or volume [kg/m3], with layers by points on a grid: for estimates."""
+        if not self.layers:
+            return self.made_of.density
+        low, high = self.outline.points.min(axis=0), self.outline.points.max(axis=0)
+        grid = np.meshgrid(*(np.linspace(*ends, MEAN) for ends in zip(low, high)))
+        points = np.stack(grid, axis=-1).reshape(-1, len(low))
+        points = points[self.outline.gap(points) < 0]
+        weight = abs(points[:, 0]) if self.dimension is AXISYMMETRIC else np.ones(len(points))
+        densities = np.array([material.density for material in self.materials])
+        return float(np.average(densities[self.regions.at(points)], weights=weight))
+
+    @property
     def moduli(self) -> tuple[float, float]:
         """lambda + 2 mu and mu [Pa] in a wave across the body."""
-        return self.made_of.moduli(2 * self.outline.half_thickness)
+        return self.touching.moduli(2 * self.outline.half_thickness)
 
     @property
     def stiffness(self) -> float:
         """Young's modulus [Pa] in an impact, over two, with the stiffening by damping; infinite for a
         rigid body.
         """
-        return math.inf if self.rigid else self.moduli[1] * (1 + self.made_of.nu)
+        return math.inf if self.rigid else self.moduli[1] * (1 + self.touching.nu)
 
     @property
     def wave_speed(self) -> float:
         """The speed c [m/s] of a plane pressure wave, sqrt((lambda + 2 mu)/rho)."""
-        return math.sqrt(self.moduli[0] / self.made_of.density)
+        return math.sqrt(self.moduli[0] / self.touching.density)
 
     @property
     def driven(self) -> bool:
@@ -488,6 +573,7 @@ class Body(OfMaterial):
         """Raises BadInput if its entries do not agree with each other in the scene."""
         self._check_sizes()
         _ = self.made_of, self.moments
+        self._check_layers()
         _ = self.start_velocity
         gathered([support.check for support in self.supports])
         gathered([load.check for load in self.loads])

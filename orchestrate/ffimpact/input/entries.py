@@ -69,8 +69,13 @@ class _Made(ModelMetaclass):
             raise BadInput(
                 f"{cls.__name__}: '{brief(unnamed[0])}' has no name (accepted: entries by name: {accepted})"
             )
-        set_entries = {name: plain(value) for name, value in entries.items() if value is not None}
         model: Any = cls  # a subclass of Entries
+        singular = {f"{name}s": name for name in model.nested}  # supports=[...] is support=[...]
+        set_entries = {
+            singular.get(name, name): plain(value)
+            for name, value in entries.items()
+            if value is not None
+        }
         try:
             made = super().__call__(**set_entries)
         except ValidationError as error:

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from typing import Annotated, Any
 
 import numpy as np
+from pydantic import model_validator
 
 from ..failure import BadInput, brief
 from .damping import Branches, Damping, flat
@@ -23,6 +24,7 @@ __all__ = [
     "LAW_ENTRIES",
     "LAW_WORDS",
     "MATERIAL",
+    "MadeOf",
     "Material",
     "MooneyRivlin",
     "NOT_RIGID",
@@ -115,6 +117,26 @@ class OfMaterial(Entries):
         if name in ("law_parameters", "relaxation_modulus", "relaxation_time"):
             return no_more(name, value)
         return super().refused(name, value, dimension)
+
+
+class MadeOf(OfMaterial):
+    """The entries of a material of a body or of a layer, which `material` sets together."""
+
+    aliases = {"material": "a Material"}
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_material(cls, entries: Any) -> Any:
+        """Replaces the entry `material` by the entries of the material; entries of the body win."""
+        if not isinstance(entries, dict):
+            return entries
+        if not isinstance(entries.get("material"), Material | None):
+            text = brief(entries["material"])
+            raise BadInput(
+                f"material: '{text}' is no material (accepted: NeoHookean(young=..., nu=..., density=...), say)"
+            )
+        own = {name: value for name, value in entries.items() if name != "material"}
+        return (entries["material"].table() if "material" in entries else {}) | own
 
 
 class Material(OfMaterial):

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -37,6 +37,7 @@ __all__ = [
     "Points",
     "Polygons",
     "REGIONS",
+    "Region",
     "Rows",
     "Text",
     "Timed",
@@ -441,6 +442,7 @@ class Where(Rule):
     """
 
     sides: tuple[str, ...] = ()
+    what: ClassVar[str] = "part of a boundary"
     meaning: str = "a side, the name of a group of its file, or a region"
 
     @property
@@ -457,13 +459,12 @@ class Where(Rule):
         return f"{', '.join(names)}, the name of a group of its file, or a region {'|'.join(_kinds(dimension))}"
 
     def checked(self, value: Any, dimension: Dimension | None) -> Any:
-        if isinstance(value, str):
+        if isinstance(value, str) and self.sides:
             return value
         kind: Any = value.get("kind") if isinstance(value, dict) else None
         if kind not in _kinds(dimension):
             raise BadInput(
-                f": '{brief(value)}' is no part of a boundary "
-                f"(accepted: {self.accepted_in(dimension)})"
+                f": '{brief(value)}' is no {self.what} (accepted: {self.accepted_in(dimension)})"
             )
         first, second = REGIONS[ALIAS.get(kind, kind)]
         entries = ("kind", first, second)
@@ -504,6 +505,20 @@ class Where(Rule):
                 },
             ]
         }
+
+
+class Region(Where):
+    """A region of space, as of Where."""
+
+    what: ClassVar[str] = "region"
+    meaning: str = "a region"
+
+    def accepted_in(self, dimension: Dimension | None) -> str:
+        return f"a region {'|'.join(_kinds(dimension))}"
+
+    def schema(self) -> dict[str, Any]:
+        region: dict[str, Any] = super().schema()["anyOf"][1]
+        return region
 
 
 def _kinds(dimension: Dimension | None) -> list[str]:

@@ -38,6 +38,7 @@ class Disc(Body):
     """A disc in plane strain."""
 
     shape = "disc"
+    rounds = "centre"
     radius: Annotated[float, number(), "radius"]
 
     def loops(self) -> tuple[Loop, ...]:
@@ -72,6 +73,7 @@ class Ring(Hollow):
     """A ring in plane strain."""
 
     shape = "ring"
+    rounds = "centre"
 
     def loops(self) -> tuple[Loop, ...]:
         return circle_loop(self.radius), circle_loop(self.inner_radius)
@@ -102,6 +104,7 @@ class Ball(Body):
     """A ball, as a body of revolution or in space."""
 
     shape = "ball"
+    rounds = "centre"
     dimensions = (AXISYMMETRIC, SOLID)
     radius: Annotated[float, number(), "radius"]
 
@@ -116,6 +119,7 @@ class Shell(Hollow):
     """A hollow ball, of revolution or in space."""
 
     shape = "shell"
+    rounds = "centre"
     dimensions = (AXISYMMETRIC, SOLID)
 
     def loops(self) -> tuple[Loop, ...]:
@@ -140,6 +144,7 @@ class Cylinder(Body):
     """A cylinder about the y axis, as a body of revolution or in space."""
 
     shape = "cylinder"
+    rounds = "axis"
     dimensions = (AXISYMMETRIC, SOLID)
     radius: Annotated[float, number(), "radius"]
     height: Annotated[float, number(), "height"]
@@ -156,6 +161,7 @@ class Tube(Hollow):
     """A tube about the y axis, of revolution or in space."""
 
     shape = "tube"
+    rounds = "axis"
     dimensions = (AXISYMMETRIC, SOLID)
     height: Annotated[float, number(), "height"]
 

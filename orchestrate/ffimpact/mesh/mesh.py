@@ -41,6 +41,7 @@ __all__ = [
     "GROWTH",
     "INTERFACE",
     "Mesh",
+    "Piece",
     "Sizes",
     "WIDEST",
     "boundary",
@@ -87,6 +88,7 @@ DIGITS = 10
 KEPT = 8  # number of results of gmsh's process that are kept
 _kept: dict[bytes, Any] = {}  # the results by their contents; see in_own_process
 Curve = Callable[[np.ndarray], np.ndarray]  # points (n, 2) [m] at parameters (n,) in [0, 1]
+Piece = tuple[Curve, float, int]  # of a boundary: curve, largest element size [m] on it, label
 Gmsh = Any  # the module gmsh or a part of it, such as gmsh.model, which have no types
 T = TypeVar("T")
 Made = TypeVar("Made", "Mesh", "SolidMesh")
@@ -147,6 +149,7 @@ class Mesh:
 
 
 PAIRS = 1_000_000  # of points, from which on a tree is worth the time in which scipy loads
+SAME = 1e-8  # distance of nodes that are the same, over the size of the body
 MOST_ON_CURVE = 50_000  # largest number of samples of a curve; no run could use a mesh so fine
 
 
@@ -263,8 +266,14 @@ def _outline(geo: Gmsh, half: bool, contact_arc: float) -> tuple[list[int], list
     return arcs, [geo.addLine(top, bottom)] if half else []
 
 
-def mesh_body(boundary: list[list[tuple[Curve, float, int]]], sizes: Sizes, scale: float) -> Mesh:
-    """The mesh inside closed curves, the outer curve first.
+def mesh_body(
+    boundary: list[list[Piece]],
+    sizes: Sizes,
+    scale: float,
+    interfaces: Sequence[tuple[Curve, float]] = (),
+) -> Mesh:
+    """The mesh inside closed curves, the outer curve first, which follows `interfaces` inside it:
+    curves with the largest element size [m] on each, which end on the boundary or on each other.
 
     `boundary` lists the segments of each closed curve: the curve, the largest element size [m] on
     it and its label. The ends of segments become vertices, and all boundary vertices lie on the
@@ -280,21 +289,29 @@ def mesh_body(boundary: list[list[tuple[Curve, float, int]]], sizes: Sizes, scal
     # Holes are reversed; their labels are not, because a hole has a single label.
     loops = [nodes if k == 0 else nodes[::-1] for k, nodes in enumerate(loops)]
     # Lengths are divided by `scale`, because gmsh's tolerances are absolute.
-    bulk, inside = (
-        round(sizes.bulk / scale, DIGITS),
-        [np.round(sizes.squeezed(nodes) / scale, DIGITS) for nodes in loops],
-    )
+    bulk = round(sizes.bulk / scale, DIGITS)
+    nodes, chains = _chains(np.vstack(loops), interfaces, sizes, scale)
+    places = np.round(sizes.squeezed(nodes) / scale, DIGITS)
+    firsts = np.cumsum([0, *(len(loop) for loop in loops)])
+    rings = [np.arange(a, b + 1) for a, b in zip(firsts, firsts[1:])]
+    rings = [np.append(ring[:-1], ring[0]) for ring in rings]
     with gmsh_session() as gmsh:
-        tags, curves = zip(*(_loop(gmsh.model, nodes) for nodes in inside))
+        tags = [gmsh.model.geo.addPoint(x, y, 0) for x, y in places]
+        lines = [_lines(gmsh.model, tags, chain) for chain in (*rings, *chains)]
+        lengths = [
+            np.linalg.norm(np.diff(places[chain], axis=0), axis=1) for chain in (*rings, *chains)
+        ]
         points, triangles, used = _filled(
-            gmsh, curves, lambda field: _grade(field, inside, curves, bulk)
+            gmsh,
+            lines[: len(rings)],
+            lambda field: _grade(field, np.concatenate(lengths), np.concatenate(lines), bulk),
+            [line for chain in lines[len(rings) :] for line in chain],
         )
-        corners = np.searchsorted(
-            used, [gmsh.model.mesh.getNodes(0, tag)[0][0] for tag in np.concatenate(tags)]
-        )
+        corners = np.searchsorted(used, [gmsh.model.mesh.getNodes(0, tag)[0][0] for tag in tags])
     points = sizes.restored(points[:, :2] * scale)
-    points[corners] = np.vstack(loops)
+    points[corners] = nodes
     triangles = counter_clockwise(points, triangles)
+    corners = corners[: firsts[-1]]
     ends = np.split(corners, np.cumsum([len(nodes) for nodes in loops])[:-1])
     edges = np.vstack([np.column_stack([end_nodes, np.roll(end_nodes, -1)]) for end_nodes in ends])
     return Mesh(points, triangles, edges, np.concatenate(labels))
@@ -324,27 +341,48 @@ def nodes_on(curve: Curve, largest: float, sizes: Sizes) -> np.ndarray:
     return curve(np.interp(passed[-1] * np.arange(count) / count, passed, s))
 
 
-def _loop(model: Gmsh, nodes: np.ndarray) -> tuple[list[int], list[int]]:
-    """Adds points and lines along a loop to gmsh, one element per line; returns their numbers."""
-    points = [model.geo.addPoint(x, y, 0) for x, y in nodes]
-    lines = [model.geo.addLine(a, b) for a, b in zip(points, [*points[1:], points[0]])]
+def _chains(
+    nodes: np.ndarray, interfaces: Sequence[tuple[Curve, float]], sizes: Sizes, scale: float
+) -> tuple[np.ndarray, list[np.ndarray]]:
+    """Returns the nodes (n, 2) [m] of the boundary and behind them those of the interfaces, and the
+    numbers of the nodes along each interface. Ends on other nodes are these nodes.
+    """
+    chains = []
+    for curve, largest in interfaces:
+        along = np.vstack([nodes_on(curve, largest, sizes), curve(np.array([1.0]))])
+        numbers = np.full(len(along), -1)
+        for end in (0, -1):
+            away = np.linalg.norm(nodes - along[end], axis=1)
+            if away.min() <= SAME * scale:
+                numbers[end] = away.argmin()
+            elif end == 0 or np.linalg.norm(along[0] - along[-1]) > SAME * scale:
+                numbers[end] = len(nodes)
+                nodes = np.vstack([nodes, along[end]])
+            else:
+                numbers[end] = numbers[0]
+        numbers[1:-1] = len(nodes) + np.arange(len(along) - 2)
+        nodes = np.vstack([nodes, along[1:-1]])
+        chains.append(numbers)
+    return nodes, chains
+
+
+def _lines(model: Gmsh, tags: list[int], chain: np.ndarray) -> list[int]:
+    """Adds lines along a chain of points to gmsh, one element per line; returns their numbers."""
+    lines = [model.geo.addLine(tags[a], tags[b]) for a, b in zip(chain, chain[1:])]
     for line in lines:
         model.geo.mesh.setTransfiniteCurve(line, 2)
-    return points, lines
+    return lines
 
 
-def _grade(field: Gmsh, loops: list[np.ndarray], curves: tuple[list[int], ...], bulk: float) -> int:
-    """Adds the size field inside the loops to gmsh and returns its number.
+def _grade(field: Gmsh, length: np.ndarray, lines: np.ndarray, bulk: float) -> int:
+    """Adds the size field between lines of these lengths to gmsh and returns its number.
 
-    On the outline the size is the length of the edges. It grows linearly with the distance from the
-    outline up to the size of the bulk. Edges of similar lengths share one gmsh field.
+    On the lines the size is their length. It grows linearly with the distance from them up to the
+    size of the bulk. Lines of similar lengths share one gmsh field.
     """
-    length = np.concatenate(
-        [np.linalg.norm(np.roll(nodes, -1, axis=0) - nodes, axis=1) for nodes in loops]
-    )
     # levels of the size, from the bulk's down in steps of sqrt(1/2)
     fineness = np.ceil(2 * np.log2(np.maximum(bulk / length, 1)) - 1e-9).astype(int)
-    lines, sources = np.concatenate(curves), []
+    sources = []
     for level in np.unique(fineness):
         size = bulk * np.sqrt(0.5) ** level
         # 5 sampling points on a line: with 2 gmsh would use none
@@ -357,17 +395,25 @@ def _grade(field: Gmsh, loops: list[np.ndarray], curves: tuple[list[int], ...], 
 
 
 def _filled(
-    gmsh: Gmsh, loops: Sequence[Sequence[int]], sizes: Callable[[Gmsh], int]
+    gmsh: Gmsh,
+    loops: Sequence[Sequence[int]],
+    sizes: Callable[[Gmsh], int],
+    embedded: Sequence[int] = (),
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Meshes the inside of loops of gmsh curves and returns its triangles as `elements_of` does.
 
-    The outer loop is the first. `sizes` adds the size field to gmsh and returns its number.
+    The outer loop is the first. The sides of triangles follow `embedded` curves. `sizes` adds the
+    size field to gmsh and returns its number.
     """
     gmsh.option.setNumber("Mesh.Algorithm", 6)  # frontal Delaunay: triangles of the best quality
     for source in ("FromPoints", "FromCurvature", "ExtendFromBoundary"):
         gmsh.option.setNumber(f"Mesh.MeshSize{source}", 0)
-    gmsh.model.geo.addPlaneSurface([gmsh.model.geo.addCurveLoop(list(lines)) for lines in loops])
+    surface = gmsh.model.geo.addPlaneSurface(
+        [gmsh.model.geo.addCurveLoop(list(lines)) for lines in loops]
+    )
     gmsh.model.geo.synchronize()
+    if embedded:
+        gmsh.model.mesh.embed(1, list(embedded), 2, surface)
     field = gmsh.model.mesh.field
     field.setAsBackgroundMesh(sizes(field))
     gmsh.model.mesh.generate(2)

@@ -27,7 +27,7 @@ __all__ = [
 
 class Column(NamedTuple):
     """A column or number. `whole`: there is one of all bodies together. `part`: there is one of
-    each of several bodies, of each support or of each gas, whose name ends in its number (_1, _2
+    each of several bodies, of each support, gas or layer, whose name ends in its number (_1, _2
     ...). `needs`: the word of NEEDS without which a scene does not have it, or "".
     """
 
@@ -73,6 +73,7 @@ class Features:
     supports: int = 0
     loads: int = 0
     gases: tuple[int, ...] = ()  # which of the loads are gases, from 1
+    layers: int = 0
 
 
 # fmt: off
@@ -159,6 +160,11 @@ HISTORY_OF_LOADS = (
     _part("gas_volume", "m2", "volume of the cavity at the end of the step; in three dimensions "
         "and of revolution [m3]"),
     _part("gas_pressure", "Pa", "pressure in it over that outside"),
+)
+
+HISTORY_OF_LAYERS = (
+    _part("layer_elastic", "J/m", "elastic energy in the layer, part of elastic"),
+    _part("layer_viscous_work", "J/m", "part of viscous_work in the layer", needs="damped"),
 )
 
 # Numbers that Python evaluates (output/contacts.py). restitution, restitution_tangential and
@@ -327,6 +333,11 @@ SUMMARY_OF_LOADS = (
         "start"),
 )
 
+SUMMARY_OF_LAYERS = (
+    _part("layer_elastic_final", "J/m", "elastic energy in the layer at the end"),
+    _part("layer_viscous_work", needs="damped"),
+)
+
 # Entries of summary.json that are no numbers of a run.
 ENTRIES = (
     _whole("status", "", "ok, or the name of the failure"),
@@ -454,11 +465,18 @@ def _complete(files: Mapping[str, Tables]) -> dict[str, Tables]:
     }
 
 
-# By file: what it has of all bodies together and of each; of supports; of loads; other entries.
+# By file: what it has of all bodies together and of each; of supports; of loads; of layers; other
+# entries.
 FILES = _complete(
     {
-        "history.csv": (HISTORY, HISTORY_OF_SUPPORTS, HISTORY_OF_LOADS),
-        "summary.json": (SUMMARY, SUMMARY_OF_SUPPORTS, SUMMARY_OF_LOADS, ENTRIES),
+        "history.csv": (HISTORY, HISTORY_OF_SUPPORTS, HISTORY_OF_LOADS, HISTORY_OF_LAYERS),
+        "summary.json": (
+            SUMMARY,
+            SUMMARY_OF_SUPPORTS,
+            SUMMARY_OF_LOADS,
+            SUMMARY_OF_LAYERS,
+            ENTRIES,
+        ),
         "contacts.csv": (CONTACTS,),
         "fields/contact.csv": (POINTS,),
     }
@@ -467,11 +485,14 @@ FILES = _complete(
 
 def recorded(file: str, features: Features) -> list[str]:
     """The columns of history.csv, or the numbers of summary.json, of a scene, in their order."""
-    bodies, supports = (range(1, count + 1) for count in (features.bodies, features.supports))
+    bodies, supports, layers = (
+        range(1, count + 1) for count in (features.bodies, features.supports, features.layers)
+    )
     parts = (
         (True, bodies if features.bodies > 1 else ()),
         (features.supports > 0, supports),
         (features.loads > 0, features.gases),
+        (features.layers > 0, layers),
     )
     result: list[str] = []
     for table, (together, numbers) in zip(FILES[file], parts):

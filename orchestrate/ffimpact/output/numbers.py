@@ -55,6 +55,11 @@ def numbers_of(facts: Table, history: History, forces: tuple[np.ndarray, ...]) -
     for gas in facts["gases"]:
         for name in ("pressure", "volume", "radius"):
             numbers[f"gas_{name}_start_{gas['load']}"] = gas[name]
+    numbers |= {
+        name.replace("elastic", "elastic_final"): column[-1]
+        for name, column in history.items()
+        if name.startswith("layer_")
+    }
     plain = {name: value for name, value in facts.items() if isinstance(value, int | float)}
     return plain | {name: _plain(value) for name, value in numbers.items()}
 
@@ -73,6 +78,7 @@ def in_order(facts: Table, numbers: Mapping[str, Any]) -> Table:
         len(facts["support_peaks"]),
         facts["loads"],
         tuple(gas["load"] for gas in facts["gases"]),
+        sum(name.startswith("layer_elastic_final_") for name in numbers),
     )
     return {name: numbers[name] for name in recorded("summary.json", features)}
 

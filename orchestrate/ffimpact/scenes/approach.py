@@ -243,7 +243,7 @@ def _rebound(scene: Scene, onset: Onset) -> Scene | None:
         held = bool(body.supports)  # neither turns nor falls, as with infinite mass
         lever, mass = (
             _lever(shape, point, n),
-            math.inf if held else body.made_of.density * shape.area,
+            math.inf if held else body.mean_density * shape.area,
         )
         own_fall = np.zeros(len(n)) if held else fall
         yields += (1 + lever**2 / shape.gyration) / mass
@@ -369,7 +369,7 @@ def loaded_pull(body: Body) -> float:
     ]
     half = body.outline.half_thickness
     width = 2 * half if isinstance(body.outline, Outline) else math.pi * half**2
-    return sum(stress) * width / (body.made_of.density * body.outline.content)
+    return sum(stress) * width / (body.mean_density * body.outline.content)
 
 
 def _pressed(scene: Scene, onset: Onset) -> float:
@@ -388,7 +388,7 @@ def _pressed(scene: Scene, onset: Onset) -> float:
         moved = farthest(drive.translation)[0] - drive.shift(onset.time if met else 0.0)
         depths.append(abs(float(moved @ onset.normal)))
     share = min(0.5, max([0.0, *depths]) / onset.radius)
-    bar_speed = min(math.sqrt(body.made_of.young / body.made_of.density) for body in bodies)
+    bar_speed = min(math.sqrt(body.touching.young / body.touching.density) for body in bodies)
     return bar_speed * (0.4 * share if scene.kind is PLANE_STRAIN else 0.5 * share**1.25)
 
 

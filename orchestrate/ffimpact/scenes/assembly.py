@@ -29,9 +29,12 @@ from ..input.bodies import Body
 from ..input.contact import OWN, Pair
 from ..input.damping import flat, refuse_uneven
 from ..input.dimension import AXISYMMETRIC, PLANE_STRAIN, SOLID
+from ..input.layers import Layer
+from ..input.materials import Material
 from ..input.parameters import NOT_DECISIVE, Table, Value
 from ..input.toml_text import to_toml
 from ..mesh import mesh, revolution, solid_mesh, solids
+from ..mesh.layers import Circle, layers_of_cells, with_interfaces
 from ..mesh.mesh import AXIS, FREE, Curve, Sizes, mesh_body, nearest
 from ..mesh.solids import Solid
 from .approach import (
@@ -196,7 +199,13 @@ def assemble(
     arrays: Entries = (
         {
             "implicit_why": why,
-            "relaxed_step": min([1e300, *(_disc_like(k, auto).relaxed_step for k in deformable)]),
+            "relaxed_step": min(
+                _disc_of(k, auto, material).relaxed_step
+                for k in deformable
+                for material in scene.bodies[k].materials
+            )
+            if deformable
+            else 1e300,
             "front_transit": float(min((strike.tau for strike in auto.fronts.values()), default=0)),
             "front_rise": float(max(rises, default=0)),
         }
@@ -228,9 +237,9 @@ def _sections(
     for k, (body, size) in enumerate(zip(scene.bodies, sizes)):
         made = body.file_mesh
         if size:
-            made = mesh_body(boundary_curves(scene, k), size, body.outline.half_thickness)
+            made = _meshed(scene, k, size)
         assert isinstance(made, mesh.Mesh)
-        meshes.append(_reached(scene, k, made))
+        meshes.append(_reached(scene, k, _with_layers(body, made, np.eye(2))))
     halved = bool(mirror_axes(scene.kind, copies(scene)))
     centres = place_apart(meshes, 1 if halved else 0)
     circles = [
@@ -239,6 +248,12 @@ def _sections(
         for loop in body.flat_outline.loops
         for at, radius in loop.circles
         if not halved or at[0] >= 0
+    ]
+    circles += [
+        Arc(k, padded(centre + edge.centre), np.zeros(3), edge.radius)
+        for k, (body, centre) in enumerate(zip(scene.bodies, centres))
+        for edge in body.regions.edges
+        if isinstance(edge, Circle)
     ]
     return meshes, centres, circles
 
@@ -255,7 +270,8 @@ def _solids(
     for body, size in zip(scene.bodies, sizes):
         solid, made = body.placed_at(0.0, np.zeros(3)), body.file_mesh
         assert isinstance(solid, Solid) and (made is None or isinstance(made, solid_mesh.SolidMesh))
-        meshes.append(solids.mesh_of(body.own_name, solid, made, size, normals, accuracy))
+        made = solids.mesh_of(body.own_name, solid, made, size, normals, accuracy)
+        meshes.append(_with_layers(body, made, solid.rotation))
     meshes = [_reached(scene, k, made) for k, made in enumerate(meshes)]
     count = sum(
         0 if body.rigid else solid_mesh.unknowns(made.cells, degree)
@@ -368,10 +384,10 @@ class AutomaticValues:
         impact = Impact(
             sphere=scene.kind is not PLANE_STRAIN,
             radius=radius,
-            young=soft.made_of.young / (STIFF if soft.rigid else 1),
-            nu=soft.made_of.nu,
-            density=soft.made_of.density,
-            damping=soft.made_of.damping,
+            young=soft.touching.young / (STIFF if soft.rigid else 1),
+            nu=soft.touching.nu,
+            density=soft.touching.density,
+            damping=soft.touching.damping,
             closing=along,
             pressing=pressing,
             exponent=scene.number("exponent"),
@@ -471,6 +487,9 @@ def used_tables(
     for body_table, body, size in zip(scene.content["body"], scene.bodies, sizes):
         used = {"name": body.own_name} | body_table | ({} if body.rigid else body.made_of.table())
         used |= {"density": body.made_of.density} if body.rigid and not body.mass else {}
+        if body.layers:
+            layers = zip(body.layers, body.materials[1:])
+            used["layer"] = [layer.table() | material.table() for layer, material in layers]
         used |= {"mesh_size": size.bulk, "contact_mesh_size": size.contact} if size else {}
         used |= {"mesh_stretch": size.stretch} if size and size.stretch > 1 else {}
         used |= (
@@ -519,27 +538,48 @@ def _disc_like(k: int, auto: AutomaticValues, **more: Any) -> Impact:
     return auto.of_disc([body], body.outline.half_thickness, **more)
 
 
+def _disc_of(k: int, auto: AutomaticValues, material: Material) -> Impact:
+    """Returns the same of a material of body k."""
+    return replace(
+        _disc_like(k, auto),
+        young=material.young,
+        nu=material.nu,
+        density=material.density,
+        damping=material.damping,
+    )
+
+
 def _with_loss(k: int, auto: AutomaticValues) -> Body:
-    """Returns body k with the viscosity, or the loss_range, that its loss factor sets. Raises
-    BadInput if it has another viscosity, or if no branches have a loss as flat.
+    """Returns body k with the viscosity, or the loss_range, that the loss factor of each of its
+    materials sets.
     """
     body = auto.scene.bodies[k]
-    material = body.made_of
-    if not material.loss:
+    if not any(material.loss for material in body.materials):
         return body
+    holders: list[Body | Layer] = [body, *body.layers]
+    made = [_of_loss(k, auto, *item) for item in zip(holders, body.materials)]
+    return body.model_copy(update={"materials": made})
+
+
+def _of_loss(k: int, auto: AutomaticValues, holder: Body | Layer, material: Material) -> Material:
+    """Returns a material of body k with what its loss factor sets. Raises BadInput if it has another
+    viscosity, or if no branches have a loss as flat.
+    """
+    if not material.loss:
+        return material
+    impact = _disc_of(k, auto, material)
     if material.loss_model == "flat":
-        between = material.loss_range or _disc_like(k, auto).loss_range
-        refuse_uneven(body.at("loss"), flat(material.loss, *between))
-        return body.model_copy(
-            update={"made_of": material.model_copy(update={"loss_range": between})}
-        )
-    viscosity = _disc_like(k, auto).viscosity(material.loss)
+        between = material.loss_range or impact.loss_range
+        refuse_uneven(holder.at("loss"), flat(material.loss, *between))
+        return material.model_copy(update={"loss_range": between})
+    viscosity = impact.viscosity(material.loss)
     if material.viscosity and not math.isclose(material.viscosity, viscosity):
+        name = auto.scene.bodies[k].own_name
         raise BadInput(
-            f"{body.at('loss')}: {material.loss:g} asks for viscosity {viscosity:g} Pa s of '{body.own_name}', which "
+            f"{holder.at('loss')}: {material.loss:g} asks for viscosity {viscosity:g} Pa s of '{name}', which "
             f"is {material.viscosity:g} (accepted: one of the two)"
         )
-    return body.model_copy(update={"made_of": material.model_copy(update={"viscosity": viscosity})})
+    return material.model_copy(update={"viscosity": viscosity})
 
 
 def element_sizes(k: int, auto: AutomaticValues) -> Sizes:
@@ -734,6 +774,53 @@ def _holds(scene: Scene, k: int, inner: np.ndarray, rest: np.ndarray) -> bool:
 
 
 # ---- meshes
+
+
+def _meshed(scene: Scene, k: int, size: Sizes) -> mesh.Mesh:
+    """Returns the mesh of body k in the plane or of revolution, which follows its layers."""
+    body, boundary = scene.bodies[k], boundary_curves(scene, k)
+    interfaces: list[tuple[Curve, float]] = []
+    if body.layers:
+        halved = bool(mirror_axes(scene.kind, copies(scene)))
+
+        def inside(points: np.ndarray) -> np.ndarray:
+            gap = body.outline.gap(points)
+            return np.maximum(gap, -points[:, 0]) if halved else gap
+
+        # elements on the outline are as long as the layer below it is thick
+        thin = [
+            abs(radius - own)
+            for own in (layer.radius for layer in body.layers)
+            if own is not None
+            for radius in body.radii
+            if radius > 0
+        ]
+        boundary, interfaces = with_interfaces(boundary, body.regions, inside, size)
+        boundary = [
+            [(curve, min([largest, *thin]), label) for curve, largest, label in loop]
+            for loop in boundary
+        ]
+    return mesh_body(boundary, size, body.outline.half_thickness, interfaces)
+
+
+def _with_layers(body: Body, made: mesh.Made, rotation: np.ndarray) -> mesh.Made:
+    """Returns the mesh of a body, turned by `rotation`, with the layers of its cells. Raises BadInput
+    if the mesh does not follow the layers, or if a layer is not in it.
+    """
+    if not body.layers:
+        return made
+    layers, follows = layers_of_cells(made.points[made.elements] @ rotation, body.regions)
+    if not follows:
+        raise BadInput(
+            f"{body.at('layer')}: the mesh of '{body.own_name}' does not follow it (accepted: in the plane and of revolution, "
+            "or a mesh from a file or arrays with sides between layers)"
+        )
+    for number, layer in enumerate(body.layers, 1):
+        if not (layers == number).any():
+            raise BadInput(
+                f"{layer.entry}: has no part of '{body.own_name}' (accepted: inside it, and not covered by another layer)"
+            )
+    return replace(made, layers=layers)
 
 
 def place_apart(meshes: Sequence[mesh.Mesh | solid_mesh.SolidMesh], along: int) -> np.ndarray:

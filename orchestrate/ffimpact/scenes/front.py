@@ -83,7 +83,7 @@ class Front:
 
     def _pressure(self, bodies: list[Body]) -> float:
         """Returns rho c v [Pa], with the impedances rho c of two bodies in series."""
-        impedances = [bodies[k].made_of.density * bodies[k].wave_speed for k in self.sizes]
+        impedances = [bodies[k].touching.density * bodies[k].wave_speed for k in self.sizes]
         return self.onset.closing / sum(1 / impedance for impedance in impedances)
 
 

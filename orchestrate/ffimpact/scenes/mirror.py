@@ -89,6 +89,7 @@ def _is_mirrored_in_plane(scene: Scene, axis: int) -> bool:
             or body.start_velocity[axis] != 0
             or body.start_spin != 0
         )
+        moves = moves or not _has_mirrored_layers(body, axis)
         conditions = body.supports or body.loads
         moves = moves or body.has_fields
         return (
@@ -142,8 +143,18 @@ def _broken(scene: Scene, axis: int) -> str:
     return ""
 
 
+def _has_mirrored_layers(body: Body, axis: int) -> bool:
+    """Whether the layers of a body are their own mirror image in the plane normal to an axis."""
+    regions = [layer.part for layer in body.layers if layer.radius is None]
+    turned = bool(np.any(body.start_angle))
+    axes = np.eye(body.dimension.axes)
+    return all(not turned and part.is_mirrored(axis, axes) for part in regions)
+
+
 def _of_body(body: Body, axis: int, plane: str) -> str:
     normal = np.eye(3)[axis]
+    if not _has_mirrored_layers(body, axis):
+        return f"has a layer that is not its own mirror image in {plane}"
     if body.start_position[axis] != 0:
         return f"has its centre off {plane}"
     if body.start_velocity[axis] != 0:

@@ -63,7 +63,7 @@ NEEDS = (
     Need(
         "viscosity or relaxation needs",
         True,
-        lambda body: body.made_of.damped,
+        lambda body: any(material.damped for material in body.materials),
         {"integrator": _MIDDLE},
     ),
     # A pressure in each element keeps its volume at the end of a step. svk is quadratic in E: it has
@@ -71,7 +71,7 @@ NEEDS = (
     Need(
         "nu = 0.5 (J = 1) needs",
         True,
-        lambda body: body.made_of.nu == 0.5,
+        lambda body: any(material.nu == 0.5 for material in body.materials),
         {
             "integrator": (IMPLICIT,),
             "degree": (2,),
@@ -136,4 +136,8 @@ def _values(scene: Scene, name: str, holders: list[tuple[str, Any]]) -> list[tup
     """Returns the full names and values of an entry: of the run, or of the bodies `holders`."""
     if name in scene.values:
         return [(name, scene.values[name])]
-    return [(f"{prefix}{name}", getattr(body.made_of, name)) for prefix, body in holders]
+    return [
+        (f"{prefix}{name}", getattr(material, name))
+        for prefix, body in holders
+        for material in body.materials
+    ]

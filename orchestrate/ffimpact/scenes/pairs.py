@@ -154,7 +154,7 @@ def with_rigid_modulus(bodies: list[Body], penalties: list[Value], path: str) ->
     half = max(body.outline.half_thickness for body in bodies)
     young = STIFF * (soft or max(float(penalty) for penalty in penalties) * half)
     return [
-        body.model_copy(update={"made_of": body.made_of.model_copy(update={"young": young})})
+        body.model_copy(update={"materials": [body.made_of.model_copy(update={"young": young})]})
         if body.rigid
         else body
         for body in bodies
