@@ -22,6 +22,7 @@ from .report.figures import (
     colour_limits,
     deformed,
     draw_body,
+    draw_interfaces,
     is_half,
     styled,
 )
@@ -100,6 +101,7 @@ class Plots:
         body, rigid = deformed(state, is_half(scene), field), obstacles_of(scene)
         view = x_min, x_max, y_min, y_max = down_the_slope(limits([body]), rigid)
         drawn = draw_body(ax, body, colour_limits([body]))
+        draw_interfaces(ax, body)
         drawn.set_rasterized(True)
         unit, name = (
             UNITS.get(field, "MPa"),

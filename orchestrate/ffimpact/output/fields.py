@@ -82,6 +82,8 @@ def _write_body(path: Path, surface: Arrays, state: Arrays) -> None:
 
     nodes = _columns(surface["nodes"], len(surface["nodes"]) // 3)
     body = surface["cellBody"].astype(np.int32)
+    # a record of a former version has no layers
+    layer = surface.get("cellLayer", np.zeros(len(body))).astype(np.int32)
     cells = _columns(surface["cells"], len(body)).astype(int)
     at = _columns(state["fields"], len(nodes))
     sigma = at[:, 7:13]
@@ -99,7 +101,9 @@ def _write_body(path: Path, surface: Arrays, state: Arrays) -> None:
         "cauchy_stress": sigma,
     }
     kind = "triangle6" if cells.shape[1] == 6 else "tetra10"
-    _write_mesh(path, meshio.Mesh(nodes, [(kind, cells)], fields, {"body": [body]}))
+    _write_mesh(
+        path, meshio.Mesh(nodes, [(kind, cells)], fields, {"body": [body], "layer": [layer]})
+    )
 
 
 def _write_points(path: Path, points: Arrays) -> None:

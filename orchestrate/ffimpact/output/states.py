@@ -60,7 +60,7 @@ class State:
     @classmethod
     def read(cls, time: float, path: Path) -> State:
         """The state in a file of a run. Raises Unreadable if the file is none."""
-        points, _, cells, values, body = vtu.read_parts(path)
+        points, _, cells, values, body, _ = vtu.read_parts(path)
         return cls(time, points, cells, body, *(values[name] for name in UNITS))
 
     @property

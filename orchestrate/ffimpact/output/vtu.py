@@ -5,12 +5,13 @@ their times.
 import xml.etree.ElementTree as xml
 from collections.abc import Sequence
 from contextlib import redirect_stderr
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 
+from ..mesh.mesh import interfaces
 from .results import Contents, content, reading
 
 __all__ = [
@@ -55,19 +56,24 @@ CUTS = {
 FACES = [[0, 1, 2, 4, 5, 6], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0, 2, 3, 6, 9, 7]]
 
 
+NO_SIDES = np.empty((0, 2), dtype=int)
+
+
 @dataclass(frozen=True)
 class Snapshot:
     """Fields on straight triangles.
 
     `points` (n, 2) are reference coordinates [m], `triangles` (t, 3) their corners. `fields` holds
     the fields by name in SI units: scalars (n,), vectors (n, 3), the Cauchy stress (n, 6) (xx yy zz
-    xy yz xz). For a body in three dimensions these are those of its cut with the plane z = 0 of the
+    xy yz xz). `interfaces` (e, 2) are sides between layers. For a body in
+    three dimensions these are those of its cut with the plane z = 0 of the
     reference configuration.
     """
 
     points: np.ndarray
     triangles: np.ndarray
     fields: Contents[np.ndarray]
+    interfaces: np.ndarray = field(default_factory=lambda: NO_SIDES)
 
 
 @dataclass(frozen=True)
@@ -106,7 +112,7 @@ def read(path: Path) -> Snapshot:
     many straight triangles that curved sides look curved. A body in three dimensions without such
     faces is cut in this plane.
     """
-    points, kind, cells, fields, _ = read_parts(path)
+    points, kind, cells, fields, _, layers = read_parts(path)
     on_plane = np.ones(len(points), dtype=bool)
     if kind == QUADRATIC_TETRAHEDRON:
         on_plane, solid = np.abs(points[:, 2]) < 1e-9 * np.ptp(points, axis=0).max(), cells
@@ -120,20 +126,23 @@ def read(path: Path) -> Snapshot:
         curved = split(cells.tobytes(), int(np.clip(np.sqrt(MOST / max(1, len(cells))), 2, FINEST)))
         points, cells = curved.at(points), curved.triangles
         flat = {name: curved.at(field) for name, field in flat.items()}
-    return Snapshot(points, cells, Contents(flat, path))
+    between = NO_SIDES
+    if layers.any() and kind != QUADRATIC_TETRAHEDRON:
+        between = interfaces(cells, np.repeat(layers, len(cells) // len(layers)))
+    return Snapshot(points, cells, Contents(flat, path), between)
 
 
 def read_solid(path: Path) -> Solid | None:
     """Returns a snapshot of a whole body in three dimensions, None for a body in the plane."""
-    points, kind, cells, fields, _ = read_parts(path)
+    points, kind, cells, fields, *_ = read_parts(path)
     return Solid(points, cells, fields) if kind == QUADRATIC_TETRAHEDRON else None
 
 
 def read_parts(
     path: Path,
-) -> tuple[np.ndarray, str, np.ndarray, Contents[np.ndarray], np.ndarray]:
+) -> tuple[np.ndarray, str, np.ndarray, Contents[np.ndarray], np.ndarray, np.ndarray]:
     """Returns the points, the common type of the cells, their nodes (cells, nodes), the fields, and
-    the number of the body of each cell. Raises Unreadable if the file is no snapshot.
+    the numbers of the body and of the layer of each cell, 0 outside of layers. Raises Unreadable if the file is no snapshot.
     """
     import meshio  # slow to load, so it is imported only here
 
@@ -152,7 +161,8 @@ def read_parts(
         if nodes.min() < 0 or nodes.max() >= len(mesh.points):
             raise ValueError("a node is missing")
         body = mesh.cell_data.get("body", [np.ones(len(nodes), np.int32)])[0]
-        return mesh.points, kinds.pop(), nodes, Contents(mesh.point_data, path), body
+        layers = mesh.cell_data.get("layer", [np.zeros(len(nodes), np.int32)])[0]
+        return mesh.points, kinds.pop(), nodes, Contents(mesh.point_data, path), body, layers
 
 
 @lru_cache(1)  # all snapshots of a run have the same triangles

@@ -4,7 +4,7 @@ force, stick and slip, and flight, like figures 4 and 5 of the paper.
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field as dataclass_field
 from pathlib import Path
 from typing import Any, TypeVar
 from warnings import catch_warnings, filterwarnings
@@ -13,7 +13,7 @@ import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import TriMesh
+from matplotlib.collections import LineCollection, TriMesh
 from matplotlib.figure import Figure
 from matplotlib.ticker import AutoLocator, MaxNLocator, NullLocator
 from matplotlib.transforms import ScaledTranslation
@@ -58,6 +58,7 @@ __all__ = [
     "deformed",
     "diameter",
     "draw_body",
+    "draw_interfaces",
     "end_of_contact",
     "evenly",
     "flight",
@@ -706,6 +707,7 @@ def rows_of_bodies(
     behind(axes, times, places)
     for body, t, shift in zip(bodies, times, places):
         picture = draw_body(axes, body, ends, shift)
+        draw_interfaces(axes, body, shift)
         x, y = shift + ((x_min + x_max) / 2, y_max)
         axes.text(x, y, f"{1e3 * t:.2f} ms", ha="center", va="bottom")
     scale_bar(axes, 0.25 / columns)
@@ -764,12 +766,13 @@ def scale_bar(axes: Axes, share: float = 0.25) -> None:
 @dataclass(frozen=True)
 class Body:
     """The whole deformed body: points (n, 2) in m, triangles (t, 3), and the field (n,) that colours
-    it: von Mises stress in MPa, or another (UNITS).
+    it: von Mises stress in MPa, or another (UNITS). `interfaces` (e, 2) are sides between layers.
     """
 
     points: np.ndarray
     triangles: np.ndarray
     stress: np.ndarray
+    interfaces: np.ndarray = dataclass_field(default_factory=lambda: vtu.NO_SIDES)
 
 
 def is_half(scene: Table) -> bool:
@@ -787,15 +790,17 @@ def deformed(snapshot: vtu.Snapshot, half: bool, field: str = "von_mises") -> Bo
     """
     points = snapshot.points + snapshot.fields["displacement"][:, :2]
     triangles, stress = snapshot.triangles, snapshot.fields[field]
+    between = snapshot.interfaces
     stress = np.linalg.norm(stress, axis=1) if stress.ndim > 1 else stress
     stress = stress if field in UNITS else 1e-6 * stress
     if half:
         triangles = np.vstack([triangles, triangles + len(points)])
+        between = np.vstack([between, between + len(points)])
         points, stress = (
             np.vstack([points, points * (-1, 1) + (2 * snapshot.points[:, 0].min(), 0)]),
             np.concatenate([stress, stress]),
         )
-    return Body(points, triangles, stress)
+    return Body(points, triangles, stress, between)
 
 
 def draw_body(
@@ -814,3 +819,11 @@ def draw_body(
     )
     picture.set_in_layout(False)
     return picture
+
+
+def draw_interfaces(axes: Axes, body: Body, shift: np.ndarray = ORIGIN) -> None:
+    """Draws the sides between layers of the body, shifted by `shift` [m]."""
+    if not len(body.interfaces):
+        return
+    ends = (body.points + shift)[body.interfaces]
+    axes.add_collection(LineCollection(list(ends), colors=BLACK, linewidths=0.6), autolim=False)
