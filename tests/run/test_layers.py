@@ -45,6 +45,20 @@ def test_mass_of_a_layered_ball(tmp_path):
     assert made["mass"] == pytest.approx(mass, rel=1e-4)
 
 
+def test_a_layered_ball_rotates_in_space(tmp_path):
+    """Mass and inertia 8/15 pi sum of rho (R^5 - r^5) of a ball with a core; momenta and energy stay."""
+    body = ff.Ball(radius=RADIUS, material=SOFT, position=(0, 1, 0), velocity=(1, 2, 3), spin=(30, 100, -50), mesh_size=0.02,
+                   layers=[ff.Layer(radius=CORE, material=HARD)])  # fmt: skip
+    made = flight(tmp_path, body, accuracy=0.05)
+    rho, core = SOFT.density, HARD.density
+    assert made["mass"] == pytest.approx(4 / 3 * np.pi * (rho * (RADIUS**3 - CORE**3) + core * CORE**3), rel=2e-3)
+    inertia = 8 / 15 * np.pi * (rho * (RADIUS**5 - CORE**5) + core * CORE**5)
+    for name, spin in (("angular_momentum_x", 30), ("angular_momentum_y", 100), ("angular_momentum", -50)):
+        column = made.history[name]
+        assert column[0] == pytest.approx(spin * inertia, rel=4e-3) and np.ptp(column) < 1e-10 * 100 * inertia
+    assert made.summary["energy_drift"] < 1e-9 and made["layer_elastic_final_1"] > 0
+
+
 def test_equal_materials_are_one_material(tmp_path):
     """On the mesh of a layered rectangle: a layer with the entries of its body changes no number by more than 1e-9."""
     layer = ff.Layer(where={"kind": "box", "low": (-0.02, -0.02), "high": (0.02, 0.03)})

@@ -65,7 +65,7 @@ def test_a_layer_takes_what_it_does_not_set_from_its_body():
     ([{"radius": 0.02, "yung": 1}], {}, ["body.1.layer.1.yung: no such entry", "young"]),
     ([{"radius": 0.02}], {"rigid": True, "law": None, "young": None, "nu": None}, ["body.1.layer: a rigid body has none"]),
     ([{"where": {"kind": "disc", "centre": [0.02, 0], "radius": 0.01}}], {"dimension": "axisymmetric", "shape": "ball"}, ["body.1.layer.1.where", "is not of revolution"]),
-    ([{"radius": 0.02}], {"dimension": "3d", "shape": "ball", "position": [0, 0.06, 0], "velocity": [0, -1, 0]}, ["body.1.layer: the mesh of 'body1' does not follow"]),
+    ([{"radius": 0.02}], {"dimension": "3d", "shape": "cylinder", "height": 0.05, "position": [0, 0.06, 0], "velocity": [0, -1, 0]}, ["body.1.layer.1.radius", "about the axis of a body in space"]),
 ])  # fmt: skip
 def test_what_is_no_layer_is_refused_in_one_line(layers, more, words):
     with pytest.raises(BadInput) as caught:
@@ -124,6 +124,28 @@ def test_plies_that_touch_have_one_line_between_them():
     assert abs(ends[:, 0, 1] - ends[:, 1, 1]).max() < 1e-12 and np.unique(ends[..., 1].round(9)).tolist() == pytest.approx([-0.015, -0.005, 0.005, 0.015])
     length = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).sum()
     assert length == pytest.approx(4 * 0.1 / (1 if built.mesh.points[:, 0].min() < 0 else 2), abs=1e-12)
+
+
+@pytest.mark.parametrize("layers, shares", [
+    ([{"kind": "box", "low": (-0.03, -0.01, -0.02), "high": (0.03, 1, 0.02)}], [0.8, 0.2]),
+    ([{"kind": "half-space", "point": (0, 0, 0), "normal": (0, 1, 0)}, {"kind": "half-space", "point": (0, 0.02, 0), "normal": (0, 2, 0)}], [1 / 2, 1 / 3, 1 / 6]),
+    ([{"kind": "half-space", "point": (0, 0, 0), "normal": (1, 1, 1)}], [1 / 2, 1 / 2]),
+])  # fmt: skip
+def test_solids_are_cut_by_planes(layers, shares):
+    """The volumes of the layers of a turned box are exact."""
+    body = ff.Box(width=0.1, height=0.06, depth=0.08, layers=[ff.Layer(where=where) for where in layers], position=(0, 0.1, 0), velocity=(0, -1, 0),
+                  turn=(10, 20, 30), **RUBBER)  # fmt: skip
+    built = assembly.assemble(ff.Scene(bodies=[body], obstacles=[ff.Plane()], accuracy=0.05).ready())
+    assert np.bincount(built.arrays["mesh.materials"], built.mesh.volumes) == pytest.approx(np.array(shares) * 0.1 * 0.06 * 0.08, rel=1e-9)
+
+
+def test_faces_between_layers_of_a_ball_are_on_a_sphere():
+    """Vertices to round-off, so that the faces are curved."""
+    body = ff.Ball(radius=RADIUS, position=(0, 0.06, 0), velocity=(0, -1, 0), layers=[ff.Layer(radius=0.03)], **RUBBER)
+    built = assembly.assemble(ff.Scene(bodies=[body], obstacles=[ff.Plane()], accuracy=0.05).ready())
+    between = built.mesh.labels == INTERFACE
+    radius = np.linalg.norm(built.mesh.points[built.mesh.faces[between]] - built.centres[0], axis=2)
+    assert between.sum() > 20 and radius == pytest.approx(0.03, rel=1e-12) and (built.arrays["mesh.arc_of"][between] == 1).all()
 
 
 def test_sides_between_cells_of_different_layers():

@@ -5,15 +5,18 @@ boundary faces: 1 may come into contact, 2 lies on the plane of symmetry x = 0, 
 z = 0, 4 never comes into contact.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from . import mesh, rounding
 from .mesh import AXIS, FREE, GROWTH, Gmsh, Sizes, T
+
+if TYPE_CHECKING:
+    from ..input.conditions import Part
 
 __all__ = [
     "Curved",
@@ -150,6 +153,8 @@ def unknowns(cells: np.ndarray, degree: int) -> int:
 
 # ---- meshes of shapes
 
+ON_BALL = 1e-6  # distance of vertices that gmsh has put on a ball, over the size of the body
+
 
 def mesh_shape(
     kind: str,
@@ -158,8 +163,10 @@ def mesh_shape(
     mirror_axes: tuple[int, ...],
     sizes: Sizes,
     scale: float,
+    parts: Sequence["Part"] = (),
 ) -> SolidMesh:
-    """The mesh of a shape about the origin, turned by the matrix `rotation`.
+    """The mesh of a shape about the origin, turned by the matrix `rotation`, with faces on the
+    boundaries of the regions `parts`, which refer to the body before its rotation.
 
     `lengths` [m] by `kind`: radius of a ball; outer and inner radius of a shell; width, height and
     depth of a box; radius and height of a cylinder; outer and inner radius and height of a tube.
@@ -185,6 +192,7 @@ def mesh_shape(
             occ.affineTransform(
                 volume, [*np.column_stack([rotation, np.zeros(3)]).ravel(), 0, 0, 0, 1]
             )
+        volume = _fragmented(occ, volume, parts, rotation, scale)
         if mirror_axes:
             far = 4 * np.linalg.norm(sides)
             corner = [0 if axis in mirror_axes else -far for axis in range(3)]
@@ -192,7 +200,7 @@ def mesh_shape(
             occ.intersect(volume, [(3, half)])
         occ.synchronize()
 
-    turn = 0 if kind in ("ball", "box") else rounding.TURN
+    turn = 0 if kind in ("ball", "box") and not parts else rounding.TURN
     points, cells = generate(build, inside, turn, cells_of)
     points = points * scale
     faces = mesh.boundary(cells)
@@ -201,8 +209,9 @@ def mesh_shape(
         on = (abs(points[faces][:, :, axis]) < 1e-7 * scale).all(axis=1)
         labels[on] = PLANES[axis]
         points[np.unique(faces[on]), axis] = 0
+    balls = _onto_balls(points, parts, rotation, scale)
     if kind == "box":
-        return SolidMesh(points, cells, faces, labels)
+        return SolidMesh(points, cells, faces, labels, balls)
     along = np.array([]) if spherical else rotation[:, 1]
     radii = lengths[: 2 if kind in ("shell", "tube") else 1]
     patches = tuple(Curved(np.zeros(3), along, float(radius)) for radius in radii)
@@ -212,7 +221,66 @@ def mesh_shape(
     inner = _onto(patches, radii, points, faces, round_faces)
     if kind == "shell":
         labels[inner] = SolidMesh.NEVER
-    return SolidMesh(points, cells, faces, labels, patches)
+    return SolidMesh(points, cells, faces, labels, (*patches, *balls))
+
+
+def _onto_balls(
+    points: np.ndarray, parts: Sequence["Part"], rotation: np.ndarray, scale: float
+) -> tuple[Curved, ...]:
+    """Moves the points of a turned body that are on balls among its regions onto them; returns the
+    balls.
+    """
+    balls = tuple(
+        Curved(rotation @ part.numbers[0], np.array([]), float(part.numbers[1]))
+        for part in parts
+        if part.kind == "ball"
+    )
+    for patch in balls:
+        away = np.linalg.norm(patch.arms(points), axis=1) - patch.radius
+        close = abs(away) < ON_BALL * scale
+        points[close] = patch.onto(points[close])
+    return balls
+
+
+def _fragmented(
+    occ: Gmsh,
+    volume: list[tuple[int, int]],
+    parts: Sequence["Part"],
+    rotation: np.ndarray,
+    scale: float,
+) -> list[tuple[int, int]]:
+    """Cuts a volume of gmsh's OpenCASCADE model, in lengths over `scale` [m], along the boundaries of
+    regions, which are turned by `rotation`. Returns its pieces, which share faces.
+    """
+    if not parts:
+        return volume
+    occ.synchronize()
+    far = 4 * float(np.abs(occ.getBoundingBox(*volume[0])).max())
+    regions = [(3, _occ_region(occ, part, rotation, scale, far)) for part in parts]
+    inside = [occ.intersect(volume, [region], removeObject=False)[0] for region in regions]
+    pieces: list[tuple[int, int]] = occ.fragment(
+        volume, [piece for own in inside for piece in own]
+    )[0]
+    return pieces
+
+
+def _occ_region(occ: Gmsh, part: "Part", rotation: np.ndarray, scale: float, far: float) -> int:
+    """Adds a region, turned by `rotation`, to gmsh's OpenCASCADE model, up to the distance `far`, and
+    returns its number.
+    """
+    first, second = part.numbers
+    if part.kind == "ball":
+        return int(occ.addSphere(*(rotation @ first / scale), float(second) / scale))
+    if part.kind == "box":
+        low, high = np.clip(first / scale, -far, far), np.clip(second / scale, -far, far)
+        solid, turn = occ.addBox(*low, *(high - low)), rotation
+    else:
+        normal = second / np.linalg.norm(second)
+        across = np.linalg.svd(normal[None])[2][1]
+        turn = rotation @ np.column_stack([normal, across, np.cross(normal, across)])
+        solid = occ.addBox(float(normal @ first) / scale, -far, -far, 2 * far, 2 * far, 2 * far)
+    occ.affineTransform([(3, solid)], [*np.column_stack([turn, np.zeros(3)]).ravel(), 0, 0, 0, 1])
+    return int(solid)
 
 
 def _onto(

@@ -4,7 +4,7 @@ Units are SI. y points up; x, y and z are right-handed.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -21,6 +21,7 @@ from .mesh import Sizes
 from .solid_mesh import MOST_CELLS, SolidMesh, expected_cells, mesh_shape
 
 if TYPE_CHECKING:
+    from ..input.conditions import Part
     from ..input.shapes import Mesh
 
 __all__ = [
@@ -459,13 +460,14 @@ def mesh_of(
     sizes: Sizes | None,
     mirror_axes: tuple[int, ...],
     accuracy: float,
+    parts: Sequence["Part"] = (),
 ) -> SolidMesh:
     """The mesh of the body `name` about its centre of volume, turned as at the start.
 
     The mesh is that of the body's file, `made`, or gmsh generates one with the element sizes `sizes`, which
     refer to the body before its rotation. `mirror_axes` contains the axes that are normal to planes of
-    symmetry: only the part on the positive side of these planes is meshed. Raises BadInput if the
-    mesh would have more than MOST_CELLS tetrahedra.
+    symmetry: only the part on the positive side of these planes is meshed, with faces on the boundaries of the regions
+    `parts` of layers. Raises BadInput if the mesh would have more than MOST_CELLS tetrahedra.
     """
     if made:
         return _with_curves(replace(made, points=made.points @ solid.rotation.T))
@@ -488,6 +490,7 @@ def mesh_of(
         mirror_axes,
         replace(sizes, near=sizes.near @ solid.rotation.T),
         solid.half_thickness,
+        parts,
     )
 
 

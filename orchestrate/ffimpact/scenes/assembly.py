@@ -270,7 +270,8 @@ def _solids(
     for body, size in zip(scene.bodies, sizes):
         solid, made = body.placed_at(0.0, np.zeros(3)), body.file_mesh
         assert isinstance(solid, Solid) and (made is None or isinstance(made, solid_mesh.SolidMesh))
-        made = solids.mesh_of(body.own_name, solid, made, size, normals, accuracy)
+        parts = body.regions.parts if body.layers else ()
+        made = solids.mesh_of(body.own_name, solid, made, size, normals, accuracy, parts)
         meshes.append(_with_layers(body, made, solid.rotation))
     meshes = [_reached(scene, k, made) for k, made in enumerate(meshes)]
     count = sum(
@@ -812,8 +813,8 @@ def _with_layers(body: Body, made: mesh.Made, rotation: np.ndarray) -> mesh.Made
     layers, follows = layers_of_cells(made.points[made.elements] @ rotation, body.regions)
     if not follows:
         raise BadInput(
-            f"{body.at('layer')}: the mesh of '{body.own_name}' does not follow it (accepted: in the plane and of revolution, "
-            "or a mesh from a file or arrays with sides between layers)"
+            f"{body.at('layer')}: the mesh of '{body.own_name}' does not follow it (accepted: of a shape, or a mesh from a file "
+            "or arrays with sides between layers)"
         )
     for number, layer in enumerate(body.layers, 1):
         if not (layers == number).any():
