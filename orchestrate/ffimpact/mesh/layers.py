@@ -247,14 +247,19 @@ def _largest(
 
 
 def layers_of_cells(corners: np.ndarray, layers: Layers) -> tuple[np.ndarray, bool]:
-    """The layer (t,) of cells with these corners (t, n, axes), by their middles, and whether no cell
-    is in two layers. Corners on the boundary of a region are in both.
+    """The layer (t,) of cells with these corners (t, n, axes), and whether no cell is in two layers.
+
+    Corners on the boundary of a region are in both. A cell has the layer of its other corners, or
+    of its middle if it has none: with a coarse chord the middle of a thin cell is beyond a curved
+    boundary.
     """
-    layer = layers.at(corners.mean(axis=1))
     points = corners.reshape(-1, corners.shape[2])
-    off = np.min([_distance(part, points) for part in layers.parts], axis=0) > ON * layers.reach
-    same = layers.at(points) == np.repeat(layer, corners.shape[1])
-    return layer, bool(same[off].all())
+    distance = np.min([_distance(part, points) for part in layers.parts], axis=0)
+    off = (distance > ON * layers.reach).reshape(corners.shape[:2])
+    of_corner = layers.at(points).reshape(corners.shape[:2])
+    first = of_corner[np.arange(len(corners)), off.argmax(axis=1)]
+    layer = np.where(off.any(axis=1), first, layers.at(corners.mean(axis=1)))
+    return layer, bool((of_corner == layer[:, None])[off].all())
 
 
 def _distance(part: Part, points: np.ndarray) -> np.ndarray:
