@@ -79,10 +79,10 @@ plt.show()
 # %%
 # Comparison
 # ----------
-# The spin misses by half of itself, far beyond all error bars. A golf ball has a stiff core in a
-# soft cover, and this ball is homogeneous.
+# The spin misses by half of itself, far beyond all error bars. A golf ball has a core and a cover,
+# and this ball is homogeneous: the page of the layered golf ball goes on from here.
 cross, errors = "Cross 2010, Phys. Teach. 48", result.errors
-layered = "likely the layers, a stiff core in a soft cover; this ball is homogeneous"
+layered = "likely the layers; this ball is homogeneous"
 rows = [
     ("restitution e_n", "1", result["restitution"], errors["restitution"], 0.87, 0.01, cross,
      "fitted: loss factor"),

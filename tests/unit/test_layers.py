@@ -148,6 +148,14 @@ def test_faces_between_layers_of_a_ball_are_on_a_sphere():
     assert between.sum() > 20 and radius == pytest.approx(0.03, rel=1e-12) and (built.arrays["mesh.arc_of"][between] == 1).all()
 
 
+def test_a_thin_cover_in_space():
+    """Flat cells of a cover of 1.9 mm belong to it, though their middles are below the sphere that their faces cut."""
+    body = ff.Ball(radius=0.0214, position=(0, 0.022, 0), velocity=(1, -3, 0), layers=[ff.Layer(radius=0.0195, young=6e7)], **RUBBER)
+    built = assembly.assemble(ff.Scene(bodies=[body], obstacles=[ff.Plane()], accuracy=0.06).ready())
+    own, core = np.bincount(built.arrays["mesh.materials"], built.mesh.volumes)
+    assert core / (own + core) == pytest.approx((0.0195 / 0.0214) ** 3, rel=0.02)
+
+
 def test_sides_between_cells_of_different_layers():
     cells = np.array([[0, 1, 2], [1, 3, 2], [3, 4, 2]])
     assert np.sort(interfaces(cells, np.array([0, 1, 1]))).tolist() == [[1, 2]] and len(interfaces(cells, np.zeros(3, dtype=int))) == 0

@@ -176,6 +176,7 @@ def mesh_shape(
     """
     spherical = kind in ("ball", "shell")
     bulk = min(sizes.bulk, LARGEST * lengths[0]) if spherical else sizes.bulk
+    bulk = min(bulk, _largest_in_layers(lengths, parts)) if spherical else bulk
     largest, contact, slack = (
         float(np.round(size / scale, mesh.DIGITS))
         for size in (bulk, min(bulk, sizes.contact), sizes.slack)
@@ -222,6 +223,15 @@ def mesh_shape(
     if kind == "shell":
         labels[inner] = SolidMesh.NEVER
     return SolidMesh(points, cells, faces, labels, (*patches, *balls))
+
+
+def _largest_in_layers(lengths: np.ndarray, parts: Sequence["Part"]) -> float:
+    """The largest element size [m] in concentric layers of a ball or shell. A face with sides sqrt(R t)
+    on a sphere of radius R dips t/6 below it, and stays in a layer of the thickness t.
+    """
+    balls = [part for part in parts if part.kind == "ball" and not part.numbers[0].any()]
+    radii = np.sort([*lengths, *(float(part.numbers[1]) for part in balls)])
+    return float(np.sqrt(radii[1:] * np.diff(radii)).min()) if balls else np.inf
 
 
 def _onto_balls(
