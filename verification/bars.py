@@ -75,8 +75,8 @@ def _inverted(transform: Callable[[np.ndarray], np.ndarray], t: float, n: int = 
 
 
 def relaxing_bar(folder: Path, elements: int, share: float, tau: float) -> Iterator[Row]:
-    """V19, L = 10, E = rho = 1, with a parallel Maxwell branch of modulus share E and relaxation
-    time tau.
+    """V19, L = 10, E = rho = 1, nu = 0, with a parallel Maxwell branch of modulus share E and
+    relaxation time tau: one of shear, share E/2, and one of volume, share E/3.
 
     On a rigid plane the bar is in contact until the wave front returns, T = 2 L/c with c^2 = 1 +
     share. The stress on the plane is v times the inverse transform of sqrt(E(s))/s with E(s) = 1 +
@@ -85,7 +85,7 @@ def relaxing_bar(folder: Path, elements: int, share: float, tau: float) -> Itera
     """
     size, contact = 10 / elements, 20 / math.sqrt(1 + share)
     run = bodies(folder, {"accuracy": 0.05, "law": "neohookean", "young": 1, "nu": 0, "density": 1, "dt": size / 4, "chatter": "continue", "end_time": 1.5 * contact,
-                          "body": [_bar(10, 3 * size, position=[0, 5], velocity=[0, -SPEED], branches=[[share / 2, tau]])],
+                          "body": [_bar(10, 3 * size, position=[0, 5], velocity=[0, -SPEED], branches=[[share / 2, tau]], bulk_branches=[[share / 3, tau]])],
                           "obstacle": [{"kind": "plane", "point": [0, 0], "normal": [0, 1]}], "contact": {"penalty": 1e3}})
     impulse = _inverted(lambda s: np.sqrt(1 + share * s * tau / (1 + s * tau)) / s**2, contact)
     group = f"tau = {tau / contact:.2g} T"

@@ -7,6 +7,7 @@ import pytest
 
 from . import hertz
 from .case import LAWS
+from .measure import outcome
 
 KEPT = ("energy", "radial", "axial", "even")
 
@@ -42,7 +43,7 @@ def test_two_balls_are_one_on_a_plane(disc, tmp_path):
     since their common tangent plane is at rest."""
     sizes = dict(mesh_size=3e-3, contact_mesh_size=3e-4)
     list(hertz.balls(tmp_path, 1, penalty=2e12, **sizes))
-    pair = hertz.outcome(tmp_path / "run").summary
+    pair = outcome(tmp_path / "run").summary
     single = disc(kind="ball-axisymmetric", speed=0.5, penalty=4e12, **hertz.BALL, **sizes).summary
     assert pair["contact_time"] == pytest.approx(single["contact_time"], rel=5e-3)
     assert pair["thresholded_contact_time"] == pytest.approx(single["thresholded_contact_time"], rel=1e-3)

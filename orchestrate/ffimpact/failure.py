@@ -19,6 +19,7 @@ __all__ = [
     "brief",
     "gathered",
     "of_code",
+    "printable",
     "shortened",
     "signals",
     "suggestion",
@@ -67,8 +68,16 @@ def brief(value: object) -> str:
     """Returns a value as the text that a message repeats, cut if it is long. True and false are
     written as in TOML.
     """
-    text = str(value).lower() if isinstance(value, bool) else str(value)
-    return shortened(text, MOST + len(MORE))
+    try:
+        text = str(value).lower() if isinstance(value, bool) else str(value)
+    except ValueError:
+        text = "an integer with more digits than Python writes"
+    return shortened(printable(text), MOST + len(MORE))
+
+
+def printable(text: str) -> str:
+    """Returns a text with escapes for bytes that are no UTF-8, which a command line may contain."""
+    return text.encode(errors="backslashreplace").decode()
 
 
 def shortened(text: str, limit: int) -> str:

@@ -65,7 +65,7 @@ def test_what_rolls_on_ends_the_run(tmp_path):
 def test_a_scene_says_it_in_toml_and_python(tmp_path):
     """The built-in scene, coarser: the figure of its height is drawn, an unknown word is refused,
     and a free block cannot come to rest."""
-    coarse = {"mesh_size": 0.02, "contact_mesh_size": 0.005, "loss": 2, "loss_model": "kelvin-voigt", "penalty": 1e10, "height": 0.05, "accuracy": 0.2}
+    coarse = {"mesh_size": 0.02, "contact_mesh_size": 0.005, "loss": 2, "loss_model": "kelvin-voigt", "penalty": 1e10, "position": [0, 0.1], "accuracy": 0.2}
     result = run.run(scene.load("disc-rest"), coarse, tmp_path / "out", estimate=False)
     assert result.scene["until"] == "rest" and result.summary["ended"] == "rest"
     drawing.draw(result.folder)

@@ -22,7 +22,7 @@ from tests.support.sweep import DRAWN, SIX, orphans, table, write
 def test_unknown_sweep_and_run():
     """Exit code 10 and one line with the existing names."""
     code, _, err = call("sweep", "nothing")
-    assert code == 10 and "built in: calibrate, calibrate-ball, calibrate-ball-3d, calibrate-oblique, conservation, contact-time-neohookean" in err and err.count("\n") == 1
+    assert code == 10 and "built in: calibrate, calibrate-ball, calibrate-ball-3d, calibrate-oblique, closest-points, conservation, contact-time-neohookean" in err and err.count("\n") == 1
     code, _, err = call("sweep", "law-comparison", "--run", "speed=3")
     assert code == 10 and "--run: 'speed=3' is no run of law-comparison (accepted: see --list)" in err
 

@@ -54,7 +54,7 @@ def test_forces_on_a_plane(ran, name, values):
 
 
 @pytest.mark.few(1)
-@pytest.mark.parametrize("values", [{}, {"angle": 60, "friction_static": 0.4, "contact_mesh_size": 0.03}])
+@pytest.mark.parametrize("values", [{}, {"body.1.direction": -60, "friction_static": 0.4, "contact_mesh_size": 0.03}])
 def test_both_bodies_bear_the_force_between_them(ran, values):
     """Each body carries the normal load once (to 10 % on coarse elements, as each has both roles;
     shear on finer ones), both together exactly twice."""

@@ -73,7 +73,7 @@ BAD = {
     "letters": (square(triangles=changed(TRIANGLES, 3, "2 3 b 0")), "triangle 3 is not v1 v2 v3 region in numbers"),
     "broken index": (square(triangles=changed(TRIANGLES, 3, "2 3.5 6 0")), "triangle 3 is not v1 v2 v3 region in numbers"),
     "broken edge": (square(edges=changed(EDGES, 3, "3 x 1")), "boundary edge 3 is not v1 v2 label in numbers"),
-    "three coordinates": (square(points=[f"{p} 0" for p in POINTS]), "triangle 1 is not v1 v2 v3 region in numbers"),
+    "three coordinates": (square(points=[f"{p} 0" for p in POINTS]), "vertex 3 is not x y label in numbers"),
     "index 0": (square(triangles=changed(TRIANGLES, 3, "2 0 6 0")), "triangle 3 (vertices 2, 0, 6) names a vertex that is not there (accepted: 1 to 9)"),
     "negative index": (square(triangles=changed(TRIANGLES, 3, "2 -3 6 0")), "triangle 3 (vertices 2, -3, 6) names a vertex that is not there"),
     "index 10": (square(triangles=changed(TRIANGLES, 3, "2 10 6 0")), "triangle 3 (vertices 2, 10, 6) names a vertex that is not there"),
@@ -94,7 +94,7 @@ BAD = {
     "overlap": (square(points=[*POINTS, "0.02 0.04 0"], triangles=[*TRIANGLES, "1 2 10 0"]), "triangle 1 (vertices 1, 2, 5) and triangle 9 (vertices 1, 2, 10) overlap"),
     "three at a side": (square(points=[*POINTS, "0.04 0.08 0"], triangles=[*TRIANGLES, "2 5 10 0"]), "the side (vertices 2, 5) belongs to 3 triangles"),
     "edge missing": (square(edges=EDGES[:-1]), "the side (vertices 4, 1) of triangle 2 (vertices 1, 5, 4) is on the boundary but not among the boundary edges"),
-    "edge twice": (square(edges=[*EDGES, "2 1 1"]), "boundary edge 9 (vertices 2, 1) is listed twice"),
+    "edge twice": (square(edges=[*EDGES, "2 1 1"]), "boundary edge 1 (vertices 1, 2) is listed twice"),
     "edge inside": (square(edges=[*EDGES, "1 5 1"]), "boundary edge 9 (vertices 1, 5) lies inside the body"),
     "edge nowhere": (square(edges=[*EDGES, "1 9 1"]), "boundary edge 9 (vertices 1, 9) is no side of a triangle"),
     "edge of no length": (square(edges=[*EDGES, "1 1 1"]), "boundary edge 9 (vertices 1, 1) is no side of a triangle"),
@@ -103,7 +103,7 @@ BAD = {
     "by a point": (square(POINTS + BY_A_POINT[0][1:], TRIANGLES + BY_A_POINT[1], EDGES + BY_A_POINT[2]), "vertex 9 at (0.1, 0.1) has 4 boundary edges: the body hangs together by a point"),
     "nothing may touch": (square(edges=[edge[:-1] + "7" for edge in EDGES]), "no boundary edge has the label 1 of the contact boundary, but labels from 7 to 7"),
     "slanted axis": (square(edges=changed(EDGES, 1, "1 2 2")), "boundary edge 1 (vertices 1, 2) has the label 2 of the symmetry axis but does not lie on the vertical line x = 0"),
-    "right of the body": (square(edges=[e[:-1] + "2" if e[:3] in ("3 6", "6 9") else e for e in EDGES]), "vertex 1 at (0, 0) lies to the left of the symmetry axis"),
+    "right of the body": (square(edges=[e[:-1] + "2" if e[:3] in ("3 6", "6 9") else e for e in EDGES]), "its axis is x = 0.1 (accepted: half a meridian plane, to the right of its axis x = 0)"),
     "half an axis": (square(edges=changed(EDGES, 7, "7 4 2")), "boundary edge 8 (vertices 4, 1) lies on the symmetry axis, the vertical line x = 0, but has the label 1 (accepted: 2)"),
 }
 

@@ -9,7 +9,7 @@ from ffimpact.__main__ import main
 LONG = "x" * 300  # longer than a name may be
 NO_NUMBERS = ["x", "8x", "--8", "+-8", "1e", "e5", "1e+", ".", "-", "8.", "nan", "inf", "-inf", "1,5", "1 2", "８", "٣.٥", "½",
               "8\n9", "true", "[8]", "$(touch pwned)", "`touch pwned`", "'; touch pwned; '", '"', "\\", "8" * 5000]
-RANGES = [("young", "0"), ("young", "1e30"), ("nu", "0.5"), ("nu", "0.51"), ("nu", "-0.1"), ("density", "0"), ("density", "-1722"), ("radius", "0"), ("radius", "1e30"),
+RANGES = [("young", "0"), ("young", "1e30"), ("nu", "0.51"), ("nu", "-0.1"), ("density", "0"), ("density", "-1722"), ("radius", "0"), ("radius", "1e30"),
           ("speed", "-1"), ("speed", "1e10"), ("speed", "1e400"), ("speed", "-1e-300"), ("angle", "90.001"), ("angle", "-1"), ("spin", "1e30"), ("height", "-1e-9"),
           ("gravity", "-9.81"), ("body_force_x", "1e30"), ("penalty", "0"), ("exponent", "0.5"), ("exponent", "5"), ("friction_static", "-0.1"),
           ("friction_dynamic", "11"), ("slip_velocity", "0"), ("mesh_size", "-1"), ("degree", "3"), ("degree", "1.5"), ("dt", "-1e-5"), ("accuracy", "0"),
@@ -86,4 +86,6 @@ COMMANDS = {
     ("run", "disc-normal", "--checkpoint-every", "-1"): "checkpoint_every: -1", ("run", "disc-normal", "--out"): "--out", ("sweep",): "SWEEP",
     ("sweep", "nothing"): "nothing: no such sweep", ("sweep", "oblique", "--run", "x"): "--run: 'x'", ("movie", "disc-oblique", "--frames", "٣"): "--frames",
     ("compare", "disc-normal"): "two or more different scenes", ("compare", "disc-oblique", "disc-oblique"): "two or more different scenes",
-    ("run", "disc-normal\n"): "no such scene"}
+    ("run", "disc-normal\n"): "no such scene", ("run", "disc-normal", "--set", "speed=\udcff"): r"speed: '\\udcff' is not a number",
+    ("run", "disc-normal", "--set", "\udcff=8"): r"\\udcff: no such entry", ("run", "disc-normal", "--set", "speed=" + "8" * 5000): "speed: 8.* is out of range",
+    ("run", "disc-normal", "--set", "speed=0x" + "f" * 5000): "speed: an integer with more digits than Python writes is out of range"}

@@ -20,7 +20,7 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticCustomError
 
-from ..failure import BadInput, brief, suggestion
+from ..failure import BadInput, brief, printable, suggestion
 from .dimension import Dimension
 from .parameter import Rule, plain
 
@@ -257,7 +257,7 @@ class Entries(BaseModel, metaclass=_Made):
         ]
         try:
             model = cls.model_validate(
-                {name: table[name] for name in table if name not in others},
+                {printable(name): table[name] for name in table if name not in others},
                 context={"of": dimension},
             )
         except ValidationError as error:

@@ -155,7 +155,7 @@ def toml_value(value: Any) -> Any:
         return value.tolist() if isinstance(value, np.generic | np.ndarray) else value
     try:
         return tomllib.loads(f"value = {value}")["value"] if "\n" not in value else value
-    except tomllib.TOMLDecodeError:
+    except ValueError:  # no TOML, or a number with more digits than Python reads
         return value
 
 
