@@ -54,8 +54,9 @@ def run(
     is reused unless `force` is set. With `estimate` coarser runs estimate the errors, and with
     `figures` the figures are drawn. Progress is shown unless `progress` is False: as a line that
     changes, in a pipe or a file as a line every 20 s or more. `watch` is called with the Progress of
-    the main run every 0.2 s or so; if it returns True the run ends there, without an error estimate,
-    and is never reused. If the scene does not set `fields`, the run keeps 60 states. The folder has
+    the first run, not of coarser and finer ones, about every 10 ms, after a step; if it returns True
+    the run ends within some steps, without an error estimate, and is never reused. A reused run calls
+    nothing. If the scene does not set `fields`, the run keeps 60 states. The folder has
     the files that the command `ffimpact run` leaves. Raises the exceptions of ffimpact: BadInput,
     StepFailed and so on.
     """

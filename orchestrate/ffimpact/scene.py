@@ -170,8 +170,9 @@ class Scene(models.Top):
         """Returns a copy of the scene with entries set by their dotted names:
         scene.set({"body.1.velocity.2": -4}), or scene.set(accuracy=0.01).
 
-        An entry that is set to None is removed; the program then chooses its value. Raises
-        BadInput.
+        An entry that is set to None is removed; the program then chooses its value, as it does for
+        entries that belong to those that are set: a penalty to `young` (`released` names them).
+        scene.set({"body.1.material": ff.NeoHookean(...)}) changes a material. Raises BadInput.
         """
         changed = self.ready().override(plain(dict(values or {}) | entries))
         changed.refuse_rest()

@@ -359,6 +359,20 @@ def test_a_run_is_watched_and_stopped(tmp_path):
     assert longer["ended"] == "end_time" and longer.history.t.iloc[-1] == pytest.approx(end)
 
 
+def test_a_short_run_is_stopped_too(tmp_path):
+    """A run of a tenth of a second is asked to stop at the first look: it ends before its impact is
+    over, or counts as stopped if it was faster; no finer run follows, and nothing is estimated."""
+    seen: list[int] = []
+
+    def watch(progress: ff.Progress) -> bool:
+        seen.append(progress.steps)
+        return True
+
+    result = ff.run(drop(accuracy=0.1), figures=False, out=tmp_path / "run", watch=watch)
+    assert result["ended"] == "stopped" and seen and not result.errors
+    assert not any(words.startswith("not over") for words in result.summary["warnings"])
+
+
 def test_an_error_of_the_function_that_watches_ends_the_run(tmp_path):
     def watch(progress: ff.Progress) -> None:
         raise ValueError("mine")

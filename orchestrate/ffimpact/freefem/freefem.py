@@ -331,8 +331,8 @@ class Process:
     log: Path
     errors: TextIO
 
-    def end(self, progress: Progress | None = None) -> tuple[int, str]:
-        """Waits for the end of the process. Raises TooLong or KeyboardInterrupt by the limits of
+    def end(self, progress: Progress | None = None, poll: float = POLL) -> tuple[int, str]:
+        """Waits for the end of the process, with a look at its log every `poll` [s]. Raises TooLong or KeyboardInterrupt by the limits of
         this thread.
 
         Returns the exit code, negative for a signal, and the script's message for the user, or "".
@@ -343,7 +343,7 @@ class Process:
             while code is None:
                 _limit.check()
                 with suppress(subprocess.TimeoutExpired):
-                    code = self.child.wait(POLL)
+                    code = self.child.wait(poll)
                 *whole, unread = (unread + lines.read()).split("\n")
                 for match in filter(None, map(SAYS.match, whole)):
                     if progress:

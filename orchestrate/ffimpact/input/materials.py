@@ -43,7 +43,9 @@ LAW_WORDS = ("svk", "neohookean", "mooney-rivlin", "ogden", "incompressible")
 LAW = word("svk", LAW_WORDS).means(
     "constitutive law: St. Venant-Kirchhoff (5), compressible neo-Hookean (6), or another"
 )
-YOUNG = real(7e6, 1e-6, 1e18, "Pa").means("Young's modulus E")
+YOUNG = real(7e6, 1e-6, 1e18, "Pa").means(
+    "Young's modulus E; with branches or a flat loss that of slow motions, and impacts are stiffer"
+)
 NU = real(0.45, 0, 0.5, "-").means(
     "Poisson's ratio; the paper says only nu -> 0.5; 0.5: J = 1, of all laws but svk"
 )

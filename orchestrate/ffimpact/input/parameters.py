@@ -42,8 +42,8 @@ DEPENDS_ON = {
     "loss_range": ("young", "mu", "density", "radius"),
     **dict.fromkeys(("share", "alpha", "mu"), ("law",)),
     "young": ("mu",),
-    "penalty": ("young", "mu", "density", "radius", "exponent"),
-    "dt": ("young", "mu", "density", "radius"),
+    "penalty": ("young", "mu", "density", "material", "radius", "exponent"),
+    "dt": ("young", "mu", "density", "material", "radius"),
     **dict.fromkeys(("mesh_size", "contact_mesh_size"), ("radius",)),
 }
 

@@ -21,7 +21,6 @@ __all__ = ["errors", "zero_by_symmetry"]
 
 # Energies and works whose error estimate is that of the energy, relative to the largest energy.
 ENERGIES = (
-    "energy_initial",
     "energy_final",
     "translation_energy",
     "rotation_energy",

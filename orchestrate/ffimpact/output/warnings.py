@@ -751,7 +751,7 @@ def _ending(e: Evidence) -> Iterator[Sentence]:
     several = len(e.bodies) > 1
     in_contact = facts["in_contact"] and not pushed and (several or strikes)
     if (
-        e.record["ended"] != "rest"
+        e.record["ended"] not in ("rest", "stopped")
         and facts["rolling"] == 0
         and (facts["until_rest"] or in_contact)
     ):

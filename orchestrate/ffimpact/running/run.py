@@ -7,6 +7,7 @@ module output/folder.py makes, locks and replaces folders.
 
 import hashlib
 import json
+import logging
 import math
 import os
 import re
@@ -56,6 +57,8 @@ from .outcome import FAILURES
 from .plan import Plan, measure
 from .solver import LAST_STATE, Earlier, Solver, Watch
 
+log = logging.getLogger("ffimpact")
+
 __all__ = [
     "DECISIVE",
     "states",
@@ -102,6 +105,8 @@ def run(
     folder = result_folder(Path(out or RESULTS / scene.name))
     finished = finished_in(folder, force)
     if not force and (there := reusable(scene, folder, estimate)):
+        if watch:
+            log.warning("%s: is reused, so watch sees nothing (force=True runs it again)", folder)
         return there
 
     program = freefem.find()
@@ -129,7 +134,7 @@ def run(
         try:
             with Solver(program, scene, stage, lock, line, estimate, watch, earlier) as solve:
                 solve({}, stage)
-                estimate = estimate and read_summary(stage).get("ended") != STOPPED
+                estimate = estimate and not solve.stopped
                 estimated = (
                     estimates.settle(
                         stage,
@@ -159,6 +164,8 @@ def run(
         }
         write_fields(stage)
         _tell_used(stage / "scene.toml", scene)
+        # also if the run has come to its end before it was seen that it was asked to stop
+        estimated |= {"ended": STOPPED} if solve.stopped else {}
         _finish(stage, scene, estimated | {"total_seconds": time.monotonic() - started}, provenance)
         _put(stage, folder, scene)
     return Record(folder, read_summary(folder), reused=False)

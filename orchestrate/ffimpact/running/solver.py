@@ -26,7 +26,9 @@ __all__ = ["LAST_STATE", "Earlier", "Solver", "Watch"]
 
 
 # A file in the folder of a run that ends it at its next report (edp/program/run/march.idp).
-STOP = "stop"
+# Files in the folder of a run that ask it to end, and to report each step; seconds between two looks.
+STOP, WATCHED = "stop", "watched"
+LOOK = 0.01
 LAST_STATE = "last-state"  # the checkpoint at the end of a run (edp/program/run/checkpoint.idp)
 # Sees the progress of the main run and its folder; True ends the run.
 Watch = Callable[[freefem.At, Path], object]
@@ -78,6 +80,7 @@ class Solver(AbstractContextManager["Solver", None]):
             and threading.current_thread() is threading.main_thread()
         )
         self.watch, self.earlier = watch, earlier
+        self.stopped = False  # by watch
         self.own_mesh = not scene.of_files
         self.number = 0
         # The coarser runs that have started, by folder, with the entries that they override.
@@ -119,11 +122,14 @@ class Solver(AbstractContextManager["Solver", None]):
                 def show(at: freefem.At) -> None:
                     setting_up.close()  # the first report comes with the first steps
                     display.show(at)
-                    if self.watch and where == self.stage and self.watch(at, where):
+                    if watched and not self.stopped and watched(at, where):
+                        self.stopped = True
                         (where / STOP).touch()
 
-                exit_code, message = process.end(show)
-        (where / STOP).unlink(missing_ok=True)
+                watched = self.watch if where == self.stage else None
+                exit_code, message = process.end(show, LOOK if watched else freefem.POLL)
+        for name in (STOP, WATCHED):
+            (where / name).unlink(missing_ok=True)
         evaluate_numbers(where)
         check(where, exit_code, message)
         display.at("ready", 1.0)
@@ -154,6 +160,8 @@ class Solver(AbstractContextManager["Solver", None]):
             prepare(earlier.scene, where, scene) if earlier else prepare(scene, where)
         )
         (where / "scene.toml").write_text(scene_toml, "utf-8")
+        if self.watch and where == self.stage:
+            (where / WATCHED).touch()
         if display:
             display.at("set-up")
         flags = flags | {"out": where} | ({"restart": where / "checkpoint"} if goes_on else {})
