@@ -262,7 +262,7 @@ class Result:
 
     def probe(self, *point: float, body: int = 1) -> pd.DataFrame:
         """The motion of a material point of a body, from its centre of mass on [m]: a row for each kept
-        state with position, velocity and stresses. See Fields.probe.
+        state, of which there is at most one at each step, with position, velocity and stresses.
         """
         return self.fields.probe(point, body)
 

@@ -38,7 +38,8 @@ class State:
     """The bodies at one instant, in SI units, with values at the n nodes of quadratic elements.
 
     time [s]; points (n, 3): reference coordinates [m], in which the bodies lie side by side;
-    cells (m, 6) triangles or (m, 10) tetrahedra: the nodes of each element, corners first; body
+    cells (m, 6) triangles or (m, 10) tetrahedra: the nodes of each element, corners first, then the
+    middles of its sides 01, 12, 20 (03, 13, 23); what symmetry leaves out is not there; body
     (m,): the number of its body, from 1; displacement (n, 3) from `points` [m], velocity (n, 3)
     [m/s], jacobian (n,): det F; von_mises, pressure (-tr/3 of Cauchy's stress) (n,) [Pa],
     energy_density (n,) [J/m3 of the reference], cauchy_stress (n, 6): xx yy zz xy yz xz [Pa].
