@@ -16,9 +16,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
-from .failure import BadInput, brief, unknown
+from .failure import BadInput, brief, suggestion, unknown
 from .freefem import freefem
 from .input.parameter import plain
+from .input.parameters import PARAMETERS
 from .places import RESULTS
 from .progress import muted
 from .result import Progress, Result, of_run
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 __all__ = ["Plan", "Progress", "Study", "plan", "run", "sweep"]
+
+ARGUMENTS = ("out", "force", "estimate", "figures", "progress", "watch")  # of run()
 
 
 def run(
@@ -100,6 +103,11 @@ def _overrides(entries: Mapping[str, Any] | None, more: dict[str, Any]) -> dict[
     """
     if not isinstance(entries or {}, Mapping) or not all(isinstance(k, str) for k in entries or {}):
         raise BadInput(f"entries: '{entries}' is no table (accepted: {{\"body.1.young\": 2e6}})")
+    for name in more:
+        if name not in PARAMETERS and (hint := suggestion(name, ARGUMENTS)):
+            raise BadInput(
+                f"{name}: no such argument{hint} (accepted: {', '.join(ARGUMENTS)}, and entries of the scene)"
+            )
     return dict(entries or {}) | {name: value for name, value in more.items() if value is not None}
 
 

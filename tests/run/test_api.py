@@ -396,3 +396,9 @@ def test_without_estimate_there_is_one_run(tmp_path, capsys):
     )
     assert result["estimated_error"] is None and not result.errors
     assert "refinements" not in result.summary  # an entry of the second run
+
+
+def test_a_misspelt_argument_is_named():
+    """An argument of run() that is misspelt is no entry of the scene."""
+    with pytest.raises(ff.BadInput, match="watc: no such argument; did you mean watch"):
+        ff.run("disc-normal", watc=print)

@@ -596,7 +596,7 @@ def touches(runs: Sequence[Answers]) -> list[str]:
     other = next((k for k, touched in enumerate(seen) if touched != seen[0]), 0)
     return (
         [
-            f"touches: {seen[0]} contact intervals, {seen[other]} with {COARSER**other:.1f} times larger elements and "
+            f"touches: in contact {seen[0]} times, {seen[other]} times with {COARSER**other:.1f} times larger elements and "
             "steps: results of runs with different numbers of contacts may differ by more than the error "
             "estimates: see contacts.csv, or ask for a smaller accuracy"
         ]
