@@ -132,13 +132,13 @@ def impacts(body: str, kind: str, friction: float, angles: list[float], out: Pat
 
     The error bars come from a coarser run. The results of a failed run are nan.
     """
-    place, base, name = out / f"{body}-{kind}", BASE | KINDS[kind][body], f"{body}-oblique"
+    place, base = out / f"{body}-{kind}", BASE | KINDS[kind][body]
+    opened = load(f"{body}-oblique").override(base)
     points = [{"direction": -angle, "friction_static": friction, "friction_dynamic": friction} for angle in angles]
-    fine = study.study(points, place, base, LIMIT, name)
-    loaded = load(name)
-    coarser = [point | scaled(loaded.override(base | point), read_scene(study.place(place, point)), estimate.COARSER) if code == 0 else point
+    fine = study.study(points, place, {}, LIMIT, opened)
+    coarser = [point | scaled(opened.override(point), read_scene(study.place(place, point)), estimate.COARSER) if code == 0 else point
                for point, code in zip(points, fine.exit)]
-    coarse = study.study(coarser, place / "coarser", base, LIMIT, name)
+    coarse = study.study(coarser, place / "coarser", {}, LIMIT, opened)
     rows = []
     for angle, (_, run), (_, other) in zip(angles, fine.iterrows(), coarse.iterrows()):
         row = {"body": body, "kind": kind, "friction": friction, "angle": angle, "speed": base["speed"],

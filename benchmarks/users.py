@@ -335,7 +335,7 @@ def _reference(name: str, case: Case, out: Path) -> list[Row] | Failure:
 
     try:
         used = read_answers(solve({}, "hand").folder).used
-        finer = [scaled(opened, opened.values | opened.sizes, used, 1 / factor) for factor in FINER]
+        finer = [scaled(opened, used, 1 / factor) for factor in FINER]
         best, other = (solve(entries, f"finer-{factor:.3g}") for entries, factor in zip(finer, FINER))
     except Failure as failure:
         return failure

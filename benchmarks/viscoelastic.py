@@ -17,10 +17,12 @@ energy is a minimum for a prescribed motion of the punch. Brilliantov et al. hav
 
 A branch with modulus G and relaxation time tau dissipates in Hertz' motion, to first order in G,
 
-  D = G dE*/dmu times the double integral of exp(-|t - s|/tau) min(b(t), b(s)) x'(t) x'(s).
+  D = G (d/dmu - 2/3 d/dlambda) E* times the double integral of exp(-|t - s|/tau) min(b(t), b(s))
+  x'(t) x'(s).
 
-It follows from the same punches with the half-widths b at the two times, since the displacement
-under a punch and the bulge of the surface beside it do not depend on the moduli.
+The branch acts on the deviator: the bulk modulus lambda + 2/3 mu does not relax. D follows from the
+same punches with the half-widths b at the two times, since the displacement under a punch and the
+bulge of the surface beside it do not depend on the moduli.
 """
 
 import itertools
@@ -133,7 +135,8 @@ def lost_to_branch(speed: float, steps: int = 2000) -> float:
     pace = 0.8 * depth / speed * np.sin(middle) ** -0.2 * math.pi / steps
     t, increments, width = np.cumsum(pace) - pace / 2, np.diff(x), np.sqrt(RADIUS * depth * np.sin(middle) ** 0.8)
     kernel = np.exp(-np.abs(t[:, None] - t) / RELAXES[1]) * np.minimum(width[:, None], width)
-    return YOUNG / (1 - NU**2) * coefficient(RELAXES[0], 0) * increments @ kernel @ increments / (MASS * speed**2 / 2)
+    of_deviator = coefficient(RELAXES[0], -2 / 3 * RELAXES[0])
+    return YOUNG / (1 - NU**2) * of_deviator * increments @ kernel @ increments / (MASS * speed**2 / 2)
 
 
 def theory(kind: str, speed: float) -> tuple[float, float]:
