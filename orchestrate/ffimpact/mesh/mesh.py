@@ -689,7 +689,7 @@ def inner_outlines(points: np.ndarray, sides: np.ndarray) -> list[np.ndarray]:
     """For each hole of a body, the numbers of its sides among the boundary sides (f, axes).
 
     The outline with the rightmost point is the outer one. So `sides` may be those of the half at
-    x >= 0, without the sides on the axis or plane of symmetry.
+    x >= 0, but not those on the axis or plane of symmetry, which would join the outlines.
     """
     piece = pieces(len(points), sides)[sides[:, 0]]
     outer = piece[points[sides][:, :, 0].max(axis=1).argmax()]
@@ -705,7 +705,8 @@ def without_inner(
     the outline and on the rest of the boundary.
     """
     labels = made.labels.copy()
-    for own in inner_outlines(made.points, made.sides):
+    surface = np.flatnonzero((labels == FREE) | (labels >= made.NEVER))  # not a plane of symmetry
+    for own in (surface[hole] for hole in inner_outlines(made.points, made.sides[surface])):
         rest = np.delete(made.sides, own, axis=0)
         if not keeps(*(made.points[np.unique(sides)] for sides in (made.sides[own], rest))):
             labels[own] = made.NEVER
