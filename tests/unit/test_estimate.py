@@ -396,7 +396,7 @@ def test_runs_with_other_numbers_of_contacts_are_a_warning():
     sentence, = estimate.touches(several)
     assert sentence.startswith("touches: in contact 3 times, 2 times with 1.4 times larger elements and steps: ")
     coarsest, = estimate.touches([several[0], several[2], several[1]])
-    assert "2 with 2.0 times larger" in coarsest
+    assert "2 times with 2.0 times larger" in coarsest
     assert not estimate.touches(several[::2]) and not estimate.touches(several[:1])
 
 
