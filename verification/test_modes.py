@@ -78,14 +78,15 @@ def test_modes_of_a_body_that_turns_about_any_axis(tmp_path):
     """Modes are computed in axes that rotate with the body.
 
     To the accuracy of the mesh, a falling ball that spins about x has the same modal energies as
-    one that spins about z. They do not exceed its vibration energy.
+    one that spins about z. They do not exceed its vibration energy. Steps are short: long ones
+    leave energy in higher modes than these.
     """
     shares = []
     for name, spin in (("about z", (0, 0, 300)), ("about x", (300, 0, 0))):
         scene = solids.Scene([solids.ball((0, 0, 0), 0.05, 2, shift=(0, 0.051, 0), velocity=(0, -2, 0), spin=spin)], [("plane", (0, 0, 0, 0, 1, 0), (0, 0, 0))])
         folder = tmp_path / name
         folder.mkdir()
-        summary = runs.solid_bodies(folder, scene, modes=60, accuracy=0.2).summary
+        summary = runs.solid_bodies(folder, scene, modes=60, accuracy=0.02).summary
         shares.append(pd.read_csv(folder / "run/modes.csv").energy.sum() / summary["vibration_energy"])
         assert 0.8 < shares[-1] < 1.02, (name, shares)
     assert shares[1] == pytest.approx(shares[0], abs=0.03)

@@ -50,5 +50,11 @@ def moved(m: mesh.Mesh, x: float, y: float) -> mesh.Mesh:
 
 def agree(a: results.Record, b: results.Record, band: float,
           names=("normal_force", "kinetic", "elastic", "contact", "y", "vy", "contact_size", "max_penetration")) -> None:
+    """Requires the same histories, except the contact size at instants without force: there round-off decides
+    whether a point touches."""
+    loaded = a.history["normal_force"] > 0
     for name in names:
+        if name == "contact_size":
+            assert abs(a.history[name] - b.history[name])[loaded].max() < band * a.history[name].max()
+            continue
         assert abs(a.history[name] - b.history[name]).max() < band * abs(a.history[name]).max(), name
