@@ -198,7 +198,7 @@ def test_pairs_inherit_from_contact():
     tables["contact"]["pair"] = [{"bodies": ["floor", "disc"], "friction_static": 0.3, "friction_dynamic": 0.1}, {"bodies": ["block", "disc"], "penalty": 2e9}]
     made = assembly.assemble(read(tables)).arrays
     assert (made["pairs.first"].tolist(), made["pairs.second"].tolist()) == ([0, 0, 1], [-1, 1, -1])
-    assert made["pairs.values"].tolist() == [[1e9, 0.3, 0.1], [2e9, 0.5, 0.5], [1e9, 0.2, 0.2]]
+    assert made["pairs.values"].tolist() == [[1e9, 0.3, 0.1, 0], [2e9, 0.5, 0.5, 0], [1e9, 0.2, 0.2, 0]]   # 0: no expression to replace
 
 
 @pytest.mark.few(5)
