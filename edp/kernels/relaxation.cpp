@@ -50,12 +50,8 @@ static double storedOverG(const tensors::Vector<3> &I, double s) {
 }
 
 Relaxation::Relaxation(const Elements &all)
-  : StressTerm(all), lost(history.add("dissipated", all.nq, {0})) {
-  const auto ofShear = [](const laws::Material &m) { return m.dampers->shear; };
-  for (size_t k = 0, n = largestNumber(all, ofShear); k < n; k++)
-    states.push_back(&history.add("A" + std::to_string(k), all.nq, {1, 1, 1, 0, 0, 0}));
-  ofTangent.keep(states, false);
-}
+  : Branched(all, largestNumber(all, [](const laws::Material &m) { return m.dampers->shear; }),
+             {1, 1, 1, 0, 0, 0}) {}
 
 void Relaxation::addStress(const Step &step, Deformed &e) {
   if (step.isStatic()) return;
@@ -158,12 +154,8 @@ static Symmetric directionOfLogarithm(const Symmetric &C0, const Symmetric &C1) 
 }
 
 BulkRelaxation::BulkRelaxation(const Elements &all)
-  : StressTerm(all), lost(history.add("dissipated", all.nq, {0})) {
-  const auto ofBulk = [](const laws::Material &m) { return m.dampers->bulk; };
-  for (size_t k = 0, n = largestNumber(all, ofBulk); k < n; k++)
-    states.push_back(&history.add("a" + std::to_string(k), all.nq, {0}));
-  ofTangent.keep(states, false);
-}
+  : Branched(all, largestNumber(all, [](const laws::Material &m) { return m.dampers->bulk; }),
+             {0}) {}
 
 void BulkRelaxation::addStress(const Step &step, Deformed &e) {
   if (step.isStatic()) return;

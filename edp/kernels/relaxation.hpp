@@ -17,6 +17,28 @@ struct StatesOfTangent {
   void operator()(Archive &archive) { for (std::vector<double> &state : of) archive(state); }
 };
 
+// What branches of shear and of volume have in common: the states of number 0, 1 ..., the energy
+// dissipated so far.
+class Branched : public StressTerm {
+ public:
+  void linearise(bool stressed) override { ofTangent.keep(states, stressed); }
+  double dissipated(Time time, int q) const override { return *lost.at(time == atEnd, q); }
+  void archive(Archive &archive) override { StressTerm::archive(archive);  ofTangent(archive); }
+
+ protected:
+  std::vector<History::Column *> states;   // "state0", "state1" ...
+  StatesOfTangent ofTangent;
+  History::Column &lost;                   // "dissipated" [J/m3]
+
+  // n: largest number of branches of a material.
+  Branched(const Elements &all, size_t n, const std::vector<double> &initial)
+    : StressTerm(all), lost(history.add("dissipated", all.nq, {0})) {
+    for (size_t k = 0; k < n; k++)
+      states.push_back(&history.add("state" + std::to_string(k), all.nq, initial));
+    ofTangent.keep(states, false);
+  }
+};
+
 // Branches of shear, modulus G. Cb = det C^(-1/3) C; the state A of a branch is the inverse of the
 // viscous part of Cb, A = I at the start:
 //   W = G/2 [tr(Cb A) - 3 - ln det A],   dA/dt = (Cb^-1 - A)/tau.
@@ -24,23 +46,17 @@ struct StatesOfTangent {
 //   S : (C1 - C0)/2 = G/2 (Cb1 - Cb0) : Am = W1 - W0 + D
 // exactly, D = G/2 [f(A0) - f(A1)] >= 0, f(A) = tr(K A) - ln det A, for steps of any size.
 // (Simo 1987 with a state that relaxes exactly; Gonzalez 2000 for the step.)
-class Relaxation : public StressTerm {
+class Relaxation : public Branched {
  public:
   explicit Relaxation(const Elements &all);
   void addStress(const Step &step, Deformed &e) override;
-  void linearise(bool stressed) override { ofTangent.keep(states, stressed); }
   void addModuli(const Step &step, size_t g, int q, const Symmetric &C,
                  laws::Moduli &D) const override;
   void addEnergy(Time time, const Deformed &e, double *W) const override;
-  double dissipated(Time time, int q) const override { return *lost.at(time == atEnd, q); }
   void advance(const Step &step, const Deformed &e) override;
   void relax(const Deformed &e) override;
-  void archive(Archive &archive) override { StressTerm::archive(archive);  ofTangent(archive); }
 
  private:
-  std::vector<History::Column *> states;   // "A0", "A1" ...
-  StatesOfTangent ofTangent;
-  History::Column &lost;                   // "dissipated" [J/m3]
   const laws::Branches &branches(int q) const { return material(q).dampers->shear; }
   Symmetric A(size_t k, Time time, int q) const {
     return Eigen::Map<const Symmetric>(states[k]->at(time == atEnd, q));
@@ -50,23 +66,17 @@ class Relaxation : public StressTerm {
 // Branches of volume, modulus K, state a: W = K/2 (ln J - a)^2, da/dt = (ln J - a)/tau. In a step,
 // with r = (ln J0 + ln J1)/2 - a0,
 //   a1 = a0 + theta r,   D = K theta (1 - theta/2) r^2.
-class BulkRelaxation : public StressTerm {
+class BulkRelaxation : public Branched {
  public:
   explicit BulkRelaxation(const Elements &all);
   void addStress(const Step &step, Deformed &e) override;
-  void linearise(bool stressed) override { ofTangent.keep(states, stressed); }
   void addModuli(const Step &step, size_t g, int q, const Symmetric &C,
                  laws::Moduli &D) const override;
   void addEnergy(Time time, const Deformed &e, double *W) const override;
-  double dissipated(Time time, int q) const override { return *lost.at(time == atEnd, q); }
   void advance(const Step &step, const Deformed &e) override;
   void relax(const Deformed &e) override;
-  void archive(Archive &archive) override { StressTerm::archive(archive);  ofTangent(archive); }
 
  private:
-  std::vector<History::Column *> states;   // "a0", "a1" ...
-  StatesOfTangent ofTangent;
-  History::Column &lost;                   // "dissipated" [J/m3]
   const laws::Branches &branches(int q) const { return material(q).dampers->bulk; }
 };
 

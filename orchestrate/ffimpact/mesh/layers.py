@@ -31,12 +31,12 @@ ON = 1e-6  # distance of corners that are on the boundary of a region, over the 
 @dataclass(frozen=True)
 class Layers:
     """The regions of the layers of a body and the numbers of these layers, from 1. A later region
-    wins. `reach` is the bounding radius [m] of the body.
+    wins. `bounding_radius` [m] is that of the body.
     """
 
     parts: Sequence[Part]
     numbers: Sequence[int]
-    reach: float
+    bounding_radius: float
 
     def at(self, points: np.ndarray) -> np.ndarray:
         """The layer (n,) at points (n, axes), 0 for none."""
@@ -48,11 +48,11 @@ class Layers:
     @property
     def edges(self) -> list[Segment | Circle]:
         """The curves that bound the regions in the plane."""
-        return [edge for part in self.parts for edge in _edges(part, 4 * self.reach)]
+        return [edge for part in self.parts for edge in _edges(part, 4 * self.bounding_radius)]
 
     def differ(self, edge: Segment | Circle, points: np.ndarray) -> np.ndarray:
         """Whether the layers on both sides of points (n, 2) on an edge differ."""
-        away = BESIDE * self.reach * edge.normal(points)
+        away = BESIDE * self.bounding_radius * edge.normal(points)
         differ: np.ndarray = self.at(points + away) != self.at(points - away)
         return differ
 
@@ -161,11 +161,11 @@ def with_interfaces(
     inside: Callable[[np.ndarray], np.ndarray],
     sizes: Sizes,
 ) -> tuple[list[list[Piece]], list[tuple[Curve, float]]]:
-    """Returns the boundary of a body, split where interfaces between layers reach it, and the
+    """Returns the boundary of a body, split where interfaces between layers meet it, and the
     interfaces inside it with the largest element size [m] on each. `inside` are signed distances
     (n,) of points (n, 2) from the boundary, negative inside.
     """
-    near, edges = NEAR * layers.reach, layers.edges
+    near, edges = NEAR * layers.bounding_radius, layers.edges
     cuts: list[list[float]] = [[] for _ in edges]
     split: list[list[Piece]] = []
     for loop in boundary:
@@ -255,7 +255,7 @@ def layers_of_cells(corners: np.ndarray, layers: Layers) -> tuple[np.ndarray, bo
     """
     points = corners.reshape(-1, corners.shape[2])
     distance = np.min([_distance(part, points) for part in layers.parts], axis=0)
-    off = (distance > ON * layers.reach).reshape(corners.shape[:2])
+    off = (distance > ON * layers.bounding_radius).reshape(corners.shape[:2])
     of_corner = layers.at(points).reshape(corners.shape[:2])
     first = of_corner[np.arange(len(corners)), off.argmax(axis=1)]
     layer = np.where(off.any(axis=1), first, layers.at(corners.mean(axis=1)))
