@@ -25,12 +25,14 @@ from tests.support.cli import hear_interrupts
 from tests.support.direct import words as impact_words
 from tests.support.kills import at_work, place
 
-COARSE = {"law": "neohookean", "nu": "0.4", "accuracy": "0.2", "fields": "5"}
+# Steps so short that a run lasts and can be stopped.
+COARSE = {"law": "neohookean", "nu": "0.4", "accuracy": "0.2", "dt": "5e-6", "fields": "5"}
 SWEEP = """collect = ["impulse", "rebound_vy"]
 [set]
 law = "neohookean"
 nu = 0.4
 accuracy = 0.2
+dt = 5e-6
 fields = 5
 [product]
 speed = [4, 8, 11]
@@ -113,19 +115,22 @@ def holds(folder: Path, point: str) -> bool:
 
 
 def stop_at(point: str, process: subprocess.Popen, out: Path) -> list[int]:
-    """Stops the FreeFem++ processes of a run when `point` exists. They are running, so that a
-    signal kills them."""
+    """Stops the FreeFem++ processes of a run in which `point` exists. They are stopped before one
+    looks, so that none ends in between."""
     end = time.monotonic() + 60
-    while not holds(out.parent, point):
-        assert process.poll() is None and time.monotonic() < end, f"no {point}"
-    stopped = set()
-    while pids := set(freefems(out)) - stopped:
-        for pid in pids:
-            send(pid, signal.SIGSTOP)
-        stopped |= pids
-    assert freefems(out), f"it ended behind {point}"
-    # Also a command of FreeFem++ that now has another name.
-    return sorted(stopped)
+    while process.poll() is None and time.monotonic() < end:
+        stopped = set()
+        while pids := set(freefems(out)) - stopped:
+            for pid in pids:
+                send(pid, signal.SIGSTOP)
+            stopped |= pids
+        if freefems(out) and holds(out.parent, point):
+            # Also a command of FreeFem++ that now has another name.
+            return sorted(stopped)
+        for pid in stopped:
+            send(pid, signal.SIGCONT)
+        time.sleep(0.01)
+    raise AssertionError(f"no {point} while FreeFem++ is at work")
 
 
 def send(pid: int, number: signal.Signals) -> None:
