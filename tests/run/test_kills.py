@@ -218,7 +218,9 @@ def test_sigterm_at_the_start(tmp_path, delay):
     end = time.monotonic() + 5
     while at_work(tmp_path / "out") and time.monotonic() < end:
         time.sleep(0.02)
-    assert not at_work(tmp_path / "out") and not list(tmp_path.iterdir())
+    # The signal may come between the making of a folder and its lock: the folder then stays, empty.
+    left = [path for path in tmp_path.rglob("*") if path.is_file()]
+    assert not at_work(tmp_path / "out") and not left
 
 
 def test_a_library_changes_no_signal_handlers(fake, tmp_path):
