@@ -14,13 +14,13 @@ from typing import Annotated, Any, ClassVar, Self
 import numpy as np
 from pydantic import BeforeValidator
 
-from ..failure import BadInput, gathered
+from ..failure import BadInput, brief, gathered, suggestion
 from ..geometry import place_functions, tumbling
 from ..geometry.limits import LONGEST, SHORTEST
 from ..geometry.outlines import Loop, Outline, Shape, Turn
 from ..geometry.place_functions import Field
 from ..mesh import mesh, revolution, solids
-from ..mesh.layers import Layers
+from ..mesh.layers import Layers, contents, layers_of_cells, on_boundary
 from ..mesh.solid_file import GEOMETRIES
 from ..mesh.solid_mesh import SolidMesh
 from ..mesh.solids import Solid
@@ -61,6 +61,8 @@ MEAN = 24  # number of points along an axis from which the mean of a field follo
 BESIDE = 0.01  # distance of the box of a body from its sampled points, over its extents
 FINEST = 1 / 20000  # smallest element size over the half thickness of a body
 MOST_LAYERS = 100
+# Words for the sides and the cells of meshes, by the corners of a cell.
+NAMED = {3: ("lines", "triangles"), 4: ("surfaces", "tetrahedra")}
 MOST_STRETCH = 20.0  # largest accepted ratio of the lengths of an element
 FIELDS = ("initial_velocity", "initial_displacement")  # entries that are functions of place
 
@@ -248,6 +250,12 @@ class Body(MadeOf):
         """The mesh that a file or arrays contain, about its centre and not turned."""
         return self.drawn[1]
 
+    @property
+    def drawn_mesh(self) -> mesh.Mesh | SolidMesh | None:
+        """The file_mesh, or the coarse mesh of a geometry that represents its shape."""
+        geometry = isinstance(self.outline, Solid) and self.outline.geometry
+        return geometry.coarse if geometry else self.file_mesh
+
     @cached_property
     def start_position(self) -> np.ndarray:
         """The position (axes,) [m] of its centre at the start."""
@@ -330,11 +338,55 @@ class Body(MadeOf):
         """The regions of its layers about its centre: smaller radii and later regions win. Raises
         BadInput if the radius of a layer is not accepted.
         """
-        numbered = sorted(
-            enumerate(self.layers, 1), key=lambda item: -(item[1].radius or -math.inf)
-        )
+        by_place = [(k, layer) for k, layer in enumerate(self.layers, 1) if layer.group is None]
+        numbered = sorted(by_place, key=lambda item: -(item[1].radius or -math.inf))
         parts = [self._region(layer) for _, layer in numbered]
         return Layers(parts, [k for k, _ in numbered], self.outline.reach)
+
+    def layers_on(
+        self, made: mesh.Mesh | SolidMesh, rotation: np.ndarray
+    ) -> tuple[np.ndarray, bool]:
+        """The layer (t,) of each cell of a mesh of the body, turned by `rotation`, 0 for none, and
+        whether no region cuts a cell. Groups win over regions.
+        """
+        layers, follows = layers_of_cells(made.points[made.elements] @ rotation, self.regions)
+        for k, layer in enumerate(self.layers, 1):
+            if layer.group is not None:
+                layers[made.cell_groups[layer.group]] = k
+        return layers, follows
+
+    def _check_groups(self) -> None:
+        """Raises BadInput for a layer by a group that its file does not have, or that has cells of
+        another layer's group.
+        """
+        taken: dict[str, np.ndarray] = {}
+        for layer in (layer for layer in self.layers if layer.group is not None):
+            name, at = str(layer.group), layer.at("group")
+            own, cells = self._cells_of_group(name, at)
+            for other, others in taken.items():
+                if count := len(np.intersect1d(own, others)):
+                    raise BadInput(
+                        f"{at}: '{name}' has {count} {cells} of '{other}', which is another layer's (accepted: groups apart)"
+                    )
+            taken[name] = own
+
+    def _cells_of_group(self, name: str, at: str) -> tuple[np.ndarray, str]:
+        """The numbers of the cells of a group of its file in drawn_mesh, and the word for such cells."""
+        made = self.drawn_mesh
+        if made is None or getattr(self, "file", None) is None:
+            raise BadInput(
+                f"{at}: '{brief(name)}', but '{self.own_name}' has no file (accepted: radius or where, or shape = 'mesh' with "
+                "a file)"
+            )
+        sides, cells = NAMED[made.elements.shape[1]]
+        if name not in made.cell_groups:
+            names = ", ".join(made.cell_groups)
+            why = (
+                f"is a group of {sides}, not of {cells}" if name in made.groups else "is not known"
+            )
+            hint = suggestion(name, made.cell_groups)
+            raise BadInput(f"{at}: '{brief(name)}' {why}{hint} (accepted: {names})")
+        return made.cell_groups[name], cells
 
     def _region(self, layer: Layer) -> Part:
         """The region of a layer about the centre of the body."""
@@ -382,6 +434,7 @@ class Body(MadeOf):
                     f"'{self.own_name}', and {THINNEST:g} m apart from them and from other layers)"
                 )
         _ = self.regions
+        self._check_groups()
 
     @cached_property
     def materials(self) -> list[Material]:
@@ -459,21 +512,31 @@ class Body(MadeOf):
         """The softest of the materials on its surface, which decides penalty and sizes in contact."""
         if not self.layers:
             return self.made_of
-        numbers = np.unique(self.regions.at(self.outline.points)).tolist()
-        materials: list[Material] = [self.materials[k] for k in numbers]
+        made = self.drawn_mesh
+        if made:
+            numbers = self.layers_on(made, np.eye(self.dimension.axes))[0][on_boundary(made)]
+        else:
+            numbers = self.regions.at(self.outline.points)
+        materials: list[Material] = [self.materials[k] for k in np.unique(numbers)]
         return min(materials, key=lambda material: material.young)
 
     @cached_property
     def mean_density(self) -> float:
-        """Its mass over its area or volume [kg/m3], with layers by points on a grid: for estimates."""
+        """Its mass over its area or volume [kg/m3], with layers by its mesh or points on a grid: for
+        estimates.
+        """
         if not self.layers:
             return self.made_of.density
+        densities = np.array([material.density for material in self.materials])
+        if made := self.drawn_mesh:
+            numbers = self.layers_on(made, np.eye(self.dimension.axes))[0]
+            weight = contents(made, self.dimension is AXISYMMETRIC)
+            return float(np.average(densities[numbers], weights=weight))
         low, high = self.outline.points.min(axis=0), self.outline.points.max(axis=0)
         grid = np.meshgrid(*(np.linspace(*ends, MEAN) for ends in zip(low, high)))
         points = np.stack(grid, axis=-1).reshape(-1, len(low))
         points = points[self.outline.gap(points) < 0]
         weight = abs(points[:, 0]) if self.dimension is AXISYMMETRIC else np.ones(len(points))
-        densities = np.array([material.density for material in self.materials])
         return float(np.average(densities[self.regions.at(points)], weights=weight))
 
     @property
@@ -531,13 +594,11 @@ class Body(MadeOf):
         """The boundary edges or faces of a body from a file, None without a file: corners (f, axes,
         axes), about its centre and not turned, and whether each is contact boundary (f,).
         """
-        geometry = isinstance(self.outline, Solid) and self.outline.geometry
-        file_mesh = geometry.coarse if geometry else self.file_mesh
-        if not file_mesh:
+        made = self.drawn_mesh
+        if not made:
             return None
-        outer = file_mesh.labels != mesh.AXIS
-        corners = file_mesh.faces if isinstance(file_mesh, SolidMesh) else file_mesh.edges
-        return file_mesh.points[corners[outer]], file_mesh.labels[outer] == mesh.FREE
+        outer = made.labels != mesh.AXIS
+        return made.points[made.sides[outer]], made.labels[outer] == mesh.FREE
 
     @property
     def flat_outline(self) -> Outline:

@@ -10,17 +10,22 @@ from pathlib import Path
 import numpy as np
 
 from ..failure import BadInput
-from . import mesh
+from . import groups, mesh
 from .mesh import Gmsh
 
 __all__ = ["load", "read", "taken"]
 
-# Numbers of nodes by gmsh's element types that are read. The first three nodes of a triangle are
-# the corners, the first two nodes of a line are the ends.
-TRIANGLES = {2: 3, 9: 6}
-LINES = {1: 2, 8: 3}
+TRIANGLES = {
+    2: 3,
+    9: 6,
+}  # numbers of nodes by gmsh's element types; the first three are the corners
 OTHER = mesh.Mesh.NEVER  # label of edges that are neither contact boundary nor axis
-LABELS = {"contact": mesh.FREE, "symmetry": mesh.AXIS}
+LABELS = {
+    "contact": mesh.FREE,
+    "symmetry": mesh.AXIS,
+    str(mesh.FREE): mesh.FREE,
+    str(mesh.AXIS): mesh.AXIS,
+}
 
 
 def load(path: Path) -> mesh.Mesh:
@@ -52,63 +57,40 @@ def taken(model: Gmsh) -> mesh.Mesh:
     curves but no contact boundary among them.
     """
     points, triangles, used = mesh.elements_of(model, (2, 3), TRIANGLES, "triangle", "triangles")
-    curves = _physical_curves(model)
     if np.ptp(points[:, 2]) > 1e-9 * np.ptp(points[:, :2], axis=0).max():
         raise BadInput(
             f"it is not flat: z from {points[:, 2].min():g} to {points[:, 2].max():g} m (accepted: one z)"
         )
     points, triangles = points[:, :2], mesh.counter_clockwise(points[:, :2], triangles)
     edges = mesh.boundary(triangles)
-    if curves is None:
-        labels = np.full(len(edges), mesh.FREE)
-    else:
-        number = {int(tag): k for k, tag in enumerate(used)}
-        labelled: dict[frozenset[int], int] = {}
-        # A line in several groups gets the label of contact or symmetry if one group defines it.
-        for a, b, label in curves:
-            if a not in number or b not in number:  # the line belongs to no triangle
-                continue
-            edge = frozenset((number[a], number[b]))
-            if {label, labelled.get(edge)} == set(LABELS.values()):
-                raise BadInput(
-                    f"its physical curves ({_names(model)}) have the line of nodes {a} and {b} both as contact and as symmetry "
-                    f"(accepted: one of them)"
-                )
-            if labelled.get(edge, OTHER) == OTHER:
-                labelled[edge] = label
-        labels = np.array(
-            [labelled.get(frozenset(edge), OTHER) for edge in edges.tolist()], dtype=int
-        )
-        if not (labels == mesh.FREE).any():
-            raise BadInput(
-                f"none of its physical curves ({_names(model)}) has the name 'contact', or without a name the number "
-                f"{mesh.FREE}, on its boundary: the body has no contact boundary "
-                "(accepted: a curve with this name or number, or no physical curve)"
-            )
-    return mesh.Mesh(points, triangles, edges, labels)
+    curves = groups.of_model(model, 1, used[edges])
+    parts = groups.of_cells(model, 2, used[triangles])
+    labels = _labels(curves, used[edges])
+    return mesh.Mesh(points, triangles, edges, labels, groups=curves, cell_groups=parts)
 
 
-def _physical_curves(model: Gmsh) -> list[tuple[int, int, int]] | None:
-    """Returns (node, node, label) of each line in a physical curve, None without physical curves.
-
-    The name of the curve determines the label; the number of the curve does if it has no name.
+def _labels(curves: dict[str, np.ndarray], nodes: np.ndarray) -> np.ndarray:
+    """The label (e,) of each boundary edge from the edges of each physical curve by name: FREE for
+    all without curves. `nodes` (e, 2) are gmsh's numbers of their ends.
     """
-    groups = model.getPhysicalGroups(1)
-    lines = []
-    for _, number in groups:
-        name = model.getPhysicalName(1, number).strip().lower()
-        label = LABELS.get(name, OTHER) if name else number if number in LABELS.values() else OTHER
-        for entity in model.getEntitiesForPhysicalGroup(1, number):
-            for kind, _, nodes in zip(*model.mesh.getElements(1, entity)):
-                if kind not in LINES:
-                    raise BadInput(
-                        f"it has elements '{model.mesh.getElementProperties(kind)[0]}' (accepted: lines of 2 or 3 nodes)"
-                    )
-                lines += [(int(a), int(b), label) for a, b, *_ in nodes.reshape(-1, LINES[kind])]
-    return lines if groups else None
-
-
-def _names(model: Gmsh) -> str:
-    return ", ".join(
-        model.getPhysicalName(1, number) or str(number) for _, number in model.getPhysicalGroups(1)
-    )
+    if not curves:
+        return np.full(len(nodes), mesh.FREE)
+    labels, named = np.full(len(nodes), OTHER), ", ".join(curves)
+    for name, own in curves.items():
+        label = LABELS.get(name.lower(), OTHER)
+        others = np.isin(labels[own], list(LABELS.values())) & (labels[own] != label)
+        if label != OTHER and others.any():
+            first, second = nodes[own[others.argmax()]]
+            raise BadInput(
+                f"its physical curves ({named}) have the line of nodes {first} and {second} both as contact and as symmetry "
+                f"(accepted: one of them)"
+            )
+        if label != OTHER:
+            labels[own] = label
+    if not (labels == mesh.FREE).any():
+        raise BadInput(
+            f"none of its physical curves ({named}) has the name 'contact', or without a name the number "
+            f"{mesh.FREE}, on its boundary: the body has no contact boundary "
+            "(accepted: a curve with this name or number, or no physical curve)"
+        )
+    return labels

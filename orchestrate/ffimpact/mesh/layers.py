@@ -5,7 +5,7 @@ mesh in the plane follows. All lengths are in m, in the coordinates of the body'
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -13,12 +13,25 @@ from typing import TYPE_CHECKING
 import numpy as np
 import scipy
 
-from .mesh import Curve, Piece, Sizes
+from . import curved, plane_file
+from .groups import rows_among
+from .mesh import AXIS, FREE, SIDES, Curve, Made, Mesh, Piece, Sizes, boundary
+from .solid_mesh import Curved, SolidMesh
 
 if TYPE_CHECKING:
     from ..input.conditions import Part
 
-__all__ = ["Circle", "Layers", "Segment", "layers_of_cells", "with_interfaces"]
+__all__ = [
+    "Circle",
+    "Layers",
+    "Segment",
+    "circles_between",
+    "contents",
+    "layers_of_cells",
+    "on_boundary",
+    "surfaces_between",
+    "with_interfaces",
+]
 
 SAMPLES = 400  # number of points of a curve between which crossings are sought
 NEAR = 1e-9  # distance that counts as none, over the bounding radius
@@ -49,6 +62,11 @@ class Layers:
     def edges(self) -> list[Segment | Circle]:
         """The curves that bound the regions in the plane."""
         return [edge for part in self.parts for edge in _edges(part, 4 * self.bounding_radius)]
+
+    @property
+    def circles(self) -> list[tuple[np.ndarray, float]]:
+        """Centres (2,) [m] and radii [m] of the round ones among these curves."""
+        return [(edge.centre, edge.radius) for edge in self.edges if isinstance(edge, Circle)]
 
     def differ(self, edge: Segment | Circle, points: np.ndarray) -> np.ndarray:
         """Whether the layers on both sides of points (n, 2) on an edge differ."""
@@ -253,6 +271,8 @@ def layers_of_cells(corners: np.ndarray, layers: Layers) -> tuple[np.ndarray, bo
     of its middle if it has none: with a coarse chord the middle of a thin cell is beyond a curved
     boundary.
     """
+    if not layers.parts:
+        return np.zeros(len(corners), dtype=int), True
     points = corners.reshape(-1, corners.shape[2])
     distance = np.min([_distance(part, points) for part in layers.parts], axis=0)
     off = (distance > ON * layers.bounding_radius).reshape(corners.shape[:2])
@@ -260,6 +280,58 @@ def layers_of_cells(corners: np.ndarray, layers: Layers) -> tuple[np.ndarray, bo
     first = of_corner[np.arange(len(corners)), off.argmax(axis=1)]
     layer = np.where(off.any(axis=1), first, layers.at(corners.mean(axis=1)))
     return layer, bool((of_corner == layer[:, None])[off].all())
+
+
+def on_boundary(made: Mesh | SolidMesh) -> np.ndarray:
+    """The numbers of the cells that have a side which may come into contact."""
+    corners = made.elements.shape[1]
+    sides = made.elements[:, SIDES[corners]].reshape(-1, corners - 1)
+    cells: np.ndarray = rows_among(made.sides[made.labels == FREE], sides) // corners
+    return cells
+
+
+def contents(made: Mesh | SolidMesh, of_revolution: bool) -> np.ndarray:
+    """The areas or volumes (t,) of cells, of revolution over 2 pi [m2 or m3]."""
+    corners = made.points[made.elements]
+    arms = corners[:, 1:] - corners[:, :1]
+    around = corners[..., 0].mean(axis=1) if of_revolution else 1.0
+    size: np.ndarray = np.linalg.det(arms) / math.factorial(arms.shape[1]) * around
+    return size
+
+
+def circles_between(made: Mesh) -> list[tuple[np.ndarray, float]]:
+    """Centres (2,) [m] and radii [m] of the circles on which sides between layers of a mesh from a
+    file lie.
+    """
+    circles: dict[tuple[float, ...], tuple[np.ndarray, float]] = {}
+    for cells, sides, inner in _bounds(made):
+        labels = np.where(inner, FREE, AXIS)  # no circle goes through sides with the label AXIS
+        centres = plane_file.arc_centres(Mesh(made.points, cells, sides, labels))
+        for side, centre in zip(sides, centres):
+            if not np.isnan(centre).any():
+                radius = float(np.linalg.norm(made.points[side[0]] - centre))
+                circles.setdefault(tuple(centre), (centre, radius))
+    return list(circles.values())
+
+
+def surfaces_between(made: SolidMesh) -> list[Curved]:
+    """The spheres and cylinders on which faces between layers of a mesh from a file lie."""
+    sides = [sides[inner] for _, sides, inner in _bounds(made)]
+    return [patch for own in sides for patch, _ in curved.surfaces(made.points, own)]
+
+
+def _bounds(made: Made) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """Yields for each layer its cells (t, corners), the sides (n, corners - 1) around them, and which
+    of these are between it and a layer with a larger number.
+    """
+    for layer in np.unique(made.layer_of)[:-1]:
+        cells = made.elements[made.layer_of == layer]
+        sides = boundary(cells)
+        inner = np.zeros(len(sides), dtype=bool)
+        above = boundary(made.elements[made.layer_of > layer])
+        inner[rows_among(above, sides)] = True
+        if inner.any():
+            yield cells, sides, inner
 
 
 def _distance(part: Part, points: np.ndarray) -> np.ndarray:

@@ -101,8 +101,8 @@ class Mesh:
     `points` (n, 2) are in m, `triangles` (t, 3) are counter-clockwise, `edges` (e, 2) of the
     boundary have the `labels` (e,). `arc_centres` (e, 2) [m], of meshes of files, are the centres of the
     circles on which edges lie, nan for straight edges. `groups` are the numbers of the edges of parts
-    of the boundary by name. `layers` (t,) are the numbers of the layers of triangles, from 1, 0 for
-    those in none.
+    of the boundary by name, `cell_groups` those of the triangles of named parts. `layers` (t,) are the
+    numbers of the layers of triangles, from 1, 0 for those in none.
     """
 
     points: np.ndarray
@@ -111,6 +111,7 @@ class Mesh:
     labels: np.ndarray
     arc_centres: np.ndarray | None = None
     groups: dict[str, np.ndarray] = field(default_factory=dict)
+    cell_groups: dict[str, np.ndarray] = field(default_factory=dict)
     layers: np.ndarray | None = None
     NEVER: ClassVar[int] = 3  # label of edges that never come into contact
 

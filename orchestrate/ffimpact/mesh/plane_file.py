@@ -13,9 +13,10 @@ import scipy
 
 from ..failure import BadInput
 from . import gmsh_file
-from .mesh import AXIS, FREE, SIDES, WIDEST, Mesh, pieces
+from .groups import rows_among
+from .mesh import AXIS, FREE, SIDES, WIDEST, Mesh, interfaces, pieces
 
-__all__ = ["checked", "load", "on_circle"]
+__all__ = ["arc_centres", "checked", "load", "on_circle"]
 
 MOST = 2_000_000  # largest number of vertices, triangles or edges
 MOST_LABEL = 2_000_000_000
@@ -49,7 +50,7 @@ def checked(made: Mesh) -> Mesh:
     used.
     """
     _check(made)
-    return replace(made, arc_centres=_arc_centres(made))
+    return replace(made, arc_centres=arc_centres(made))
 
 
 # ---- FreeFEM's format
@@ -83,8 +84,14 @@ def _read(text: str) -> Mesh:
     if not text[-1].isspace():  # the last number may be cut off
         raise BadInput(f"ends at boundary edge {e} (accepted: a line end behind its label)")
     points, triangles, edges = blocks
-    whole = [block.astype(int) for block in (triangles, edges)]
-    return Mesh(points[:, :2], whole[0][:, :3] - 1, whole[1][:, :2] - 1, whole[1][:, 2])
+    cells, sides = (block.astype(int) for block in (triangles, edges))
+    parts = {
+        str(region): np.flatnonzero(cells[:, 3] == region) for region in np.unique(cells[:, 3])
+    }
+    outer = np.ones(len(sides), dtype=bool)  # FreeFEM lists sides between regions, too
+    outer[rows_among(interfaces(cells[:, :3], cells[:, 3]), sides[:, :2])] = False
+    sides = sides[outer]
+    return Mesh(points[:, :2], cells[:, :3] - 1, sides[:, :2] - 1, sides[:, 2], cell_groups=parts)
 
 
 def _block(words: list[str], name: str, columns: str, count: int) -> np.ndarray:
@@ -315,7 +322,7 @@ def on_circle(
     return on
 
 
-def _arc_centres(made: Mesh) -> np.ndarray:
+def arc_centres(made: Mesh) -> np.ndarray:
     """The centre (2,) [m] of the circle of each edge, nan for straight edges."""
     circles: list[tuple[np.ndarray, float]] = []
     for chain in _chains(made):

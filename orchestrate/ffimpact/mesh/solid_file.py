@@ -10,12 +10,11 @@ import re
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from ..failure import BadInput
-from . import mesh
+from . import groups, mesh
 from .mesh import FREE, Gmsh, Sizes, boundary, in_own_process, pieces
 from .solid_mesh import SolidMesh, cell_volumes, cells_of, generate
 
@@ -30,8 +29,6 @@ OTHERS = re.compile(r"\b(Merge|Include|ShapeFromFile)\b")  # .geo commands that 
 DECLARED = re.compile(r"\.(step|stp|iges|igs)\b", re.IGNORECASE)
 CONTACT = "contact"
 HEADER = b"$MeshFormat"
-# Numbers of nodes by gmsh's element types; the first three nodes are the corners.
-TRIANGLES = {2: 3, 9: 6}
 # For a mesh that only represents the shape of a geometry: the number of elements along the largest
 # extent, and the largest share of the bounding box that flat elements cut off (rounding.py).
 COARSE = 15
@@ -148,11 +145,30 @@ def _meshed(path: Path, sizes: Sizes | None, cut: float) -> SolidMesh:
         gmsh.open(str(path))
         if not gmsh.model.getEntities(3):
             raise BadInput("it has no volume")
+        if path.suffix.lower() != ".geo":
+            _bond(gmsh.model)
         if sizes is None:
             low, high = np.reshape(gmsh.model.getBoundingBox(-1, -1), (2, 3))
             gmsh.option.setNumber("Mesh.MeshSizeMax", float((high - low).max()) / COARSE)
 
     return generate(build, sizes or Sizes(0.0, 0.0, np.empty((0, 3)), 0.0), 0, _labelled, cut)
+
+
+def _bond(model: Gmsh) -> None:
+    """Makes solids of a STEP file that touch share their faces. Solids with the same name, the last
+    part of their name in the file, are a physical group; without a name they have their number.
+    """
+    solids = model.getEntities(3)
+    names = [model.getEntityName(*solid).split("/")[-1].strip() for solid in solids]
+    pieces = [[solid] for solid in solids]
+    if len(solids) > 1:
+        pieces = model.occ.fragment(solids, [])[1]
+        model.occ.synchronize()
+    of_name: dict[str, list[int]] = {}
+    for number, (name, own) in enumerate(zip(names, pieces), 1):
+        of_name.setdefault(name or str(number), []).extend(tag for _, tag in own)
+    for name, tags in of_name.items():
+        model.addPhysicalGroup(3, tags, name=name)
 
 
 def _labelled(model: Gmsh) -> SolidMesh:
@@ -161,28 +177,31 @@ def _labelled(model: Gmsh) -> SolidMesh:
     Raises BadInput if the mesh cannot be used, or if the physical surface `contact` is not on the
     boundary.
     """
-    points, cells = cells_of(model)
+    points, cells, used = cells_of(model)
     check(points, cells)
     faces = boundary(cells)
-    named = _contact_triangles(model)
-    if named is None:
-        return SolidMesh(points, cells, faces, np.full(len(faces), FREE))
-    scale = np.ptp(points, axis=0).max()
+    surfaces = groups.of_model(model, 2, used[faces])
+    labels = _labels(surfaces, len(faces))
+    parts = groups.of_cells(model, 3, used[cells])
+    return SolidMesh(points, cells, faces, labels, groups=surfaces, cell_groups=parts)
 
-    def keys(corners: np.ndarray) -> list[tuple[Any, ...]]:
-        """Keys of triangles: their sorted corners, rounded to 1e-9 of the size of the mesh."""
-        return [
-            tuple(sorted(map(tuple, triangle)))
-            for triangle in np.round(corners / scale, 9).tolist()
-        ]
 
-    contact_keys = set(keys(named))
-    labels = np.array(
-        [FREE if key in contact_keys else SolidMesh.NEVER for key in keys(points[faces])]
-    )
+def _labels(surfaces: dict[str, np.ndarray], count: int) -> np.ndarray:
+    """The label (count,) of each boundary face from the faces of each physical surface by name."""
+    named = [name for name in surfaces if not name.isdecimal()]
+    contact = [own for name, own in surfaces.items() if name.lower() == CONTACT]
+    if not named:
+        return np.full(count, FREE)
+    if not contact:
+        raise BadInput(
+            f"none of its physical surfaces ({', '.join(named)}) has the name '{CONTACT}' (accepted: "
+            f"such a one, or none with a name)"
+        )
+    labels = np.full(count, SolidMesh.NEVER)
+    labels[np.concatenate(contact)] = FREE
     if not (labels == FREE).any():
         raise BadInput(f"its physical surface '{CONTACT}' is not on its boundary")
-    return SolidMesh(points, cells, faces, labels)
+    return labels
 
 
 def check(points: np.ndarray, cells: np.ndarray) -> None:
@@ -240,35 +259,3 @@ def _check_surface(points: np.ndarray, faces: np.ndarray) -> None:
             f"it hangs together by a point alone, {coordinates(twice[0])} "
             f"(accepted: tetrahedra that hang together by faces)"
         )
-
-
-def _contact_triangles(model: Gmsh) -> np.ndarray | None:
-    """Corners (t, 3, 3) of the triangles in physical surfaces with the name `contact`.
-
-    Returns None if no physical surface has a name. Raises BadInput if only others have names.
-    """
-    names = {
-        number: model.getPhysicalName(2, number).strip().lower()
-        for _, number in model.getPhysicalGroups(2)
-    }
-    if not any(names.values()):
-        return None
-    if CONTACT not in names.values():
-        raise BadInput(
-            f"none of its physical surfaces ({', '.join(filter(None, names.values()))}) has the name '{CONTACT}' (accepted: "
-            f"such a one, or none with a name)"
-        )
-    tags, coordinates, _ = model.mesh.getNodes()
-    row = np.zeros(int(tags.max()) + 1, dtype=int)
-    row[tags] = np.arange(len(tags))
-    corners = [
-        row[np.reshape(nodes, (-1, TRIANGLES[kind]))[:, :3]]
-        for number, name in names.items()
-        if name == CONTACT
-        for surface in model.getEntitiesForPhysicalGroup(2, number)
-        for kind, _, nodes in zip(*model.mesh.getElements(2, surface))
-        if kind in TRIANGLES
-    ]
-    triangles = np.vstack(corners or [np.empty((0, 3), dtype=int)])
-    placed: np.ndarray = coordinates.reshape(-1, 3)[triangles]
-    return placed

@@ -83,7 +83,7 @@ class SolidMesh:
     `points` (n, 3) are in m. `cells` (t, 4) are tetrahedra of positive volume. `faces` (f, 3) of
     the boundary are counter-clockwise seen from outside, with their `labels` (f,). `curved` are the
     spheres and cylinders on which faces lie. `groups` are the numbers of the faces of parts of the
-    boundary by name.
+    boundary by name, `cell_groups` those of the tetrahedra of named parts.
     """
 
     points: np.ndarray
@@ -92,6 +92,7 @@ class SolidMesh:
     labels: np.ndarray
     curved: tuple[Curved, ...] = ()
     groups: dict[str, np.ndarray] = field(default_factory=dict)
+    cell_groups: dict[str, np.ndarray] = field(default_factory=dict)
     layers: np.ndarray | None = None  # (t,) numbers of the layers of tetrahedra, 0: in none
     NEVER: ClassVar[int] = 4  # label of faces that never come into contact
 
@@ -202,7 +203,7 @@ def mesh_shape(
         occ.synchronize()
 
     turn = 0 if kind in ("ball", "box") and not parts else rounding.TURN
-    points, cells = generate(build, inside, turn, cells_of)
+    points, cells, _ = generate(build, inside, turn, cells_of)
     points = points * scale
     faces = mesh.boundary(cells)
     labels = np.full(len(faces), FREE)
@@ -327,13 +328,13 @@ def _occ_shape(occ: Gmsh, kind: str, lengths: list[float]) -> int:
     return int(occ.cut([(3, whole)], [(3, hole)])[0][0][1])
 
 
-def cells_of(model: Gmsh) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices (n, 3) and tetrahedra (t, 4) of a gmsh model.
+def cells_of(model: Gmsh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Vertices (n, 3) and tetrahedra (t, 4) of a gmsh model, and gmsh's numbers (n,) of the vertices.
 
     Of tetrahedra of second order only the corners are kept. Raises BadInput for other elements.
     """
-    points, cells, _ = mesh.elements_of(model, (3,), {4: 4, 11: 10}, "tetrahedron", "tetrahedra")
-    return points, right_handed(points, cells)
+    points, cells, used = mesh.elements_of(model, (3,), {4: 4, 11: 10}, "tetrahedron", "tetrahedra")
+    return points, right_handed(points, cells), used
 
 
 def generate(

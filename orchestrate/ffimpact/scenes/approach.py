@@ -501,7 +501,7 @@ def refuse_sinking(scene: Scene, onsets: list[Onset]) -> None:
                 scene.bodies[partner] if partner >= 0 else scene.obstacles[-1 - partner]
             ).own_name
             position = ", ".join(f"{x:.3g}" for x in placed[gaps.argmin()])
-            entry = "labels" if body.file_mesh and body.file_mesh.groups else "file"
+            entry = "labels" if "labels" in body else "file"
             raise BadInput(
                 f"body.{k + 1}.{entry}: '{body.own_name}' comes to '{name}' with ({position}) "
                 f"m, which is no contact boundary and would pass through the obstacle (accepted: a file whose "

@@ -34,7 +34,7 @@ from ..input.materials import Material
 from ..input.parameters import NOT_DECISIVE, Table, Value
 from ..input.toml_text import to_toml
 from ..mesh import mesh, revolution, solid_mesh, solids
-from ..mesh.layers import Circle, layers_of_cells, with_interfaces
+from ..mesh.layers import circles_between, surfaces_between, with_interfaces
 from ..mesh.mesh import AXIS, FREE, Curve, Sizes, mesh_body, nearest
 from ..mesh.solids import Solid
 from .approach import (
@@ -250,10 +250,9 @@ def _sections(
         if not halved or at[0] >= 0
     ]
     circles += [
-        Arc(k, padded(centre + edge.centre), np.zeros(3), edge.radius)
-        for k, (body, centre) in enumerate(zip(scene.bodies, centres))
-        for edge in body.regions.edges
-        if isinstance(edge, Circle)
+        Arc(k, padded(centre + at), np.zeros(3), radius)
+        for k, (body, made, centre) in enumerate(zip(scene.bodies, meshes, centres))
+        for at, radius in (circles_between(made) if body.file_mesh else body.regions.circles)
     ]
     return meshes, centres, circles
 
@@ -272,7 +271,9 @@ def _solids(
         assert isinstance(solid, Solid) and (made is None or isinstance(made, solid_mesh.SolidMesh))
         parts = body.regions.parts if body.layers else ()
         made = solids.mesh_of(body.own_name, solid, made, size, normals, accuracy, parts)
-        meshes.append(_with_layers(body, made, solid.rotation))
+        made = _with_layers(body, made, solid.rotation)
+        between = surfaces_between(made) if body.drawn_mesh else ()
+        meshes.append(replace(made, curved=(*made.curved, *between)))
     meshes = [_reached(scene, k, made) for k, made in enumerate(meshes)]
     count = sum(
         0 if body.rigid else solid_mesh.unknowns(made.cells, degree)
@@ -810,7 +811,7 @@ def _with_layers(body: Body, made: mesh.Made, rotation: np.ndarray) -> mesh.Made
     """
     if not body.layers:
         return made
-    layers, follows = layers_of_cells(made.points[made.elements] @ rotation, body.regions)
+    layers, follows = body.layers_on(made, rotation)
     if not follows:
         raise BadInput(
             f"{body.at('layer')}: the mesh of '{body.own_name}' does not follow it (accepted: of a shape, or a mesh from a file "

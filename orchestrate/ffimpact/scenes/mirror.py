@@ -144,7 +144,11 @@ def _broken(scene: Scene, axis: int) -> str:
 
 
 def _has_mirrored_layers(body: Body, axis: int) -> bool:
-    """Whether the layers of a body are their own mirror image in the plane normal to an axis."""
+    """Whether the layers of a body are their own mirror image in the plane normal to an axis. Those of
+    a file count as not.
+    """
+    if any(layer.group is not None for layer in body.layers):
+        return False
     regions = [layer.part for layer in body.layers if layer.radius is None]
     turned = bool(np.any(body.start_angle))
     axes = np.eye(body.dimension.axes)
