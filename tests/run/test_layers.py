@@ -59,6 +59,20 @@ def test_a_layered_ball_rotates_in_space(tmp_path):
     assert made.summary["energy_drift"] < 1e-9 and made["layer_elastic_final_1"] > 0
 
 
+def test_a_layered_cylinder_rotates_about_its_axis_in_space(tmp_path):
+    """Mass pi h sum of rho (R^2 - r^2) and inertia pi h/2 sum of rho (R^4 - r^4) of a cylinder with a core; energy stays."""
+    height = 0.06
+    body = ff.Cylinder(radius=RADIUS, height=height, material=SOFT, position=(0, 1, 0), velocity=(1, 2, 3), spin=(0, 100, 0), mesh_size=0.02,
+                       layers=[ff.Layer(radius=CORE, material=HARD)])  # fmt: skip
+    made = flight(tmp_path, body, accuracy=0.05)
+    rho, core = SOFT.density, HARD.density
+    assert made["mass"] == pytest.approx(np.pi * height * (rho * (RADIUS**2 - CORE**2) + core * CORE**2), rel=2e-3)
+    inertia = np.pi * height / 2 * (rho * (RADIUS**4 - CORE**4) + core * CORE**4)
+    column = made.history["angular_momentum_y"]
+    assert column[0] == pytest.approx(100 * inertia, rel=4e-3) and np.ptp(column) < 1e-10 * 100 * inertia
+    assert made.summary["energy_drift"] < 1e-9 and made["layer_elastic_final_1"] > 0
+
+
 def test_equal_materials_are_one_material(tmp_path):
     """On the mesh of a layered rectangle: a layer with the entries of its body changes no number by more than 1e-9."""
     layer = ff.Layer(where={"kind": "box", "low": (-0.02, -0.02), "high": (0.02, 0.03)})

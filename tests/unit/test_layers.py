@@ -65,7 +65,8 @@ def test_a_layer_takes_what_it_does_not_set_from_its_body():
     ([{"radius": 0.02, "yung": 1}], {}, ["body.1.layer.1.yung: no such entry", "young"]),
     ([{"radius": 0.02}], {"rigid": True, "law": None, "young": None, "nu": None}, ["body.1.layer: a rigid body has none"]),
     ([{"where": {"kind": "disc", "centre": [0.02, 0], "radius": 0.01}}], {"dimension": "axisymmetric", "shape": "ball"}, ["body.1.layer.1.where", "is not of revolution"]),
-    ([{"radius": 0.02}], {"dimension": "3d", "shape": "cylinder", "height": 0.05, "position": [0, 0.06, 0], "velocity": [0, -1, 0]}, ["body.1.layer.1.radius", "about the axis of a body in space"]),
+    ([{"radius": 0.05}], {"dimension": "3d", "shape": "cylinder", "height": 0.05, "position": [0, 0.06, 0], "velocity": [0, -1, 0]}, ["body.1.layer.1.radius: 0.05", "between 0 and 0.05"]),
+    ([{"radius": 0.02}], {"dimension": "3d", "shape": "box", "width": 0.1, "depth": 0.1, "height": 0.1, "position": [0, 0.06, 0], "velocity": [0, -1, 0]}, ["body.1.layer.1.radius: 0.02", "is not round"]),
 ])  # fmt: skip
 def test_what_is_no_layer_is_refused_in_one_line(layers, more, words):
     with pytest.raises(BadInput) as caught:
@@ -78,7 +79,7 @@ def test_what_is_no_layer_is_refused_in_one_line(layers, more, words):
 
 
 def build(layers, more, material):
-    of_shape = {} if more.get("shape") == "rectangle" else {"radius": RADIUS}
+    of_shape = {} if more.get("shape") in ("rectangle", "box") else {"radius": RADIUS}
     top = {"dimension": more.get("dimension", "plane-strain")}
     body = {"shape": "disc", "position": [0, 0.06], "velocity": [0, -1], "layer": layers} | of_shape | material
     body |= {name: value for name, value in more.items() if name != "dimension"}
@@ -146,6 +147,27 @@ def test_faces_between_layers_of_a_ball_are_on_a_sphere():
     between = built.mesh.labels == INTERFACE
     radius = np.linalg.norm(built.mesh.points[built.mesh.faces[between]] - built.centres[0], axis=2)
     assert between.sum() > 20 and radius == pytest.approx(0.03, rel=1e-12) and (built.arrays["mesh.arc_of"][between] == 1).all()
+
+
+@pytest.mark.parametrize("shape, inner, turn", [(ff.Cylinder, 0.0, (0, 0, 0)), (ff.Cylinder, 0.0, (10, 20, 30)), (ff.Tube, 0.02, (70, 0, 0))])
+def test_layers_about_the_axis_of_a_cylinder(shape, inner, turn):
+    """Vertices between layers are on a cylinder to round-off; volumes are pi h (R^2 - r^2) up to the chords of
+    circles, also of a quarter."""
+    hollow = {"inner_radius": inner} if inner else {}
+    body = shape(radius=RADIUS, height=0.06, position=(0, 0.1, 0), velocity=(0, -1, 0), turn=turn, layers=[ff.Layer(radius=0.03), ff.Layer(radius=0.045)],
+                 **hollow, **RUBBER)  # fmt: skip
+    ready = ff.Scene(bodies=[body], obstacles=[ff.Plane()], accuracy=0.05).ready()
+    built = assembly.assemble(ready)
+    axis = ready.bodies[0].placed_at(0.0, np.zeros(3)).rotation[:, 1]
+    between = built.mesh.labels == INTERFACE
+    arms = np.cross(built.mesh.points[built.mesh.faces[between]] - built.centres[0], axis)
+    radius = np.linalg.norm(arms, axis=2)
+    assert np.ptp(radius, axis=1).max() < 1e-15 and {round(r, 12) for r in radius.ravel()} == {0.03, 0.045}
+    assert (built.arrays["mesh.arc_of"][between] >= 0).all()
+    part = 4 if turn == (0, 0, 0) else 1
+    steps = np.array([inner, 0.03, 0.045, RADIUS])
+    volumes = np.bincount(built.arrays["mesh.materials"], built.mesh.volumes)[[1, 2, 0]]
+    assert volumes == pytest.approx(math.pi * 0.06 * np.diff(steps**2) / part, rel=0.08)
 
 
 def test_a_thin_cover_in_space():

@@ -406,9 +406,8 @@ class Body(MadeOf):
             centre = np.zeros(self.dimension.axes)
             return Part(layer.at("radius"), "", "ball", (centre, np.array(layer.radius)))
         if self.dimension is SOLID:
-            raise BadInput(
-                f"{layer.at('radius')}: about the axis of a body in space (accepted: of revolution, or where)"
-            )
+            axis = np.array([0.0, 1.0, 0.0])
+            return Part(layer.at("radius"), "", "cylinder", (axis, np.array(layer.radius)))
         across = np.array([layer.radius, math.inf])
         return Part(layer.at("radius"), "", "box", (-across, across))
 

@@ -74,6 +74,8 @@ class Part:
             inside = (points - first) @ second >= 0
         elif self.kind == "box":
             inside = np.all((points >= first) & (points <= second), axis=1)
+        elif self.kind == "cylinder":  # about the axis `first` through the centre
+            inside = np.linalg.norm(np.cross(points, first), axis=1) <= second
         else:
             inside = np.linalg.norm(points - first, axis=1) <= second
         return inside

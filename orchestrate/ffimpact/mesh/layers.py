@@ -340,8 +340,9 @@ def _distance(part: Part, points: np.ndarray) -> np.ndarray:
     if part.kind == "box":
         planes: np.ndarray = np.minimum(abs(points - first), abs(points - second)).min(axis=1)
         return planes
-    if part.kind == "ball":
-        radial: np.ndarray = abs(np.linalg.norm(points - first, axis=1) - second)
+    if part.kind in ("ball", "cylinder"):
+        arms = points - first if part.kind == "ball" else np.cross(points, first)
+        radial: np.ndarray = abs(np.linalg.norm(arms, axis=1) - second)
         return radial
     plane: np.ndarray = abs((points - first) @ second) / np.linalg.norm(second)
     return plane

@@ -154,7 +154,7 @@ def unknowns(cells: np.ndarray, degree: int) -> int:
 
 # ---- meshes of shapes
 
-ON_BALL = 1e-6  # distance of vertices that gmsh has put on a ball, over the size of the body
+ON_ROUND = 1e-6  # distance of vertices on a ball or cylinder by gmsh, over the size of the body
 
 
 def mesh_shape(
@@ -176,8 +176,9 @@ def mesh_shape(
     the size of the body. Lengths are divided by it, because gmsh's tolerances are absolute.
     """
     spherical = kind in ("ball", "shell")
+    radii = {"ball": 1, "shell": 2, "cylinder": 1, "tube": 2}.get(kind, 0)  # number of them
     bulk = min(sizes.bulk, LARGEST * lengths[0]) if spherical else sizes.bulk
-    bulk = min(bulk, _largest_in_layers(lengths, parts)) if spherical else bulk
+    bulk = min(bulk, _largest_in_layers(lengths[:radii], parts))
     largest, contact, slack = (
         float(np.round(size / scale, mesh.DIGITS))
         for size in (bulk, min(bulk, sizes.contact), sizes.slack)
@@ -211,46 +212,53 @@ def mesh_shape(
         on = (abs(points[faces][:, :, axis]) < 1e-7 * scale).all(axis=1)
         labels[on] = PLANES[axis]
         points[np.unique(faces[on]), axis] = 0
-    balls = _onto_balls(points, parts, rotation, scale)
+    rounds = _onto_rounds(points, parts, rotation, scale)
     if kind == "box":
-        return SolidMesh(points, cells, faces, labels, balls)
+        return SolidMesh(points, cells, faces, labels, rounds)
     along = np.array([]) if spherical else rotation[:, 1]
-    radii = lengths[: 2 if kind in ("shell", "tube") else 1]
-    patches = tuple(Curved(np.zeros(3), along, float(radius)) for radius in radii)
+    patches = tuple(Curved(np.zeros(3), along, float(radius)) for radius in lengths[:radii])
     round_faces = labels == FREE
     if not spherical:
         round_faces &= np.ptp(points[faces] @ along, axis=1) >= 1e-7 * scale
-    inner = _onto(patches, radii, points, faces, round_faces)
+    inner = _onto(patches, lengths[:radii], points, faces, round_faces)
     if kind == "shell":
         labels[inner] = SolidMesh.NEVER
-    return SolidMesh(points, cells, faces, labels, (*patches, *balls))
+    return SolidMesh(points, cells, faces, labels, (*patches, *rounds))
 
 
-def _largest_in_layers(lengths: np.ndarray, parts: Sequence["Part"]) -> float:
-    """The largest element size [m] in concentric layers of a ball or shell. A face with sides sqrt(R t)
-    on a sphere of radius R dips t/6 below it, and stays in a layer of the thickness t.
+def _largest_in_layers(radii: np.ndarray, parts: Sequence["Part"]) -> float:
+    """The largest element size [m] in concentric layers of a body with these radii. A face with
+    sides sqrt(R t) on a sphere of radius R dips t/6 below it, less on a cylinder, and stays in a
+    layer of the thickness t.
     """
-    balls = [part for part in parts if part.kind == "ball" and not part.numbers[0].any()]
-    radii = np.sort([*lengths, *(float(part.numbers[1]) for part in balls)])
-    return float(np.sqrt(radii[1:] * np.diff(radii)).min()) if balls else np.inf
+    layers = [
+        float(part.numbers[1])
+        for part in parts
+        if part.kind == "cylinder" or part.kind == "ball" and not part.numbers[0].any()
+    ]
+    if not layers or not len(radii):
+        return np.inf
+    steps = np.sort([*radii, *layers])
+    return float(np.sqrt(steps[1:] * np.diff(steps)).min())
 
 
-def _onto_balls(
+def _onto_rounds(
     points: np.ndarray, parts: Sequence["Part"], rotation: np.ndarray, scale: float
 ) -> tuple[Curved, ...]:
-    """Moves the points of a turned body that are on balls among its regions onto them; returns the
-    balls.
+    """Moves the points of a turned body that are on balls and cylinders among its regions onto them;
+    returns these.
     """
-    balls = tuple(
-        Curved(rotation @ part.numbers[0], np.array([]), float(part.numbers[1]))
-        for part in parts
-        if part.kind == "ball"
-    )
-    for patch in balls:
+    rounds = []
+    for part in parts:
+        if part.kind in ("ball", "cylinder"):
+            first, radius = rotation @ part.numbers[0], float(part.numbers[1])
+            about = (first, np.array([])) if part.kind == "ball" else (np.zeros(3), first)
+            rounds.append(Curved(*about, radius))
+    for patch in rounds:
         away = np.linalg.norm(patch.arms(points), axis=1) - patch.radius
-        close = abs(away) < ON_BALL * scale
+        close = abs(away) < ON_ROUND * scale
         points[close] = patch.onto(points[close])
-    return balls
+    return tuple(rounds)
 
 
 def _fragmented(
@@ -282,6 +290,9 @@ def _occ_region(occ: Gmsh, part: "Part", rotation: np.ndarray, scale: float, far
     first, second = part.numbers
     if part.kind == "ball":
         return int(occ.addSphere(*(rotation @ first / scale), float(second) / scale))
+    if part.kind == "cylinder":
+        start, along = -far * (rotation @ first), 2 * far * (rotation @ first)
+        return int(occ.addCylinder(*start, *along, float(second) / scale))
     if part.kind == "box":
         low, high = np.clip(first / scale, -far, far), np.clip(second / scale, -far, far)
         solid, turn = occ.addBox(*low, *(high - low)), rotation
