@@ -252,8 +252,9 @@ def _onto_rounds(
     for part in parts:
         if part.kind in ("ball", "cylinder"):
             first, radius = rotation @ part.numbers[0], float(part.numbers[1])
-            about = (first, np.array([])) if part.kind == "ball" else (np.zeros(3), first)
-            rounds.append(Curved(*about, radius))
+            is_ball = part.kind == "ball"
+            centre, axis = (first, np.array([])) if is_ball else (np.zeros(3), first)
+            rounds.append(Curved(centre, axis, radius))
     for patch in rounds:
         away = np.linalg.norm(patch.arms(points), axis=1) - patch.radius
         close = abs(away) < ON_ROUND * scale
