@@ -7,6 +7,7 @@
 //     the size `extent` [m]
 //   fields: name, label and range low ... high of each field, in the unit of its label
 //   values (states, n), by name of the field: uint8 fractions of low ... high
+//   interfaces: id of the lines between layers, and the vertices of the mesh on them; null without
 //   obstacles: id of each obstacle, and its model matrices (states, 16), none if it is at rest
 //   cursor: left and right end of the time axis as fractions of the figure's width, and their times
 //     start and end [s]
@@ -34,6 +35,12 @@ function places(state) { // deformed positions (n, 3) [m]
   return { data: found, shape: [n, 3] };
 }
 
+function between(placed) { // positions of the vertices between layers
+  const { nodes } = RUN.interfaces, found = new Float32Array(3 * nodes.length);
+  nodes.forEach((node, k) => found.set(placed.data.subarray(3 * node, 3 * node + 3), 3 * k));
+  return { data: found, shape: [nodes.length, 3] };
+}
+
 function values(field, state) { // values (n,) of the field, in its unit
   const found = new Float32Array(n);
   for (let k = 0; k < n; k++)
@@ -59,8 +66,14 @@ function show() {
   const field = RUN.fields.find((one) => one.name === choice.value);
   const json = world.ObjectsListJson[RUN.id];
   const color_range = [field.low, field.high];
-  Object.assign(json, { vertices: places(state), attribute: values(field, state), color_range });
+  const placed = places(state);
+  Object.assign(json, { vertices: placed, attribute: values(field, state), color_range });
   const reloads = [K3DInstance.reload(json, null, true)];
+  if (RUN.interfaces) {
+    const lines = world.ObjectsListJson[RUN.interfaces.id];
+    lines.vertices = between(placed);
+    reloads.push(K3DInstance.reload(lines, null, true));
+  }
   for (const one of RUN.obstacles) {
     if (one.matrices.length === 0) continue;
     const obstacle = world.ObjectsListJson[one.id];

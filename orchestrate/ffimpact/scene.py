@@ -620,8 +620,13 @@ class Scene(models.Top):
         """The tables of the scene, each with its entries in one line of text."""
         table = self.table()
         parts: dict[str, dict[str, Any]] = {}
-        for key in ("body", "obstacle"):
-            parts |= {f"{key} {k}": entries for k, entries in enumerate(table.pop(key, []), 1)}
+        for k, body in enumerate(table.pop("body", []), 1):
+            layers = body.pop("layer", [])
+            parts[f"body {k}"] = body
+            parts |= {f"layer {k}.{j}": layer for j, layer in enumerate(layers, 1)}
+        parts |= {
+            f"obstacle {k}": entries for k, entries in enumerate(table.pop("obstacle", []), 1)
+        }
         parts |= {"contact": table.pop("contact", {}), "run": table}
         return [
             (name, ", ".join(f"{entry} = {brief(value)}" for entry, value in entries.items()))

@@ -129,6 +129,17 @@ def view(
         flat_shading=False,
     )
     plot += body
+    nodes, sides = np.unique(states.interfaces, return_inverse=True)
+    if len(nodes):
+        lines = k3d.lines(
+            states.places[0][nodes].astype(np.float32),
+            sides.reshape(-1, 2).astype(np.uint32),
+            indices_type="segment",
+            shader="mesh",
+            width=0.3 * LINE * (high - low).max(),
+            color=0xFFFFFF,
+        )
+        plot += lines
     obstacles = []
     for obstacle in obstacles_of(result.scene):
         moved = [obstacle.matrix(t) for t in states.times] if obstacle.moves else []
@@ -143,6 +154,7 @@ def view(
     picture, cursor = _figure(result)
     run = _packed(states, low, high) | {
         "id": body.id,
+        "interfaces": {"id": lines.id, "nodes": nodes.tolist()} if len(nodes) else None,
         "obstacles": obstacles,
         "field": field,
         "seconds": SECONDS,
@@ -166,12 +178,14 @@ class States:
     """The states that the player shows.
 
     `places` (states, n, 3): deformed positions [m] at `times` (states,) [s]; `triangles` (t, 3);
-    `fields` by name (states, n) in SI units. `kind` is "plane", "revolved" or "space".
+    `interfaces` (e, 2): their sides between layers; `fields` by name (states, n) in SI units.
+    `kind` is "plane", "revolved" or "space".
     """
 
     times: np.ndarray
     places: np.ndarray
     triangles: np.ndarray
+    interfaces: np.ndarray
     fields: dict[str, np.ndarray]
     kind: str
 
@@ -207,14 +221,15 @@ def _states(result: Result, revolved: bool) -> States:
         for name, (_, source, _) in FIELDS.items()
         if source in snapshots[0].fields
     }
-    return States(np.array([t for t, _ in series]), places, shown.triangles, fields, kind)
+    times = np.array([t for t, _ in series])
+    return States(times, places, shown.triangles, shown.interfaces, fields, kind)
 
 
 @dataclass(frozen=True)
 class Shown:
     """Maps the nodes of a state to the vertices that are shown. Vertex i has the field value of
     node `nodes[i]`. Its position is that of the node, rotated about the y-axis by `angle[i]` [rad],
-    times the signs `mirror[i]` (3,).
+    times the signs `mirror[i]` (3,). `interfaces` (e, 2) are sides between layers.
 
     If `skin` is set, it first interpolates a field to the vertices of curved faces. The vertices of
     a triangle are in counter-clockwise order as seen from outside.
@@ -224,6 +239,7 @@ class Shown:
     nodes: np.ndarray
     angle: np.ndarray
     mirror: np.ndarray
+    interfaces: np.ndarray
     skin: vtu.Skin | None = None
 
     def values(self, field: np.ndarray) -> np.ndarray:
@@ -243,21 +259,27 @@ def _section(state: vtu.Snapshot, mirrored: bool) -> Shown:
     """Shows a state in the plane, with its mirror image if `mirrored`."""
     n = len(state.points)
     images = [[1, 1, 1], [-1, 1, 1]] if mirrored else [[1, 1, 1]]
-    return _images(state.triangles, n, images)
+    return _images(state.triangles, state.interfaces, n, images)
 
 
 def _images(
-    triangles: np.ndarray, n: int, images: list[list[int]], skin: vtu.Skin | None = None
+    triangles: np.ndarray,
+    interfaces: np.ndarray,
+    n: int,
+    images: list[list[int]],
+    skin: vtu.Skin | None = None,
 ) -> Shown:
-    """Shows triangles of n vertices together with their mirror images. Each of `images` is a list
-    of the signs of the three coordinates.
+    """Shows triangles of n vertices and their sides between layers, together with their mirror
+    images. Each of `images` is a list of the signs of the three coordinates.
     """
     parts = [
         (triangles if np.prod(signs) > 0 else triangles[:, ::-1]) + k * n
         for k, signs in enumerate(images)
     ]
     nodes = np.tile(np.arange(n), len(images))
-    return Shown(np.vstack(parts), nodes, np.zeros(len(nodes)), np.repeat(images, n, axis=0), skin)
+    between = np.vstack([interfaces + k * n for k in range(len(images))])
+    mirror = np.repeat(images, n, axis=0)
+    return Shown(np.vstack(parts), nodes, np.zeros(len(nodes)), mirror, between, skin)
 
 
 def _revolution(state: vtu.Snapshot) -> Shown:
@@ -279,7 +301,8 @@ def _revolution(state: vtu.Snapshot) -> Shown:
     angle = np.concatenate(
         [np.zeros(n), np.full(n, TURN), np.repeat(np.linspace(0, TURN, SECTIONS), m)]
     )
-    return Shown(np.vstack(triangles), nodes, angle, np.ones((len(nodes), 3)))
+    between = np.vstack([state.interfaces, state.interfaces + n])
+    return Shown(np.vstack(triangles), nodes, angle, np.ones((len(nodes), 3)), between)
 
 
 def _skin(solid: vtu.Solid, symmetry: str) -> Shown:
@@ -297,9 +320,12 @@ def _skin(solid: vtu.Solid, symmetry: str) -> Shown:
     _, first, count = np.unique(
         np.sort(faces[:, :3], axis=1), axis=0, return_index=True, return_counts=True
     )
-    skin = vtu.split(faces[first[count == 1]].tobytes(), 2)
+    outer = first[count == 1]
+    skin = vtu.split(faces[outer].tobytes(), 2)
+    between = vtu.sides_between(skin.triangles, solid.layers[outer // len(vtu.FACES)])
     images = {"half": [[1, 1, -1]], "quarter": [[1, 1, -1], [-1, 1, -1]]}
-    return _images(skin.triangles, len(skin.nodes), images.get(symmetry, [[1, 1, 1]]), skin)
+    mirrored = images.get(symmetry, [[1, 1, 1]])
+    return _images(skin.triangles, between, len(skin.nodes), mirrored, skin)
 
 
 def _three(vectors: np.ndarray) -> np.ndarray:

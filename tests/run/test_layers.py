@@ -4,6 +4,9 @@ import numpy as np
 import pytest
 
 import ffimpact as ff
+from ffimpact import view
+from ffimpact.report import drawing, movie, report
+from ffimpact.report.figures import is_half
 from ffimpact.scenes import assembly
 
 RADIUS, CORE = 0.05, 0.03
@@ -120,6 +123,35 @@ def test_reflection_and_transmission_of_a_two_layer_bar(tmp_path, impedance):
         assert made.summary["energy_drift"] < 1e-9
     print(errors)
     assert errors[1] < 2e-3 and errors[1] < errors[0] / 2
+
+
+KINDS = {
+    "plane": (ff.Disc, {"position": (0, 0.05), "velocity": (0, -2)}, {}),
+    "revolved": (ff.Ball, {"position": (0, 0.05), "velocity": (0, -2)}, {"dimension": "axisymmetric"}),
+    "space": (ff.Ball, {"position": (0, 0.05, 0), "velocity": (0, -2, 0)}, {}),
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_pictures_and_reports_have_the_layers(tmp_path, kind):
+    """The player and films draw the circle between core and cover; report, plan, pictures and repr name the core."""
+    shape, moves, entries = KINDS[kind]
+    body = shape(radius=RADIUS, material=SOFT, layers=[ff.Layer(name="heart", radius=CORE, young=2e7)], **moves)
+    scene = ff.Scene(bodies=[body], obstacles=[ff.Plane()], end_time=2e-3, accuracy=0.1, fields=4, **entries)
+    made = ff.run(scene, out=tmp_path / "run", estimate=False)
+    states = view._states(made, True)
+    ends = states.places[0][states.interfaces]
+    away = np.linalg.norm(ends - [0, 0.05, 0], axis=2)
+    length = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).sum()
+    circles = 2 if kind == "space" else 1  # a quarter and its image have a half circle each on two planes
+    assert states.kind == kind and away == pytest.approx(CORE, rel=2e-2) and length == pytest.approx(2 * np.pi * CORE * circles, rel=0.02)
+    assert '"interfaces": {"id":' in made.view().page
+    motion = movie.Motion(made.folder / "fields.pvd", is_half(made.scene))
+    between = motion.at(made.fields.times[1] / 2)[0]
+    assert len(between.interfaces) > 20 and len(between.interfaces) == len(motion.bodies[0].interfaces)
+    name = "heart of body1: inside 0.03 m, neohookean, young = 2e+07 Pa"
+    assert name in report.report(made.record) and name in str(ff.plan(scene)) and "heart: neo-Hookean, E = 20 MPa" in drawing.title(made.scene)
+    assert "layer 1.1" in repr(scene)
 
 
 def test_viscous_work_by_layer(tmp_path):

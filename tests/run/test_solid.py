@@ -54,7 +54,8 @@ def test_surface_of_the_whole_and_of_the_cut_ball(ball, symmetry):
     """
     axes = solid.AXES.get(symmetry, ())
     body = solid.whole(vtu.read_solid(vtu.series(ball(symmetry).folder / "fields.pvd")[0][1]), axes)
-    every, cut = solid.skin(body.tetrahedra), solid.skin(body.tetrahedra[~solid.in_front(body, axes)])
+    left = ~solid.in_front(body, axes)
+    (every, _), (cut, _) = solid.skin(body.tetrahedra, body.layers), solid.skin(body.tetrahedra[left], body.layers[left])
     assert area(every, body.points) == pytest.approx(4 * np.pi * RADIUS**2, rel=0.01)
     places = body.points + body.fields["displacement"]  # at the start; the mesh of a part is moved there
     assert np.linalg.norm(every.at(places) - (0, RADIUS, 0), axis=1) == pytest.approx(RADIUS, rel=0.01)
@@ -85,7 +86,7 @@ def test_pressure_on_the_surface_bears_the_force(ball):
     t = table.t[table.pressure.argmax()]
     axes = (0, 2)
     body = solid.whole(vtu.read_solid(vtu.series(result.folder / "fields.pvd")[0][1]), axes)
-    skin = solid.skin(body.tetrahedra)
+    skin, _ = solid.skin(body.tetrahedra, body.layers)
     vertices = skin.at(body.points)
     drawn = solid.Pressure(table, axes, vertices)
     a, b, c = (vertices[skin.triangles[:, k]] for k in range(3))

@@ -1,6 +1,7 @@
 """Content of figures: start of time, end of contact, the paper's number, a scale; and the section
 of a body in three dimensions."""
 
+import dataclasses
 import itertools
 from pathlib import Path
 
@@ -139,7 +140,7 @@ def block(low: float, high: float, count: int) -> vtu.Solid:
         tetrahedra.append(row)
     points = np.array(points)
     fields = {"displacement": points.copy(), "von_mises": 1 + points @ (2.0, -1.0, 1.0)}
-    return vtu.Solid(points, np.array(tetrahedra), results.Contents(fields, Path("a.vtu")))
+    return vtu.Solid(points, np.array(tetrahedra), results.Contents(fields, Path("a.vtu")), np.zeros(len(tetrahedra), dtype=int))
 
 
 @pytest.mark.parametrize("low, high, count", [(-1, 2, 2), (-1, 1, 1), (-1, 1, 3), (-0.25, 0.75, 1)])
@@ -157,6 +158,17 @@ def test_cut_of_a_whole_body(low, high, count):
     ends = snapshot.points[outline[0][outline[1] == 1]]
     # The section is connected: its free edges lie on the surface of the block.
     assert (np.isclose(np.abs(ends).max(axis=2), 1)).all()
+
+
+@pytest.mark.parametrize("low, high, count", [(-1, 2, 2), (-1, 1, 2), (-0.25, 0.75, 2)])
+def test_the_cut_of_a_layered_body_has_its_interface(low, high, count):
+    """A line along x = 0 from side to side."""
+    solid = block(low, high, count)
+    layers = (solid.points[solid.tetrahedra[:, :4], 0].mean(axis=1) > 0).astype(int)
+    snapshot = vtu.cut_in_plane(dataclasses.replace(solid, layers=layers), np.abs(solid.points[:, 2]) < 1e-9)
+    ends = snapshot.points[snapshot.interfaces]
+    assert abs(ends[..., 0]).max() < 1e-12 and np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).sum() == pytest.approx(2)
+    assert len(vtu.cut_in_plane(solid, np.zeros(len(solid.points), bool)).interfaces) == 0
 
 
 def test_a_body_beside_the_plane_has_no_cut():

@@ -26,6 +26,7 @@ __all__ = [
     "read_parts",
     "read_solid",
     "series",
+    "sides_between",
     "split",
 ]
 
@@ -79,12 +80,13 @@ class Snapshot:
 @dataclass(frozen=True)
 class Solid:
     """A body in three dimensions: `points` (n, 3) are reference coordinates [m], `tetrahedra` (t,
-    10) quadratic, `fields` as in a Snapshot.
+    10) quadratic, `fields` as in a Snapshot, `layers` (t,) the numbers of their layers, 0 for none.
     """
 
     points: np.ndarray
     tetrahedra: np.ndarray
     fields: Contents[np.ndarray]
+    layers: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -116,9 +118,10 @@ def read(path: Path) -> Snapshot:
     on_plane = np.ones(len(points), dtype=bool)
     if kind == QUADRATIC_TETRAHEDRON:
         on_plane, solid = np.abs(points[:, 2]) < 1e-9 * np.ptp(points, axis=0).max(), cells
-        cells = _in_plane(solid, on_plane, points)
+        cells, owners = _in_plane(solid, on_plane, points)
         if not len(cells):
-            return cut_in_plane(Solid(points, solid, fields), on_plane)
+            return cut_in_plane(Solid(points, solid, fields, layers), on_plane)
+        layers = layers[owners]
     row = np.cumsum(on_plane) - 1
     points, cells = points[on_plane, :2], row[cells]
     flat = {name: field[on_plane] for name, field in fields.items()}
@@ -126,16 +129,21 @@ def read(path: Path) -> Snapshot:
         curved = split(cells.tobytes(), int(np.clip(np.sqrt(MOST / max(1, len(cells))), 2, FINEST)))
         points, cells = curved.at(points), curved.triangles
         flat = {name: curved.at(field) for name, field in flat.items()}
-    between = NO_SIDES
-    if layers.any() and kind != QUADRATIC_TETRAHEDRON:
-        between = interfaces(cells, np.repeat(layers, len(cells) // len(layers)))
-    return Snapshot(points, cells, Contents(flat, path), between)
+    return Snapshot(points, cells, Contents(flat, path), sides_between(cells, layers))
+
+
+def sides_between(triangles: np.ndarray, layers: np.ndarray) -> np.ndarray:
+    """Returns the sides (e, 2) between triangles of different layers. Each of `layers` is that of as
+    many triangles in a row.
+    """
+    between: np.ndarray = interfaces(triangles, np.repeat(layers, len(triangles) // len(layers)))
+    return between
 
 
 def read_solid(path: Path) -> Solid | None:
     """Returns a snapshot of a whole body in three dimensions, None for a body in the plane."""
-    points, kind, cells, fields, *_ = read_parts(path)
-    return Solid(points, cells, fields) if kind == QUADRATIC_TETRAHEDRON else None
+    points, kind, cells, fields, _, layers = read_parts(path)
+    return Solid(points, cells, fields, layers) if kind == QUADRATIC_TETRAHEDRON else None
 
 
 def read_parts(
@@ -209,17 +217,21 @@ def lattice(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return np.stack([a, b, c], axis=1), values, np.array(up + down)
 
 
-def _in_plane(tetrahedra: np.ndarray, on_plane: np.ndarray, points: np.ndarray) -> np.ndarray:
+def _in_plane(
+    tetrahedra: np.ndarray, on_plane: np.ndarray, points: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Returns the faces (f, 6) of quadratic tetrahedra (t, 10) whose nodes are all marked in
-    `on_plane`, each once, counter-clockwise.
+    `on_plane`, each once, counter-clockwise, and the tetrahedron (f,) of each.
     """
     faces = tetrahedra[:, FACES].reshape(-1, 6)
-    faces = faces[on_plane[faces].all(axis=1)]
-    faces = faces[np.unique(np.sort(faces[:, :3], axis=1), axis=0, return_index=True)[1]]
+    marked = np.flatnonzero(on_plane[faces].all(axis=1))
+    corners = np.sort(faces[marked, :3], axis=1)
+    marked = marked[np.unique(corners, axis=0, return_index=True)[1]]
+    faces, owners = faces[marked], marked // len(FACES)
     (ax, ay), (bx, by), (cx, cy) = (points[faces[:, k], :2].T for k in range(3))
     clockwise = (bx - ax) * (cy - ay) < (by - ay) * (cx - ax)
     turned: np.ndarray = np.where(clockwise[:, None], faces[:, [0, 2, 1, 5, 4, 3]], faces)
-    return turned
+    return turned, owners
 
 
 def cut_in_plane(solid: Solid, on_plane: np.ndarray) -> Snapshot:
@@ -231,13 +243,10 @@ def cut_in_plane(solid: Solid, on_plane: np.ndarray) -> Snapshot:
     # The corners above the plane come first.
     parts = np.take_along_axis(parts, np.argsort(z[parts] <= 0, axis=1, kind="stable"), axis=1)
     above = (z[parts] > 0).sum(axis=1)
-    edges = np.concatenate(
-        [
-            parts[above == count][:, three].reshape(-1, 2)
-            for count, cuts in CUTS.items()
-            for three in cuts
-        ]
-    )
+    pieces = [(above == count, three) for count, cuts in CUTS.items() for three in cuts]
+    edges = np.concatenate([parts[own][:, three].reshape(-1, 2) for own, three in pieces])
+    of_parts = np.repeat(solid.layers, len(parts) // len(solid.layers))
+    layers = np.concatenate([of_parts[own] for own, _ in pieces])
     # An edge that ends on the plane is cut at its node.
     edges[on_plane[edges[:, 1]], 0] = edges[on_plane[edges[:, 1]], 1]
     different, which = np.unique(edges, axis=0, return_inverse=True)
@@ -253,10 +262,12 @@ def cut_in_plane(solid: Solid, on_plane: np.ndarray) -> Snapshot:
     (ax, ay), (bx, by), (cx, cy) = (at(solid.points)[triangles[:, k], :2].T for k in range(3))
     area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
     triangles = np.where((area < 0)[:, None], triangles[:, ::-1], triangles)[area != 0]
+    between = interfaces(triangles, layers[area != 0])
     return Snapshot(
         at(solid.points)[:, :2],
         triangles,
         Contents({name: at(field) for name, field in solid.fields.items()}, solid.fields.path),
+        between,
     )
 
 

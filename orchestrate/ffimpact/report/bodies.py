@@ -17,6 +17,7 @@ from ..input import dimension, models
 from ..input.obstacles import Obstacle
 from ..input.parameters import Table
 from ..output import vtu
+from ..output.materials import layer_name
 from ..output.results import Contents, body_names, mechanical_energy, suffixes
 from .figures import (
     BAND,
@@ -94,10 +95,13 @@ ABOVE: dict[str, Any] = {
 
 
 def title(scene: Table) -> str:
-    """Returns the title of the scene and the material of each body."""
+    """Returns the title of the scene and the material of each body and layer."""
     materials: dict[str, list[str]] = {}
     for body in scene["body"]:
         materials.setdefault(material(body), []).append(body["name"])
+        for k, layer in enumerate(body.get("layer", []), 1):
+            name = f"{layer_name(layer, k)} of {body['name']}"
+            materials.setdefault(material(layer), []).append(name)
     lines = [
         as_written(scene["title"]),
         *(f"{', '.join(ends(names, '...'))}: {words}" for words, names in materials.items()),

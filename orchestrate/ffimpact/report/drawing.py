@@ -13,6 +13,7 @@ from ..failure import Unreadable
 from ..input.parameters import Table
 from ..output import vtu
 from ..output.folder import FIGURES
+from ..output.materials import layer_name
 from ..output.results import Contents, body_names, check_files, read_history, read_json, read_scene
 from . import bodies, contact as contacts, impacts, solid
 from .figures import BODY, as_written, contact_bounds, is_half, material, per_metre, save, styled
@@ -113,7 +114,7 @@ def _titled(picture: Callable[[], Figure | None], scene: Table) -> Figure | None
 
 def title(scene: Table) -> str:
     """Returns the title of a run: that of its scene, and the material of each body; of the impact of
-    a disc or ball its speed and angle, linear elements, and the friction law if there is friction.
+    a disc or ball its layers, speed and angle, linear elements, and the friction law if there is friction.
     """
     impact = impact_of(scene)
     if not impact:
@@ -122,6 +123,8 @@ def title(scene: Table) -> str:
     body = BODY.get(impact["kind"], "")
     above = f" from a height of {impact['height']:g} m" if impact["height"] > 0 else ""
     text = f"{body}{material(impact)}, {impact['speed']:g} m/s{angle}{above}"
+    for number, layer in enumerate(impact["layer"], 1):
+        text += f"\n{layer_name(layer, number)}: {material(layer)}"
     if scene.get("degree") == 1:
         text += ", linear elements"
     if impact.get("friction_static", 0) > 0:

@@ -15,6 +15,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, TriMesh
 from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 from matplotlib.ticker import AutoLocator, MaxNLocator, NullLocator
 from matplotlib.transforms import ScaledTranslation
 from matplotlib.tri import LinearTriInterpolator, Triangulation
@@ -821,9 +822,11 @@ def draw_body(
     return picture
 
 
-def draw_interfaces(axes: Axes, body: Body, shift: np.ndarray = ORIGIN) -> None:
+def draw_interfaces(axes: Axes, body: Body, shift: np.ndarray = ORIGIN) -> LineCollection:
     """Draws the sides between layers of the body, shifted by `shift` [m]."""
-    if not len(body.interfaces):
-        return
     ends = (body.points + shift)[body.interfaces]
-    axes.add_collection(LineCollection(list(ends), colors=BLACK, linewidths=0.6), autolim=False)
+    outlined = [withStroke(linewidth=1.4, foreground=BLACK)]
+    lines = LineCollection(list(ends), colors="white", linewidths=0.6, path_effects=outlined)
+    if len(ends):
+        axes.add_collection(lines, autolim=False)
+    return lines

@@ -23,7 +23,7 @@ ROUND_OFF = 1e-9
 
 def impact_of(scene: Mapping[str, Any]) -> dict[str, Any] | None:
     """Returns what a scene as used is as an impact: its `kind` (KINDS), entries of the scene, of the
-    material and of the contact, radius [m], speed [m/s], angle of the velocity to the plane
+    material and of the contact, tables of layers, radius [m], speed [m/s], angle of the velocity to the plane
     [degrees], spin [rad/s], and height above the plane [m].
 
     Returns None if the scene is no disc or ball alone above the plane y = 0 without motion,
@@ -60,6 +60,7 @@ def impact_of(scene: Mapping[str, Any]) -> dict[str, Any] | None:
         | own
         | {
             "kind": kind,
+            "layer": body.get("layer", []),
             "radius": body["radius"],
             "speed": _rounded(math.hypot(vx, vy)),
             "angle": _rounded(angle),

@@ -10,8 +10,9 @@ from .impact import impact_of
 __all__ = ["REFERENCE", "published", "references"]
 
 REFERENCE = Path(__file__).resolve().parent / "reference"
-# No source has damping: a parameter of these that `when` does not list is 0 or none.
-UNDAMPED = dict.fromkeys(("viscosity", "bulk_viscosity", "loss"), 0) | {"branches": None}
+# No source has damping or layers: an entry of these that `when` does not list is 0 or none.
+UNDAMPED = dict.fromkeys(("viscosity", "bulk_viscosity", "loss"), 0)
+PLAIN = UNDAMPED | {"branches": None, "layer": None}
 
 
 def references(scene: Table) -> dict[str, list[Table]]:
@@ -46,7 +47,7 @@ def published(scene: Table, whatever: Container[str] = ()) -> list[Table]:
         if run["kind"] == impact["kind"]
         and all(
             (impact.get(name) or 0) == (value or 0)
-            for name, value in (UNDAMPED | run["when"]).items()
+            for name, value in (PLAIN | run["when"]).items()
             if name not in whatever
         )
     ]

@@ -35,6 +35,7 @@ from .figures import (
     deformed,
     diameter,
     draw_body,
+    draw_interfaces,
     is_half,
     legend,
     per_metre,
@@ -152,7 +153,8 @@ class Motion:
             for name in ("points", "stress")
         )
         line = None if self.diameters is None else vtu.between(self.times, self.diameters, t)
-        return Body(points, self.bodies[0].triangles, stress), line
+        first = self.bodies[0]
+        return Body(points, first.triangles, stress, first.interfaces), line
 
 
 class Stage:
@@ -240,6 +242,7 @@ class PlaneStage(Stage):
         # The end of the colour scale is a quantile, so that a single spot does not dominate it.
         self.largest = np.quantile([body.stress for body in motion.bodies], 0.999) or 1.0
         self.picture = draw_body(self.above, motion.bodies[0], (0, self.largest))
+        self.lines = draw_interfaces(self.above, motion.bodies[0])
         self.figure.colorbar(
             self.picture, ax=self.above, label=STRESS, extend="max", aspect=30, pad=0.02
         )
@@ -262,6 +265,7 @@ class PlaneStage(Stage):
             self.drawn = bodies.draw_obstacles(self.above, self.rigid, self.view, t)
         self.picture.remove()
         self.picture = draw_body(self.above, body, (0, self.largest))
+        self.lines.set_segments(list(body.points[body.interfaces]))
         if line is not None:
             self.marks[0].set_data(*line.T)
             self.marks[1].set_data(*line[:1].T)

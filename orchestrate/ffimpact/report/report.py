@@ -12,6 +12,7 @@ from ..input import dimension
 from ..input.parameters import Table
 from ..output import notes
 from ..output.errors import errors, zero_by_symmetry
+from ..output.materials import layer_lines, material
 from ..output.results import Record, body_names, suffixes
 from ..places import shown
 from . import literature
@@ -225,11 +226,13 @@ def _scene(scene: Table, summary: Table) -> list[str]:
         f"{_partners(pair)}: penalty {stiffness(contact | pair)}{_friction(contact | pair) or ', no friction'}"
         for pair in contact.get("pair", [])
     ]
+    bodies = []
+    for k, body in enumerate(scene["body"], 1):
+        size = _size(summary, k, len(scene["body"]))
+        bodies.append(f"{body['name']}: {', '.join([body['shape'], *size, material(body)])}")
+        bodies += [f"  {line}" for line in layer_lines(body)]
     return [
-        *(
-            f"{body['name']}: {', '.join([body['shape'], *_size(summary, k, len(scene['body'])), _material(body)])}"
-            for k, body in enumerate(scene["body"], 1)
-        ),
+        *bodies,
         *(f"{obstacle['name']}: rigid {obstacle['kind']}" for obstacle in scene["obstacle"]),
         words,
         *own,
@@ -243,12 +246,6 @@ def _size(summary: Table, k: int, bodies: int) -> list[str]:
     sides = " x ".join(f"{extent:.4g}" for extent in extents if extent is not None)
     unit = f"kg{dimension.per_metre(summary['provenance']['script'])}"
     return [f"{sides} m", f"{summary[f'mass{end}']:.4g} {unit}"] if sides else []
-
-
-def _material(body: Table) -> str:
-    if body.get("rigid"):
-        return "rigid" if "mass" in body else f"rigid, density = {body['density']:g} kg/m3"
-    return f"{body['law']}, young = {body['young']:g} Pa, nu = {body['nu']:g}, density = {body['density']:g} kg/m3"
 
 
 def _gases(summary: Table) -> list[str]:

@@ -80,13 +80,15 @@ def missing() -> str:
 # ---- the surface
 
 
-def skin(tetrahedra: np.ndarray) -> vtu.Skin:
-    """Returns the boundary faces of quadratic tetrahedra."""
+def skin(tetrahedra: np.ndarray, layers: np.ndarray) -> tuple[vtu.Skin, np.ndarray]:
+    """Returns the boundary faces of quadratic tetrahedra, and their sides (e, 2) between layers."""
     faces = tetrahedra[:, vtu.FACES].reshape(-1, 6)
     _, first, count = np.unique(
         np.sort(faces[:, :3], axis=1), axis=0, return_index=True, return_counts=True
     )
-    return vtu.split(faces[first[count == 1]].tobytes(), FINE)
+    outer = first[count == 1]
+    made = vtu.split(faces[outer].tobytes(), FINE)
+    return made, vtu.sides_between(made.triangles, layers[outer // len(vtu.FACES)])
 
 
 def whole(solid: vtu.Solid, axes: tuple[int, ...]) -> vtu.Solid:
@@ -108,6 +110,7 @@ def whole(solid: vtu.Solid, axes: tuple[int, ...]) -> vtu.Solid:
             np.concatenate([points, image]),
             np.vstack([solid.tetrahedra, twin[solid.tetrahedra]]),
             Contents(fields, solid.fields.path),
+            np.tile(solid.layers, 2),
         )
     return solid
 
@@ -201,7 +204,9 @@ class Views:
         axes = AXES.get(scene.get("symmetry", "full"), ())
         solids = [whole(solid, axes) for _, path in series if (solid := vtu.read_solid(path))]
         points, tetrahedra = solids[0].points, solids[0].tetrahedra
-        self.cut, self.outside = skin(tetrahedra[~in_front(solids[0], axes)]), skin(tetrahedra)
+        behind, layers = ~in_front(solids[0], axes), solids[0].layers
+        self.cut, self.lines = skin(tetrahedra[behind], layers[behind])
+        self.outside, self.outside_lines = skin(tetrahedra, layers)
         self.times = np.array([t for t, _ in series])
         self.rigid = obstacles_of(scene)
         pressure = Pressure(table, axes, self.outside.at(points))
@@ -249,6 +254,7 @@ class Views:
             self._image(
                 sight.cut,
                 self.cut.triangles,
+                self.lines,
                 sight.stress,
                 self.stress,
                 COLOURS["stress"],
@@ -258,6 +264,7 @@ class Views:
             self._image(
                 sight.outside,
                 self.outside.triangles,
+                self.outside_lines,
                 sight.pressure,
                 self.pressure,
                 COLOURS["pressure"],
@@ -270,6 +277,7 @@ class Views:
         self,
         vertices: np.ndarray,
         triangles: np.ndarray,
+        lines: np.ndarray,
         values: np.ndarray,
         largest: float,
         colours: str,
@@ -296,6 +304,11 @@ class Views:
                 ambient=0.45,
                 diffuse=0.55,
             )
+            if len(lines):
+                ends = np.column_stack([np.full(len(lines), 2), lines]).ravel()
+                between = pyvista.PolyData(vertices, lines=ends)
+                colour = "white" if colours == COLOURS["stress"] else "black"
+                plotter.add_mesh(between, color=colour, line_width=2, lighting=False)
             centre, size = (self.low + self.high) / 2, self.high - self.low
             for obstacle in self.rigid if t is not None else []:
                 low, span = self.low - 0.08 * size.max(), size + 0.16 * size.max()

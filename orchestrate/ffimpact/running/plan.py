@@ -16,6 +16,7 @@ from pathlib import Path
 
 from ..freefem import freefem
 from ..output import estimate as estimates
+from ..output.materials import layer_lines
 from ..scene import Scene
 from ..scenes.assembly import prepare
 from .outcome import check
@@ -60,6 +61,8 @@ class Plan:
     #: Factors (below 1, above 1) on `steps` and the times within which they usually are. Both are 1
     #: if the run is so short that the timed steps were all of it.
     bounds: tuple[float, float]
+    #: A line for each layer: its body, its place and its material.
+    layers: tuple[str, ...] = ()
     #: For a long run: the entry and the value that make it short, the time that it then takes, and
     #: what that costs.
     advice: str = ""
@@ -92,6 +95,7 @@ class Plan:
             [
                 f"{self.name}: plan, nothing is written",
                 *_listed("mesh", bodies),
+                *_listed("layers", list(self.layers)),
                 *_listed("steps", [steps]),
                 *_listed("time", self._times()),
                 *_listed("memory", [f"{self.memory / 1e6:.0f} MB in the main run"]),
@@ -168,7 +172,7 @@ def measure(scene: Scene, estimate: bool = True) -> Plan:
 
     with tempfile.TemporaryDirectory() as name:
         folder, began = Path(name), time.process_time()
-        flags, *_ = prepare(scene, folder)
+        flags, used, _ = prepare(scene, folder)
         prepared = time.process_time() - began
         process = freefem.start(
             freefem.find(),
@@ -200,6 +204,7 @@ def measure(scene: Scene, estimate: bool = True) -> Plan:
         estimate_seconds=main * sum(levels(estimate).values()),
         finer_seconds=main * finer,
         memory=last.memory,
+        layers=tuple(line for body in used["body"] for line in layer_lines(body)),
         bounds=(1.0, 1.0)
         if last.steps >= expected
         else (1 / UNCERTAINTY, max(UNCERTAINTY, last.longer)),
