@@ -18,7 +18,7 @@ from ffimpact.freefem import freefem
 from ffimpact.freefem.arrays import Entries, joined, packed, unpacked
 from ffimpact.input import dimension, parameters
 from ffimpact.input.contact import CONTACT
-from ffimpact.input.materials import Material
+from ffimpact.input.materials import OWN_ENTRIES, Material
 from ffimpact.input.parameters import ROOT, Value
 from ffimpact.output import results
 from ffimpact.output.evaluate import evaluate
@@ -139,7 +139,7 @@ def entries(script: str, flags: dict[str, Value | Path]) -> Entries:
     else:
         own = {"friction_dynamic": own.get("friction_static", 0.0)} | own
         made = parameter_arrays({name: own[name] for name in parameters.PARAMETERS if name in own})
-        terms = {name: own.pop(name) for name in ("share", "alpha", "mu") if name in own}
+        terms = {name: own.pop(name) for name in OWN_ENTRIES if name in own}
         numbers = Material.model_construct(law=own["law"], **terms).numbers
         made |= joined("law_numbers", [np.array(numbers, dtype=float)])
         for name in ("branches", "bulk_branches"):

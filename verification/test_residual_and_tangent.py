@@ -6,15 +6,17 @@ import math
 import pytest
 
 from verification import measure as runs
-from verification.tangents import COARSE, MOONEY, OGDEN
+from verification.tangents import COARSE, METAL, MOONEY, OGDEN
 
 LAWS = ["svk", "neohookean"]
 REGULARIZATIONS = ["linear", "linear-printed", "sqrt", "tanh"]
 TRANSITIONS = ["jump", "smooth"]
+CURVED = {"law": "metal", "nu": 0.3, "yield_curve": ((0, 2e5), (0.1, 3e5)), "voce": (1e5, 20), "perzyna": (10, 2)}
 TANGENTS = [*((body, {"law": law, "degree": degree, "integrator": integrator} | ({"nu": 0.3} if body == "3d" else {}))
               for body, integrator in (("block", "bdf2"), ("block", "midpoint"), ("disc", "bdf2"), ("disc", "midpoint"), ("ball", "bdf2"), ("3d", "midpoint"))
               for law in LAWS for degree in (1, 2)),
-            *((body, own | {"integrator": "midpoint"}) for body in COARSE for own in (MOONEY, OGDEN)),
+            *((body, own | {"integrator": "midpoint"}) for body in COARSE for own in (MOONEY, OGDEN, METAL)),
+            ("ball", CURVED | {"integrator": "bdf2"}),
             *((body, {"law": law, "integrator": integrator, "nu": 0.4999}) for body in COARSE
               for law, integrator in (("svk", "midpoint"), ("neohookean", "bdf2"), ("neohookean", "midpoint"))),
             ("disc", MOONEY | {"integrator": "bdf2", "nu": 0.4999})]
@@ -55,26 +57,32 @@ def test_tangent_is_the_derivative_of_the_residual(measure, body, flags):
         assert numbers["area"] == pytest.approx(4 / 3 * math.pi * 0.05**3, rel=3e-3 if degree == 2 else 0.15)
 
 
+METALS = [METAL, CURVED, METAL | {"johnson_cook": (0.05, 0.1)}]
 ELASTIC = [{"law": "neohookean", "nu": 0.3}, {"law": "svk", "nu": 0.4999}, {"law": "neohookean", "nu": 0.4999}]
 DAMPED = [{"law": "neohookean", "nu": 0.3, "viscosity": 300, "bulk_viscosity": 100},
           {"law": "neohookean", "nu": 0.3, "branches": ((7e6, 1e-3), (2e6, 1e-4)), "bulk_branches": ((3e6, 1e-3), (1e6, 1e-4))}]
 
 
-@pytest.mark.few(4)
+@pytest.mark.few(6)
 @pytest.mark.parametrize("body", COARSE)
-@pytest.mark.parametrize("flags", ELASTIC + DAMPED, ids=str)
+@pytest.mark.parametrize("flags", ELASTIC + DAMPED + METALS, ids=str)
 def test_terms_agree_with_differences_of_their_work(measure, body, flags):
     """In a step of energy-momentum d times the forces of a term is the energy that it stores and
     dissipates, with a history from the step before.
 
-    The forces of elastic bodies and of contact are the slope of their energy. The tangent at d = 0 is the
-    derivative of all forces, those of damping among them."""
+    The forces of elastic bodies and of contact are the slope of their energy, as are those of a metal
+    with linear hardening and without rates. The tangent at d = 0 is the derivative of all forces, those of
+    damping among them; that of a metal at yield has two sides there."""
     if body == "3d" and flags["law"] == "svk":
         flags = flags | {"nu": 0.3}
     numbers = measure(f"terms-{body}", **COARSE[body] | flags)
     assert numbers["smallest"] < 0.6
     assert abs(numbers["workBodies"]) < 1e-12 and abs(numbers["workInertia"]) < 1e-12 and abs(numbers["workContact"]) < 1e-12
     assert abs(numbers["slopeContact"]) < 1e-6
+    if flags in METALS:
+        assert numbers["dissipated"] > 0.05
+        assert flags != METAL or abs(numbers["slope"]) < 1e-6
+        return
     assert numbers["tangent"] < 1e-7
     if flags in DAMPED:
         assert numbers["dissipated"] > 0.1

@@ -17,6 +17,8 @@ void Bodies::make() {
     terms.push_back(std::make_unique<Relaxation>(elements));
   if (any([](const Material &m) { return !m.dampers->bulk.empty(); }))
     terms.push_back(std::make_unique<BulkRelaxation>(elements));
+  if (any([](const Material &m) { return m.yield != nullptr; }))
+    terms.emplace_back(plasticity = new Plasticity(elements));
   if (any([](const Material &m) { return m.bulk > 0; }))
     terms.emplace_back(volume = new Volume(elements));
   Fs.resize(elements.sizeOfF());
@@ -133,11 +135,10 @@ void Bodies::energies(const double *C, double *W) const {
   });
 }
 
-void Bodies::dissipated(double *W) const {
-  for (int q = 0; q < elements.nq; q++) {
-    W[q] = 0;
-    for (auto &term : terms) W[q] += term->dissipated(StressTerm::atStart, q);
-  }
+void Bodies::dissipated(bool byPlasticity, double *W) const {
+  std::fill(W, W + elements.nq, 0.);
+  for (auto &term : terms) if ((term.get() == plasticity) == byPlasticity)
+    for (int q = 0; q < elements.nq; q++) W[q] += term->dissipated(StressTerm::atStart, q);
 }
 
 void Bodies::lawStresses(const double *C, double *S) const {
@@ -185,6 +186,7 @@ void Bodies::stresses(const double *F, const double *pressure, double *sigma,
         const Symmetric C = laws::rightCauchyGreen(f);
         Symmetric S = m.law->stress(m, C), s;
         if (volume) S += volume->stress(q, C, f.determinant(), pressure[g]);
+        if (plasticity) S += plasticity->stress(q, C);
         mises[q] = tensors::cauchy(f, S, s);
         for (int k = 0; k < 6; k++) sigma[k * elements.nq + q] = s[k];
       }

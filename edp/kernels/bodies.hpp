@@ -2,7 +2,7 @@
 // the quadrature points, integrated over the elements, with the deformation at the start and at the
 // end of a step; and Inertia. Exports Bodies and Inertia.
 #pragma once
-#include "stress-terms.hpp"
+#include "plasticity.hpp"
 
 namespace bodies {
 
@@ -12,6 +12,7 @@ class Bodies : public Term {
   double leastVolumeRatio = 0.2;           // smallest det F1/det F0 of a valid step
   std::vector<std::unique_ptr<StressTerm>> terms;
   Volume *volume = nullptr;                // one of them, or none
+  Plasticity *plasticity = nullptr;        // likewise
   // stacked: F and C at the start of the step, F at its end; det F at both
   std::vector<double> F0, C0, F1, J0, J1;
 
@@ -38,7 +39,8 @@ class Bodies : public Term {
 
   // W (nq) [J/m3]: energy that the terms store at C.
   void energies(const double *C, double *W) const;
-  void dissipated(double *W) const;        // [J/m3], so far
+  // [J/m3], so far: by viscosity and relaxation, or by plastic strain
+  void dissipated(bool byPlasticity, double *W) const;
   void lawStresses(const double *C, double *S) const;   // S of the laws at C
   void corrections(const double *M, const double *H, double *e) const;   // gradientCorrection()
   // Where W is quadratic in C, the pressure of the element takes the place of kappa tr E of the

@@ -6,7 +6,12 @@
 #include "input.hpp"
 #include "step.hpp"
 
-struct OfMaterial { const laws::Law *law;  laws::Dampers dampers; };
+struct OfMaterial {
+  const laws::Law *law;
+  std::vector<double> numbers;             // of the law
+  laws::Dampers dampers;
+  laws::Yield yield;                       // of a metal
+};
 static std::deque<OfMaterial> ofMaterial;  // by number
 static Factor factor;
 namespace scene {
@@ -34,28 +39,38 @@ static laws::Branches branchesOf(Reals pairs) {
   return all;
 }
 
+static laws::Yield yieldOf(Reals numbers) {
+  // H, Q, b, n, C, rate0, and alpha and stress of each point of the curve
+  laws::Yield yield = {numbers[0], numbers[1], numbers[2], numbers[3], numbers[4], numbers[5], {}};
+  for (long j = 6; j < numbers.N(); j += 2) yield.curve.push_back({numbers[j], numbers[j + 1]});
+  return yield;
+}
+
 static void addBodies() {
   // Kernels of bodies.hpp: materials, discretisation, forces of the terms.
   add("kernelComponent", +[](long i, long dimensions, Sparse pick) {
     elements.component(int(i), int(dimensions), entries(pick));
   });
-  add("kernelLawOf", +[](long number, std::string &name, Reals branches, Reals bulkBranches) {
+  add("kernelLawOf", +[](long number, std::string &name, Reals numbers, Reals branches,
+                         Reals bulkBranches) {
     // Of materials 0, 1 ... in this order; branches: modulus and time of each.
     ffassert(number == long(ofMaterial.size()));
-    ofMaterial.push_back({laws::find(name), {branchesOf(branches), branchesOf(bulkBranches)}});
+    ofMaterial.push_back({laws::find(name), copied<double>(numbers),
+                          {branchesOf(branches), branchesOf(bulkBranches)},
+                          name == "metal" ? yieldOf(numbers) : laws::Yield{}});
   });
-  add("kernelMaterial", +[](Reals lambda, Reals mu, Reals own, Reals eta, Reals zeta, Reals bulk,
+  add("kernelMaterial", +[](Reals lambda, Reals mu, Reals eta, Reals zeta, Reals bulk,
                            Ints materialOfPoint, Ints volumeByTrace, Ints incompressible,
                            Reals weight) {
-    // Arrays over the nq quadrature points; `own` has mostOwn stacked components.
+    // Arrays over the nq quadrature points.
     const long nq = weight.N();
-    ffassert(own.N() == laws::mostOwn * nq);
     elements.weight = copied<double>(weight);
     for (long q = 0; q < nq; q++) {
       const OfMaterial &of = ofMaterial[materialOfPoint[q]];
-      laws::Material m = {of.law, lambda[q], mu[q], {}, eta[q], zeta[q], &of.dampers, bulk[q],
-                          volumeByTrace[q], incompressible[q]};
-      for (int k = 0; k < laws::mostOwn; k++) m.own[k] = own[k * nq + q];
+      laws::Material m = {of.law, lambda[q], mu[q], {}, eta[q], zeta[q], &of.dampers,
+                          of.yield.curve.empty() ? nullptr : &of.yield, bulk[q], volumeByTrace[q],
+                          incompressible[q]};
+      std::copy_n(of.numbers.begin(), std::min(of.numbers.size(), size_t(laws::mostOwn)), m.own);
       elements.addPoint(m);
     }
   });
@@ -100,6 +115,7 @@ static void addBodies() {
   add("kernelAccept", +[](Reals d) {
     for (Term *term : terms) term->accept(stepNow, Kept<double>{&d}.numbers());
   });
+  add("kernelAcceptBodies", +[](Reals d) { body.accept(stepNow, Kept<double>{&d}.numbers()); });
   add("kernelRelax", +[]() { body.relax(); });
 }
 
@@ -115,7 +131,17 @@ static void addStresses() {
     if (body.volume) fill(p, body.volume->start); else p.resize(0);
   });
   add("kernelMeans", +[](Reals values, Reals means) { elements.means(values, means); });
-  add("kernelDissipated", +[](Reals W) { body.dissipated(W); });
+  add("kernelDissipated", +[](Reals W) { body.dissipated(false, W); });
+  add("kernelPlasticWork", +[](Reals W) { body.dissipated(true, W); });
+  add("kernelLargestPlasticStrain", +[]() { return body.plasticity->largestStrain(); });
+  // A and alpha of each point (7 nq), without metals none (plasticity.hpp)
+  add("kernelPlasticStates", +[](Reals states) {
+    states.resize(body.plasticity ? 7 * elements.nq : 0);
+    if (body.plasticity) body.plasticity->states(states);
+  });
+  add("kernelSetPlasticStates", +[](Reals states) {
+    if (body.plasticity) body.plasticity->setStates(states);
+  });
   add("kernelStress", +[](Reals C, Reals S) { body.lawStresses(C, S); });
   add("kernelGradientCorrection", +[](Reals M, Reals H, Reals e) { body.corrections(M, H, e); });
   add("kernelEnergy", +[](Reals C, Reals W) { body.energies(C, W); });

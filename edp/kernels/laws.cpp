@@ -215,14 +215,29 @@ struct Ogden : Conserving<Ogden> {
   }
 };
 
+// What plasticity.hpp leaves of a metal, its volume: W = lambda/2 (ln J)^2, lambda the bulk modulus
+// (material.idp).
+struct Metal : Conserving<Metal> {
+  static Logarithm volume(const Material &m) { return {m.lambda, 0}; }
+  Symmetric stress(const Material &m, const Symmetric &C) const { return volume(m).stress(C); }
+  double gradientCorrection(const Material &m, const Symmetric &M, const Symmetric &H) const {
+    return volume(m).gradientCorrection(M, H);
+  }
+  void addModuli(const Material &m, const Symmetric &C, Moduli &D) const {
+    volume(m).addModuli(C, D);
+  }
+  double ellipticity(const Material &, const Symmetric &, bool) const { return 1; }   // no measure
+};
+
 const Law *find(const std::string &name) {
   static const Svk svk;
   static const NeoHookean neoHookean;
   static const MooneyRivlin mooneyRivlin;
   static const Ogden ogden;
+  static const Metal metal;
   static const std::map<std::string, const Law *> all = {
     {"svk", &svk}, {"neohookean", &neoHookean}, {"mooney-rivlin", &mooneyRivlin},
-    {"ogden", &ogden}};
+    {"ogden", &ogden}, {"metal", &metal}};
   return all.count(name) ? all.at(name) : nullptr;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 #include "tensors.hpp"
+#include "yield.hpp"
 
 namespace laws {
 
@@ -23,13 +24,14 @@ struct Branch { double G, tau; };
 using Branches = std::vector<Branch>;
 struct Dampers { Branches shear, bulk; };
 
-constexpr int mostOwn = 8;                 // numbers of a law, as in material.idp
+constexpr int mostOwn = 8;                 // numbers that a law has at a point
 struct Law;
 struct Material {
   const Law *law;
   double lambda, mu, own[mostOwn];         // Lame's constants; further parameters of the law
   double eta, zeta;                        // viscosities [Pa s]
   const Dampers *dampers;                  // Maxwell branches, of the material
+  const Yield *yield;                      // of a metal; of others null
   double bulk;                             // kappa [Pa]: part of lambda that acts on element means
                                            // of the volume (volume.idp)
   long volumeByTrace;                      // 1: W is quadratic in C, the volume measure is tr E

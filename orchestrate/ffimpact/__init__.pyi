@@ -37,6 +37,7 @@ from .input.layers import (
 from .input.materials import (
     Incompressible as Incompressible,
     Material as Material,
+    Metal as Metal,
     MooneyRivlin as MooneyRivlin,
     NeoHookean as NeoHookean,
     Ogden as Ogden,

@@ -175,7 +175,7 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument(
         "--field",
         default="von_mises",
-        help="shown at first: von_mises (default), pressure, speed, energy_density",
+        help="shown at first: von_mises (default), pressure, speed, energy_density, plastic_strain",
     )
     command.add_argument(
         "--section", action="store_true", help="show a body of revolution as its section"

@@ -396,6 +396,9 @@ class Scene(models.Top):
         words = {
             "penalty_damped": bool(self.contact_values["penalty_damping"]),
             "damped": self.damped,
+            "metals": any(
+                material.law == "metal" for body in self.bodies for material in body.materials
+            ),
             "projected": self._projected,
             "solid": self.kind is SOLID,
         }
@@ -416,11 +419,13 @@ class Scene(models.Top):
     @property
     def _projected(self) -> bool:
         """Whether the volume of the elements is projected. This needs quadratic elements, a
-        `volume` that is not "plain" and a body with nu above STIFFEST.
+        `volume` that is not "plain" and a metal, or a material with nu above STIFFEST.
         """
-        stiffest = max(material.nu for body in self.bodies for material in body.materials)
+        materials = [material for body in self.bodies for material in body.materials]
         return (
-            self.values["volume"] != "plain" and self.values["degree"] == 2 and stiffest > STIFFEST
+            self.values["volume"] != "plain"
+            and self.values["degree"] == 2
+            and any(material.nu > STIFFEST or material.law == "metal" for material in materials)
         )
 
     @property

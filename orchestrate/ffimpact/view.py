@@ -39,6 +39,7 @@ FIELDS = {
     "pressure": ("pressure", "pressure", ("Pa", "kPa", "MPa", "GPa")),
     "speed": ("speed", "velocity", ("m/s", "km/s")),
     "energy_density": ("energy density", "energy_density", ("J/m³", "kJ/m³", "MJ/m³", "GJ/m³")),
+    "plastic_strain": ("plastic strain", "plastic_strain", ("1",)),
 }
 SECONDS = 6.0  # duration of the animation [s]
 # Quantile of a field at the end of the colour scale, so that a single spot does not dominate it.

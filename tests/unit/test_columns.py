@@ -15,7 +15,7 @@ STORED = json.loads((Path(__file__).parents[1] / "support/recorded.json").read_t
 UNITS = {*("", "1", "s", "m", "m2", "m/s", "rad/s", "degrees", "kg/m", "byte"),
          *("N/m", "N s/m", "N m/m", "N m s/m", "J/m", "Pa")}
 # Conditions in the scripts of what some columns need.
-CONDITIONS = {"penaltyDamping > 0": "penalty_damped", "damped": "damped",
+CONDITIONS = {"penaltyDamping > 0": "penalty_damped", "damped": "damped", "hasMetals": "metals",
               "projected": "projected", "solid": "solid"}
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from ffimpact.places import ROOT
 
 CORE = ROOT / "edp/program"
-MOST = 273
+MOST = 274
 TYPE = r"(?:real|int|bool|string|matrix|func|macro|varf|fespace|mesh3?|Qh|Linear|Quadratic|Piecewise|QF2)\b"
 DECLARED = re.compile(rf"(?:^|[;{{}}(,]|\b(?:IFMACRO\([^)]*\)))\s*({TYPE}(?:\s*\[[^\]]*\])*)\s*&?\s*([^;{{}}]*)", re.MULTILINE)
 

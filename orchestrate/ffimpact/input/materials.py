@@ -15,6 +15,7 @@ from ..failure import BadInput, brief
 from .damping import Branches, Damping, flat
 from .dimension import Dimension
 from .entries import Entries, no_more, rule_of
+from .metals import YIELD_ENTRIES, OfMetal
 from .parameter import real, word
 from .rules import Numbers, Vector, number
 
@@ -26,9 +27,11 @@ __all__ = [
     "MATERIAL",
     "MadeOf",
     "Material",
+    "Metal",
     "MooneyRivlin",
     "NOT_RIGID",
     "NeoHookean",
+    "OWN_ENTRIES",
     "OfMaterial",
     "Ogden",
     "STIFFEST",
@@ -39,7 +42,7 @@ __all__ = [
 ]
 
 # The words of the laws in edp/kernels/laws.cpp.
-LAW_WORDS = ("svk", "neohookean", "mooney-rivlin", "ogden", "incompressible")
+LAW_WORDS = ("svk", "neohookean", "mooney-rivlin", "ogden", "incompressible", "metal")
 LAW = word("svk", LAW_WORDS).means(
     "constitutive law: St. Venant-Kirchhoff (5), compressible neo-Hookean (6), or another"
 )
@@ -54,10 +57,11 @@ LOSS_MODELS = ("flat", "kelvin-voigt")
 # Largest nu in the speed of waves. The stiffness by a larger nu acts on the volume of elements.
 STIFFEST = 0.45
 # The entries of some laws beside young and nu. Those of ogden replace young.
-LAW_ENTRIES = {"mooney-rivlin": ("share",), "ogden": ("alpha", "mu")}
+LAW_ENTRIES = {"mooney-rivlin": ("share",), "ogden": ("alpha", "mu"), "metal": YIELD_ENTRIES}
+OWN_ENTRIES = {name for entries in LAW_ENTRIES.values() for name in entries}
 
 
-class OfMaterial(Entries):
+class OfMaterial(OfMetal, Entries):
     """The entries of a material, which a body and the top of a scene may have, too."""
 
     law: Annotated[str | None, LAW] = None
@@ -158,22 +162,17 @@ class Material(OfMaterial):
     def names(cls, dimension: Dimension | None) -> list[str]:
         """The names of the entries, without those of other laws."""
         law = cls.model_fields["law"]
-        others = set() if law.is_required() else {"share", "alpha", "mu"}
-        others -= set(LAW_ENTRIES.get(law.default, ()))
+        others = set() if law.is_required() else OWN_ENTRIES
+        others = others - set(LAW_ENTRIES.get(law.default, ()))
         return [name for name in super().names(dimension) if name not in others]
 
     def refusals(self) -> Iterator[tuple[str, str]]:
-        own, taken = type(self).model_fields["law"], LAW_ENTRIES.get(self.law, ())
+        own = type(self).model_fields["law"]
         if not own.is_required() and self.law != own.default:
             other = LAWS[self.law].__name__ if self.law in LAWS else "Material"
             yield "law", f": '{self.law}' is another law (accepted: {other})"
             return
-        for law, entries in LAW_ENTRIES.items():
-            for entry in entries:
-                if entry in self and entry not in taken:
-                    yield entry, f": of law = {law}, not of {self.law} (accepted: without it)"
-                if entry not in self and entry in taken:
-                    yield entry, f": is missing, of law = {self.law} (accepted: {accepted(entry)})"
+        yield from self._of_law()
         if self.law == "incompressible" and self.nu != 0.5:
             yield "nu", f": {self.nu:g} of law = incompressible (accepted: 0.5)"
         elif 0.4999 < self.nu < 0.5:
@@ -189,6 +188,21 @@ class Material(OfMaterial):
             yield from self._of_terms(self.alpha, self.mu)
         if self.loss_range and self.loss_range[0] >= self.loss_range[1]:
             yield "loss_range", f": {brief(self.loss_range)} does not grow (accepted: low, high)"
+
+    def _of_law(self) -> Iterator[tuple[str, str]]:
+        """Yields entries of other laws, and what those of its own lack."""
+        taken = LAW_ENTRIES.get(self.law, ())
+        for law, entries in LAW_ENTRIES.items():
+            for entry in entries:
+                if entry in self and entry not in taken:
+                    yield entry, f": of law = {law}, not of {self.law} (accepted: without it)"
+                if entry not in self and entry in taken and law != "metal":
+                    yield entry, f": is missing, of law = {self.law} (accepted: {accepted(entry)})"
+        if self.law == "metal":
+            yield from self.refusals_of_metal(self.young)
+            for entry in ("branches", "loss"):
+                if getattr(self, entry):
+                    yield entry, ": beside law = metal (accepted: without it, or viscosity)"
 
     def _of_terms(self, alpha: list[float], mu: list[float]) -> Iterator[tuple[str, str]]:
         """Yields what the terms of ogden lack."""
@@ -219,8 +233,10 @@ class Material(OfMaterial):
     @property
     def numbers(self) -> list[float]:
         """The numbers of the law for the kernels (edp/kernels/laws.cpp): a share of the shear modulus,
-        or each exponent with such a share.
+        each exponent with such a share, or those of the yield stress.
         """
+        if self.law == "metal":
+            return self.yield_numbers
         if self.law != "ogden":
             return [self.share] if self.share is not None else []
         parts = np.multiply(self.mu or [], self.alpha or [])
@@ -293,9 +309,17 @@ class Ogden(Material):
     young: Annotated[float | None, YOUNG] = None  # type: ignore[assignment]
 
 
+class Metal(Material):
+    """Metal: J2 plasticity of finite strain by logarithmic strain (Hencky), with isotropic hardening.
+    `yield_stress` or a `yield_curve`, `hardening`, `voce`; `perzyna` or `johnson_cook`.
+    """
+
+    law: Annotated[str, LAW] = "metal"
+
+
 LAWS: dict[str, type[Material]] = {
     model.model_fields["law"].default: model
-    for model in (SaintVenantKirchhoff, NeoHookean, Incompressible, MooneyRivlin, Ogden)
+    for model in (SaintVenantKirchhoff, NeoHookean, Incompressible, MooneyRivlin, Ogden, Metal)
 }
 MATERIAL = tuple(OfMaterial.model_fields)
 NOT_RIGID = tuple(
@@ -348,7 +372,7 @@ def completed(table: OfMaterial, top: OfMaterial) -> Material:
         )
     values: dict[str, Any] = dict.fromkeys(MATERIAL) | UNDAMPED
     for name in MATERIAL:
-        of_another_law = table.law not in (None, top.law) and name in ("share", "alpha", "mu")
+        of_another_law = table.law not in (None, top.law) and name in OWN_ENTRIES
         if name in table:
             values[name] = getattr(table, name)
         elif name in top and not of_another_law and not _replaced(name, table):

@@ -59,6 +59,7 @@ NEEDS = {
     "directed": "in runs of the paper's scripts",
     "penalty_damped": "with penalty_damping",
     "damped": "with damped bodies",
+    "metals": "with metals",
     "projected": "with projected volume",
     "solid": "in three dimensions",
 }
@@ -99,7 +100,7 @@ HISTORY = (
     _whole("external_work", "J/m", "work of gravity, body forces, moving obstacles, supports and "
         "loads so far"),
     _whole("balance", "J/m", "kinetic + elastic + contact + friction_work + viscous_work + "
-        "penalty_damping_work - external_work, less the same at the start"),
+        "plastic_work + penalty_damping_work - external_work, less the same at the start"),
     _both("momentum_x", "N s/m", "linear momentum along x"),
     _both("momentum_y", "N s/m", "along y"),
     _both("angular_momentum", "N m s/m", "about the centre of mass, about z"),
@@ -130,6 +131,9 @@ HISTORY = (
         "far", needs="penalty_damped"),
     _both("viscous_work", "J/m", "energy that the bodies' viscosity and relaxation have taken so "
         "far", needs="damped"),
+    _both("plastic_work", "J/m", "energy that plastic strain has taken so far, that of hardening "
+        "included", needs="metals"),
+    _whole("max_plastic_strain", "1", "largest equivalent plastic strain", needs="metals"),
     _both("hydrostatic_pressure", "Pa", "pressure in the body, -tr/3 of Cauchy's stress as in the "
         "fields: its mean over the deformed volume", needs="projected"),
     _both("max_hydrostatic_pressure", "Pa", "its largest value", needs="projected"),
@@ -165,6 +169,7 @@ HISTORY_OF_LOADS = (
 HISTORY_OF_LAYERS = (
     _part("layer_elastic", "J/m", "elastic energy in the layer, part of elastic"),
     _part("layer_viscous_work", "J/m", "part of viscous_work in the layer", needs="damped"),
+    _part("layer_plastic_work", "J/m", "part of plastic_work in the layer", needs="metals"),
 )
 
 # Numbers that Python evaluates (output/contacts.py). restitution, restitution_tangential and
@@ -305,6 +310,8 @@ SUMMARY = (
     _whole("wall_seconds", "s", "its time"),
     _whole("penalty_damping_work", needs="penalty_damped"),
     _both("viscous_work", needs="damped"),
+    _both("plastic_work", needs="metals"),
+    _whole("max_plastic_strain", needs="metals"),
     _whole("ellipticity_lost_z", "m", "where", needs="solid"),
     _whole("breakdown_z", "m", "where", needs="solid"),
     _part("impulse_z", "N s/m", "as impulse_x, along z", needs="solid"),
@@ -336,6 +343,7 @@ SUMMARY_OF_LOADS = (
 SUMMARY_OF_LAYERS = (
     _part("layer_elastic_final", "J/m", "elastic energy in the layer at the end"),
     _part("layer_viscous_work", needs="damped"),
+    _part("layer_plastic_work", needs="metals"),
 )
 
 # Entries of summary.json that are no numbers of a run.

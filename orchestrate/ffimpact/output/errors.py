@@ -27,6 +27,7 @@ ENERGIES = (
     "vibration_energy",
     "creep_work",
     "viscous_work",
+    "plastic_work",
     "penalty_damping_work",
 )
 # Numbers whose error estimate is relative to the number itself.
@@ -36,6 +37,7 @@ OF_ITSELF = (
     "contact_time",
     "peak_force",
     "max_pressure",
+    "max_plastic_strain",
     "max_penetration",
     "bounces",
     "rest_time",

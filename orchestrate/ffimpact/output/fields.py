@@ -100,6 +100,8 @@ def _write_body(path: Path, surface: Arrays, state: Arrays) -> None:
         "energy_density": at[:, 13],
         "cauchy_stress": sigma,
     }
+    if "plasticStrain" in state:
+        fields["plastic_strain"] = state["plasticStrain"]
     kind = "triangle6" if cells.shape[1] == 6 else "tetra10"
     _write_mesh(
         path, meshio.Mesh(nodes, [(kind, cells)], fields, {"body": [body], "layer": [layer]})

@@ -24,6 +24,7 @@ LAST = {
     name: name
     for name in (
         *("external_work", "friction_work", "penalty_damping_work", "viscous_work"),
+        *("plastic_work", "max_plastic_strain"),
         *("support_work", "load_work"),
     )
 } | {f"rebound_{name}": name for name in ("vx", "vy", "vz", "spin", "spin_x", "spin_y")}
@@ -69,6 +70,7 @@ def in_order(facts: Table, numbers: Mapping[str, Any]) -> Table:
     words = {
         "penalty_damped": "penalty_damping_work" in numbers,
         "damped": facts["damped"],
+        "metals": "plastic_work" in numbers,
         "projected": facts["projected"],
         "solid": facts["dimension"] == 3,
     }

@@ -29,7 +29,7 @@ OUTSIDE = 1e-3  # how far outside an element a point still belongs to it, in bar
 AXES = {1: ("",), 3: ("_x", "_y", "_z"), 6: ("_xx", "_yy", "_zz", "_xy", "_yz", "_xz")}
 UNITS = {
     "displacement": "m", "velocity": "m/s", "jacobian": "1", "von_mises": "Pa", "pressure": "Pa",
-    "energy_density": "J/m3", "cauchy_stress": "Pa",
+    "energy_density": "J/m3", "cauchy_stress": "Pa", "plastic_strain": "1",
 }  # fmt: skip
 
 
@@ -42,7 +42,8 @@ class State:
     middles of its sides 01, 12, 20 (03, 13, 23); what symmetry leaves out is not there; body
     (m,): the number of its body, from 1; displacement (n, 3) from `points` [m], velocity (n, 3)
     [m/s], jacobian (n,): det F; von_mises, pressure (-tr/3 of Cauchy's stress) (n,) [Pa],
-    energy_density (n,) [J/m3 of the reference], cauchy_stress (n, 6): xx yy zz xy yz xz [Pa].
+    energy_density (n,) [J/m3 of the reference], cauchy_stress (n, 6): xx yy zz xy yz xz [Pa];
+    plastic_strain (n,): the equivalent one, 0 without metals.
     state["von_mises"] is state.von_mises.
     """
 
@@ -57,12 +58,14 @@ class State:
     pressure: Array
     energy_density: Array
     cauchy_stress: Array
+    plastic_strain: Array
 
     @classmethod
     def read(cls, time: float, path: Path) -> State:
         """The state in a file of a run. Raises Unreadable if the file is none."""
         points, _, cells, values, body, _ = vtu.read_parts(path)
-        return cls(time, points, cells, body, *(values[name] for name in UNITS))
+        none = {"plastic_strain": np.zeros(len(points))}
+        return cls(time, points, cells, body, *((none | dict(values))[name] for name in UNITS))
 
     @property
     def positions(self) -> Array:

@@ -28,6 +28,7 @@ from .figures import (
     MEAN_PRESSURE,
     ORANGE,
     ORIGIN,
+    PLASTIC_STRAIN,
     PURPLE,
     SHAPES,
     STRESS,
@@ -83,6 +84,7 @@ DOTS = (0, (1, 1.5))
 WORKS = (
     ("lost to friction", "friction_work", "+ lost", 1, "#d4a017"),
     ("lost to viscosity", "viscous_work", "+ lost", 1, VISCOUS),
+    ("lost to plastic strain", "plastic_work", "+ lost", 1, "#7a5195"),
     ("lost to penalty damping", "penalty_damping_work", "+ lost", 1, "#0072b2"),
     ("external work", "external_work", "− work", -1, "#888888"),
 )
@@ -141,7 +143,9 @@ def pictures(
     # There are no triangles if no body crosses the plane z = 0.
     if snapshots and len(vtu.read(snapshots[0][1]).triangles):
         drawn["shapes"] = lambda: shapes(snapshots, scene, "von_mises", STRESS)
-        if "hydrostatic_pressure" in history:
+        if "plastic_work" in history:
+            drawn["plastic"] = lambda: shapes(snapshots, scene, "plastic_strain", PLASTIC_STRAIN)
+        elif "hydrostatic_pressure" in history:
             drawn["pressure"] = lambda: shapes(snapshots, scene, "pressure", MEAN_PRESSURE)
     if len(snapshots) > 2 and impact and not is_half(scene) and is_oblique(history, impact):
         drawn["flight"] = lambda: flight(history, impact, snapshots)

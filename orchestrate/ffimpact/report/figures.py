@@ -42,6 +42,7 @@ __all__ = [
     "MEAN_PRESSURE",
     "ORANGE",
     "ORIGIN",
+    "PLASTIC_STRAIN",
     "PURPLE",
     "Pose",
     "SHAPES",
@@ -90,6 +91,7 @@ LAWS = {
     "neohookean": "neo-Hookean",
     "mooney-rivlin": "Mooney–Rivlin",
     "ogden": "Ogden",
+    "metal": "metal",
     "incompressible": "neo-Hookean with J = 1",
 }
 BLUE, ORANGE, GREEN, PURPLE, BLACK, GREY = (
@@ -128,8 +130,9 @@ NUMBERS = 6  # largest number of intervals between the ticks of an axis
 BODY = {"ball": "ball: ", "ball-axisymmetric": "ball as a body of revolution: "}
 STRESS = "von Mises stress [MPa]"
 MEAN_PRESSURE = "pressure −tr(σ)/3 [MPa]"
+PLASTIC_STRAIN = "equivalent plastic strain"
 # Units of the fields of a state as they are drawn; that of all others is MPa.
-UNITS = {"displacement": "m", "velocity": "m/s", "jacobian": ""}
+UNITS = {"displacement": "m", "velocity": "m/s", "jacobian": "", "plastic_strain": ""}
 SHAPES = 9  # largest number of shapes in one picture
 # A legend above its panel.
 ABOVE: dict[str, Any] = {
@@ -207,8 +210,13 @@ def material(body: Table) -> str:
         viscosities += ", tan δ = {:g} from {:g} to {:g} Hz".format(
             body["loss"], *body["loss_range"]
         )
+    yields = "".join(
+        f", {sign} = {1e-6 * body[name]:g} MPa"
+        for name, sign in (("yield_stress", "σ_y"), ("hardening", "H"))
+        if body.get(name)
+    )
     law = LAWS.get(body["law"], body["law"])
-    return f"{law}{own}, E = {1e-6 * body['young']:g} MPa, ν = {body['nu']:g}, ρ = {body['density']:g} kg/m³{viscosities}"
+    return f"{law}{own}, E = {1e-6 * body['young']:g} MPa, ν = {body['nu']:g}, ρ = {body['density']:g} kg/m³{yields}{viscosities}"
 
 
 def as_written(text: str) -> str:

@@ -135,7 +135,7 @@ def _materials(scene: Scene) -> Entries:
         }
         for k, material in bodies
     ]
-    # modulus [Pa] and time [s] of each Maxwell branch behind each other
+    # the numbers of each Maxwell branch, [Pa] and [s], behind each other
     lists: dict[str, list[Sequence[Any]]] = {
         "law_numbers": [material.numbers for _, material in bodies],
         "branches": [material.damping.branches for _, material in bodies],

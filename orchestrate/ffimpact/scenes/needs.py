@@ -67,7 +67,7 @@ NEEDS = (
         {"integrator": _MIDDLE},
     ),
     # A pressure in each element keeps its volume at the end of a step. svk is quadratic in E: it has
-    # no limit for nu -> 0.5.
+    # no limit for nu -> 0.5. The volume of a metal has a modulus.
     Need(
         "nu = 0.5 (J = 1) needs",
         True,
@@ -76,7 +76,7 @@ NEEDS = (
             "integrator": (IMPLICIT,),
             "degree": (2,),
             "volume": ("projected",),
-            "law": tuple(law for law in LAW_WORDS if law != "svk"),
+            "law": tuple(law for law in LAW_WORDS if law not in ("svk", "metal")),
         },
     ),
     # An element of degree 1 has one volume.
