@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from .input.obstacles import Obstacle
     from .result import Result
 
-__all__ = ["FIELDS", "Player", "Shown", "States", "view"]
+__all__ = ["FIELDS", "Player", "Shown", "States", "states_of", "view"]
 
 # For each name: the label, the field of the state that it is computed from, and the possible units.
 FIELDS = {
@@ -114,7 +114,7 @@ def view(
         raise BadInput(f"view: '{path}' is no HTML file (accepted: a name that ends in .html)")
     if field not in FIELDS:
         raise BadInput(f"field: {unknown(field, FIELDS, ', ')}")
-    states = _states(result, revolved)
+    states = states_of(result, revolved)
     points = states.places.reshape(-1, 3)
     low, high = points.min(axis=0), points.max(axis=0)
 
@@ -191,7 +191,7 @@ class States:
     kind: str
 
 
-def _states(result: Result, revolved: bool) -> States:
+def states_of(result: Result, revolved: bool) -> States:
     """Reads the kept states of a run in the form that the player shows. Raises Unreadable without
     states.
     """

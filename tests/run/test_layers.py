@@ -139,7 +139,7 @@ def test_pictures_and_reports_have_the_layers(tmp_path, kind):
     body = shape(radius=RADIUS, material=SOFT, layers=[ff.Layer(name="heart", radius=CORE, young=2e7)], **moves)
     scene = ff.Scene(bodies=[body], obstacles=[ff.Plane()], end_time=2e-3, accuracy=0.1, fields=4, **entries)
     made = ff.run(scene, out=tmp_path / "run", estimate=False)
-    states = view._states(made, True)
+    states = view.states_of(made, True)
     ends = states.places[0][states.interfaces]
     away = np.linalg.norm(ends - [0, 0.05, 0], axis=2)
     length = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).sum()
