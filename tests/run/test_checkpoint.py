@@ -32,6 +32,7 @@ COARSE = dict(law="neohookean", nu=0.4)
 SCENES = {
     "energy-momentum": (COARSE | dict(accuracy=0.1, angle=60, friction_static=0.7, friction_dynamic=0.5, fields=5), 7, 20),
     "relaxing": (COARSE | dict(accuracy=0.05, branches=((2e6, 1e-3),), viscosity=5), 7, 20),
+    "metal": (dict(law="metal", nu=0.3, yield_stress=2e5, perzyna=(100, 2), accuracy=0.1, fields=5), 7, 20),
     "until rest": (COARSE | dict(accuracy=0.1, loss=2, loss_model="kelvin-voigt", speed=0, height=0.05, gravity=9.81, until="rest"), 7, 60),
     "svk": (dict(accuracy=0.1, exponent=1.5, penalty=1e11, height=1e-3, gravity=9.81), 7, 20),
     "midpoint": (COARSE | dict(accuracy=0.1, spin=50, friction_static=0.5, friction_dynamic=0.5, degree=1, integrator="midpoint"),
@@ -42,7 +43,7 @@ SCENES = {
                                          dt=3e-5, integrator="central-difference"), 10, 80),
 }
 # The other scenes, run by `make robustness`, keep no further state between steps.
-OFTEN = ("energy-momentum", "relaxing", "bdf2", "central-difference")
+OFTEN = ("energy-momentum", "relaxing", "metal", "bdf2", "central-difference")
 
 
 @pytest.mark.parametrize("name", [name if name in OFTEN else pytest.param(name, marks=pytest.mark.robustness) for name in SCENES])
