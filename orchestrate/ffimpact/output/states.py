@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from ..failure import BadInput, NotInstalled, Unreadable, brief, unknown
 from ..places import shown
 from . import vtu
+from .dent import Dent, dent
 
 if TYPE_CHECKING:
     import meshio
@@ -153,6 +154,18 @@ class Fields(Sequence[State]):
         }
         table.attrs["units"] = {column: units[column] for column in table}
         return table
+
+    def dent(self, body: int = 1) -> Dent:
+        """The dent in body number `body` in the last state: its depth and radius [m], after elastic
+        recovery if the contact is over by then. Raises BadInput if there is no such body or it has
+        not yielded.
+        """
+        last = self[-1]
+        if not (last.body == body).any():
+            raise BadInput(f"dent: '{body}' is no body (accepted: 1 to {last.body.max()})")
+        if not last.plastic_strain[last.cells[last.body == body]].any():
+            raise BadInput(f"dent: body {body} has not yielded (accepted: a body that has)")
+        return dent(last, body, ("x",) if self.of_revolution else self.symmetric_along)
 
 
 def _named(name: str, values: Array) -> dict[str, float]:

@@ -125,7 +125,7 @@ def rows(per: str) -> list[Quantity]:
         Quantity("friction_work", "lost to friction", f"J{per}", main=_always, when=_nonzero),
         Quantity("creep_work", "  of it in creep", f"J{per}", when=_nonzero),
         Quantity("viscous_work", "lost to viscosity", f"J{per}"),
-        Quantity("plastic_work", "lost to plastic strain", f"J{per}", main=_always),
+        Quantity("plastic_work", "lost to plastic strain", f"J{per}", main=_always, when=_nonzero),
         Quantity("max_plastic_strain", "  largest", main=_always),
         Quantity("penalty_damping_work", "lost to penalty damping", f"J{per}", main=_always),
         Quantity("energy_initial", "energy at the start", f"J{per}"),
