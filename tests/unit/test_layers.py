@@ -101,6 +101,15 @@ def test_a_mesh_follows_circles_about_the_centre(kind, spin):
     assert (built.arrays["mesh.arc_of"][built.mesh.labels == INTERFACE] > 0).all()
 
 
+@pytest.mark.parametrize("kind, spin", [("plane-strain", 0.0), ("plane-strain", 1.0), ("axisymmetric", None)])
+def test_elements_between_a_core_and_a_thin_cover(kind, spin):
+    """Sides on the circle are no longer than the cover is thick, also of a half, so that no curved element folds over."""
+    shape = {"shape": "disc" if spin is not None else "ball", **({"spin": spin} if spin else {})}
+    built = made({"radius": 0.047}, dimension=kind, **shape)
+    ends = built.mesh.points[built.mesh.edges[built.mesh.labels == INTERFACE]]
+    assert np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).max() < 1.3 * 0.003
+
+
 def test_regions_cut_along_straight_lines_and_the_later_one_wins():
     """A circular segment, a box across the outline, and a disc on its corner: their areas are exact but for
     the chords of circles."""

@@ -176,12 +176,13 @@ def _stretch(curve: Curve, a: float, b: float) -> Curve:
 def with_interfaces(
     boundary: list[list[Piece]],
     layers: Layers,
-    inside: Callable[[np.ndarray], np.ndarray],
+    gap: Callable[[np.ndarray], np.ndarray],
+    halved: bool,
     sizes: Sizes,
 ) -> tuple[list[list[Piece]], list[tuple[Curve, float]]]:
     """Returns the boundary of a body, split where interfaces between layers meet it, and the
-    interfaces inside it with the largest element size [m] on each. `inside` are signed distances
-    (n,) of points (n, 2) from the boundary, negative inside.
+    interfaces inside it with the largest element size [m] on each. `gap` are signed distances (n,) of
+    points (n, 2) from the outline of the body, negative inside; of a `halved` one only x >= 0 is meshed.
     """
     near, edges = NEAR * layers.bounding_radius, layers.edges
     cuts: list[list[float]] = [[] for _ in edges]
@@ -205,10 +206,12 @@ def with_interfaces(
         for a, b in _spans(edge, own):
             curve = _stretch(edge.at, a, b)
             places = curve(np.array([0.0, 0.5, 1.0]))
-            if inside(places[1:2])[0] < -10 * near and layers.differ(edge, places[1:2])[0]:
+            middle = places[1:2]
+            inside = gap(middle)[0] < -10 * near and (not halved or middle[0, 0] > 10 * near)
+            if inside and layers.differ(edge, middle)[0]:
                 # regions that touch have the same edge twice
                 key = sorted(map(tuple, np.round(places / (100 * near)).tolist()))
-                inner.setdefault(tuple(key), (curve, _largest(edge, edges, inside, sizes, near)))
+                inner.setdefault(tuple(key), (curve, _largest(edge, edges, gap, sizes, near)))
     return split, list(inner.values())
 
 
@@ -236,7 +239,7 @@ def _spans(edge: Segment | Circle, cuts: list[float]) -> list[tuple[float, float
 def _largest(
     edge: Segment | Circle,
     edges: list[Segment | Circle],
-    inside: Callable[[np.ndarray], np.ndarray],
+    gap: Callable[[np.ndarray], np.ndarray],
     sizes: Sizes,
     near: float,
 ) -> float:
@@ -251,7 +254,7 @@ def _largest(
             for other in circles
             if (other.centre == edge.centre).all()
         ]
-        away = -inside(edge.at(np.linspace(0, 1, ROUND)))
+        away = -gap(edge.at(np.linspace(0, 1, ROUND)))
         apart += [edge.radius / 2, *([float(away.min())] if away.min() > 0 else [])]
     else:
         along = edge.end - edge.start

@@ -783,12 +783,6 @@ def _meshed(scene: Scene, k: int, size: Sizes) -> mesh.Mesh:
     body, boundary = scene.bodies[k], boundary_curves(scene, k)
     interfaces: list[tuple[Curve, float]] = []
     if body.layers:
-        halved = bool(mirror_axes(scene.kind, copies(scene)))
-
-        def inside(points: np.ndarray) -> np.ndarray:
-            gap = body.outline.gap(points)
-            return np.maximum(gap, -points[:, 0]) if halved else gap
-
         # elements on the outline are as long as the layer below it is thick
         thin = [
             abs(radius - own)
@@ -797,7 +791,10 @@ def _meshed(scene: Scene, k: int, size: Sizes) -> mesh.Mesh:
             for radius in body.radii
             if radius > 0
         ]
-        boundary, interfaces = with_interfaces(boundary, body.regions, inside, size)
+        halved = bool(mirror_axes(scene.kind, copies(scene)))
+        boundary, interfaces = with_interfaces(
+            boundary, body.regions, body.outline.gap, halved, size
+        )
         boundary = [
             [(curve, min([largest, *thin]), label) for curve, largest, label in loop]
             for loop in boundary
