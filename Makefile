@@ -8,7 +8,7 @@ SWEEPS := oblique friction-jump friction-steps slip-limit contact-time-svk law-c
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws $(SWEEPS) stick-slip verify paper-scripts paper movie docs pictures check unit quick coverage mutants test robustness bench bench-quick scaling equal-errors promise disc-block-errors oblique-angles viscoelastic rubber users clean
+.PHONY: help setup disc-normal disc-oblique disc-rolling ball-axisymmetric ball ball-oblique ball-comparison disc-block friction-laws $(SWEEPS) stick-slip verify paper-scripts paper movie docs pictures check unit quick coverage mutants test robustness bench bench-quick scaling equal-errors promise disc-block-errors oblique-angles viscoelastic rubber layers users clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## /  make \1\t/p' Makefile | expand -t 32
@@ -122,10 +122,10 @@ robustness: $(READY) ## the tests that make test leaves out, malformed input and
 	@$(PYTHON) -m benchmarks stress
 
 disc-block-errors: override ARGS += --page docs/measurements/disc-block.md
-rubber: override ARGS += --page docs/measurements/rubber.md
+rubber layers: override ARGS += --page docs/measurements/$@.md
 equal-errors: override ARGS += --page docs/measurements/bench.md
 promise scaling users: override ARGS += --page docs/measurements/$@.md
-bench scaling equal-errors promise disc-block-errors rubber users: $(READY)
+bench scaling equal-errors promise disc-block-errors rubber layers users: $(READY)
 	@$(PYTHON) -m benchmarks $@ $(ARGS)
 bench: ## run time against error: meshes, steps, integrators, and other programs where installed
 bench-quick: $(READY) ## the same for one case, coarse
@@ -139,6 +139,7 @@ oblique-angles: $(READY) ## disc and ball over the angle of incidence, beside ri
 viscoelastic: $(READY) ## damped impacts: a slow ball against quasi-static theory, a disc over loss factor and relaxation time
 	@$(PYTHON) -m benchmarks $@ $(or $(ARGS),--page docs/measurements/$@.md)
 rubber: ## disc and ball as nu -> 0.5: answers and cost, with the mean volume of elements and at points, NGSolve where installed
+layers: ## a layered ball beside NGSolve on the same mesh
 
 users: ## scenes of users: time and error with automatic steps and by hand, and over a stiffness ratio (docs/measurements/users.md)
 

@@ -207,6 +207,13 @@ def oblique_angles(tables: Tables, path: Path) -> None:
     study.draw(tables[""], path)
 
 
+def layers(tables: Tables, path: Path) -> None:
+    """Draws the force over time of a layered ball, of both programs and without its core."""
+    from . import layers as study
+
+    study.draw(tables["forces"], path)
+
+
 def viscoelastic(tables: Tables, path: Path) -> None:
     """Draws 1 - e of the ball over speed, and the restitution of the disc over loss and relaxation
     time."""
@@ -276,6 +283,7 @@ DRAWN: dict[str, Callable[[Tables, Path], None]] = {
     "rubber": rubber,
     "oblique-angles": oblique_angles,
     "viscoelastic": viscoelastic,
+    "layers": layers,
     "users": users,
 }
 

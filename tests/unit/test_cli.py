@@ -48,7 +48,7 @@ def test_a_full_disk_is_one_line(tmp_path, monkeypatch, capsys):
 
 
 @pytest.mark.parametrize("module", ["verification.verify", "examples.paper.stick_slip", *(f"benchmarks.{name}" for name in (
-    "promise", "bench", "stress", "oblique_angles", "disc_block_errors", "equal_errors", "scaling", "rubber"))])
+    "promise", "bench", "stress", "oblique_angles", "disc_block_errors", "equal_errors", "scaling", "rubber", "layers"))])
 def test_a_loop_of_links_is_no_folder(tmp_path, module):
     """A result folder behind a loop of links gives exit code 14 and one line, for every study."""
     (tmp_path / "loop").symlink_to(tmp_path / "pool")
