@@ -6,6 +6,21 @@ namespace bodies {
 
 using tensors::Vector;
 
+// Eigenvalues l and unit eigenvectors V (columns) of X; directly where 3 is a principal axis.
+static void decompose(const Tensor &X, Vector<3> &l, Tensor &V) {
+  if (X(2, 0) != 0 || X(2, 1) != 0) {
+    const Eigen::SelfAdjointEigenSolver<Tensor> solver(X);
+    l = solver.eigenvalues();
+    V = solver.eigenvectors();
+    return;
+  }
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver;
+  solver.computeDirect(X.topLeftCorner<2, 2>());
+  l << solver.eigenvalues(), X(2, 2);
+  V.setIdentity();
+  V.topLeftCorner<2, 2>() = solver.eigenvectors();
+}
+
 // The elastic trial state of C with the state A, and the return from it in the time dt [s].
 struct Trial {
   Tensor B;
@@ -15,9 +30,8 @@ struct Trial {
 
   Trial(const laws::Material &m, const Symmetric &A, const Symmetric &C) : mu(m.mu) {
     const Tensor G = laws::full(A).llt().matrixL();
-    const Eigen::SelfAdjointEigenSolver<Tensor> solver(G.transpose() * laws::full(C) * G);
-    B = G * solver.eigenvectors();
-    l = solver.eigenvalues();
+    decompose(G.transpose() * laws::full(C) * G, l, B);
+    B = G * B;
     const Vector<3> e = 0.5 * l.array().log();
     deviator = e.array() - e.mean();
     size = deviator.norm();

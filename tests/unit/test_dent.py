@@ -31,4 +31,4 @@ def test_depth_and_radius(left, mirrored):
     """Also of a body that has moved, and of half of one."""
     found = dent(square(161, left), 1, mirrored)
     assert found.depth == pytest.approx(DEPTH, rel=1e-3)
-    assert found.radius == pytest.approx(WIDTH * np.sqrt(np.log(10)), rel=0.01)
+    assert found.radius == pytest.approx(WIDTH * np.sqrt(np.log(100)), rel=0.01)

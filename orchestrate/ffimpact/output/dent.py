@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["Dent", "dent"]
 
 Array = NDArray[np.float64]
-EDGE = 0.1  # share of the depth at which a dent ends
+EDGE = 0.01  # share of the depth at which a dent ends
 YIELDED = 1e-3  # share of the largest plastic strain above which a node takes no part in the fit
 
 
@@ -25,7 +25,7 @@ YIELDED = 1e-3  # share of the largest plastic strain above which a node takes n
 class Dent:
     """`depth` [m]: the largest displacement of the outline inwards, beside the rigid motion of what
     has not yielded; `radius` [m]: the distance from the middle of the dent at which this
-    displacement has fallen to a tenth of it.
+    displacement has fallen to a hundredth of it.
     """
 
     depth: float
