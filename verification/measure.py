@@ -140,7 +140,12 @@ def entries(script: str, flags: dict[str, Value | Path]) -> Entries:
         own = {"friction_dynamic": own.get("friction_static", 0.0)} | own
         made = parameter_arrays({name: own[name] for name in parameters.PARAMETERS if name in own})
         terms = {name: own.pop(name) for name in OWN_ENTRIES if name in own}
-        numbers = Material.model_construct(law=own["law"], **terms).numbers
+        if "parameters" in terms:
+            terms["parameters"] = dict(terms["parameters"])
+        material = Material.model_construct(law=own["law"], nu=own.get("nu"), **terms)
+        if own["law"] == "energy":
+            own |= material.made
+        numbers = material.numbers
         made |= joined("law_numbers", [np.array(numbers, dtype=float)])
         for name in ("branches", "bulk_branches"):
             made |= joined(name, [np.array(own.pop(name, ()), dtype=float).ravel()])

@@ -6,7 +6,7 @@ import math
 import pytest
 
 from verification import measure as runs
-from verification.tangents import COARSE, METAL, MOONEY, OGDEN
+from verification.tangents import COARSE, EXPONENTIAL, METAL, MIXED, MOONEY, OGDEN
 
 LAWS = ["svk", "neohookean"]
 REGULARIZATIONS = ["linear", "linear-printed", "sqrt", "tanh"]
@@ -15,7 +15,8 @@ CURVED = {"law": "metal", "nu": 0.3, "yield_curve": ((0, 2e5), (0.1, 3e5)), "voc
 TANGENTS = [*((body, {"law": law, "degree": degree, "integrator": integrator} | ({"nu": 0.3} if body == "3d" else {}))
               for body, integrator in (("block", "bdf2"), ("block", "midpoint"), ("disc", "bdf2"), ("disc", "midpoint"), ("ball", "bdf2"), ("3d", "midpoint"))
               for law in LAWS for degree in (1, 2)),
-            *((body, own | {"integrator": "midpoint"}) for body in COARSE for own in (MOONEY, OGDEN, METAL)),
+            *((body, own | {"integrator": "midpoint"}) for body in COARSE for own in (MOONEY, OGDEN, METAL, EXPONENTIAL, MIXED)),
+            *((body, energy | {"integrator": "midpoint", "parameters": energy["parameters"][:-1] + (("k", 1e9),)}) for body in COARSE for energy in (EXPONENTIAL, MIXED)),
             ("ball", CURVED | {"integrator": "bdf2"}),
             *((body, {"law": law, "integrator": integrator, "nu": 0.4999}) for body in COARSE
               for law, integrator in (("svk", "midpoint"), ("neohookean", "bdf2"), ("neohookean", "midpoint"))),
@@ -58,7 +59,8 @@ def test_tangent_is_the_derivative_of_the_residual(measure, body, flags):
 
 
 METALS = [METAL, CURVED, METAL | {"johnson_cook": (0.05, 0.1)}]
-ELASTIC = [{"law": "neohookean", "nu": 0.3}, {"law": "svk", "nu": 0.4999}, {"law": "neohookean", "nu": 0.4999}]
+ELASTIC = [{"law": "neohookean", "nu": 0.3}, {"law": "svk", "nu": 0.4999}, {"law": "neohookean", "nu": 0.4999},
+           *(energy | {"parameters": energy["parameters"][:-1] + (("k", k),)} for energy in (EXPONENTIAL, MIXED) for k in (6e6, 1e9))]
 DAMPED = [{"law": "neohookean", "nu": 0.3, "viscosity": 300, "bulk_viscosity": 100},
           {"law": "neohookean", "nu": 0.3, "branches": ((7e6, 1e-3), (2e6, 1e-4)), "bulk_branches": ((3e6, 1e-3), (1e6, 1e-4))}]
 

@@ -73,7 +73,7 @@ Law::MuPhi Law::muPhiAt(double v, const Candidate &a, double tN) const {
   regularise(vOverEps, phi, dPhi);
   if (a.weight > 0) {                      // mu_f (|v|, p)
     if (tN <= 0) return {};
-    const expressions::Expression::Dual of = friction->at({std::abs(v), tN / a.weight, 0});
+    const expressions::Dual of = friction->at({std::abs(v), tN / a.weight, 0});
     return {(v < 0 ? -1 : 1) * of.value * phi,
             of.value * dPhi / slipVelocity + of.slope[0] * phi,
             (v < 0 ? -1 : 1) * of.slope[1] * phi / a.weight};

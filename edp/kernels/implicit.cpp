@@ -37,7 +37,7 @@ class Implicit : public Shape {
     // limit is a third of the smallest radius of curvature. If |D| / |grad D| exceeds it, or the
     // gap 2 limit, the gap is a bound of the distance (boundAt()).
     Expression::Branches branch;
-    const Expression::Dual D = distance.at(x, branch, true);
+    const expressions::Dual D = distance.at(x, branch, true);
     const double size = D.slope.norm();
     Nearest closest = {0, D.slope / size, 0}, other = closest;
     // beyond 1e150 the square of the gradient overflows
@@ -79,7 +79,7 @@ class Implicit : public Shape {
     const double roundOff = 1e-15 * (x.norm() + limit);
     double change = 1e300;
     for (int iteration = 0; iteration < 60; iteration++) {
-      const Expression::Dual D = distance.at(y, branch, iteration == 0);
+      const expressions::Dual D = distance.at(y, branch, iteration == 0);
       const double size = D.slope.norm();
       closest.piece = 0;
       closest.normal = D.slope / size;

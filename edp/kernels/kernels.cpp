@@ -53,11 +53,15 @@ static void addBodies() {
   });
   add("kernelLawOf", +[](long number, std::string &name, Reals numbers, Reals branches,
                          Reals bulkBranches) {
-    // Of materials 0, 1 ... in this order; branches: modulus and time of each.
+    // Of materials 0, 1 ... in this order; branches: modulus and time of each. Returns the largest
+    // kappa [Pa].
     ffassert(number == long(ofMaterial.size()));
-    ofMaterial.push_back({laws::find(name), copied<double>(numbers),
+    const std::vector<double> own = copied<double>(numbers);
+    ofMaterial.push_back({laws::find(name, own), own,
                           {branchesOf(branches), branchesOf(bulkBranches)},
                           name == "metal" ? yieldOf(numbers) : laws::Yield{}});
+    ofMaterial.back().numbers.resize(own.size() + 8, 0.);   // 0: no further terms of ogden
+    return ofMaterial.back().law->mostBulk();
   });
   add("kernelMaterial", +[](Reals lambda, Reals mu, Reals eta, Reals zeta, Reals bulk,
                            Ints materialOfPoint, Ints volumeByTrace, Ints incompressible,
@@ -67,11 +71,9 @@ static void addBodies() {
     elements.weight = copied<double>(weight);
     for (long q = 0; q < nq; q++) {
       const OfMaterial &of = ofMaterial[materialOfPoint[q]];
-      laws::Material m = {of.law, lambda[q], mu[q], {}, eta[q], zeta[q], &of.dampers,
-                          of.yield.curve.empty() ? nullptr : &of.yield, bulk[q], volumeByTrace[q],
-                          incompressible[q]};
-      std::copy_n(of.numbers.begin(), std::min(of.numbers.size(), size_t(laws::mostOwn)), m.own);
-      elements.addPoint(m);
+      elements.addPoint({of.law, lambda[q], mu[q], of.numbers.data(), eta[q], zeta[q], &of.dampers,
+                         of.yield.curve.empty() ? nullptr : &of.yield, bulk[q], volumeByTrace[q],
+                         incompressible[q]});
     }
   });
   add("kernelBodies", +[](Sparse gradient, Sparse mass, Reals free) {

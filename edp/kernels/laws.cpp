@@ -1,6 +1,8 @@
 // laws.cpp: the laws of laws.hpp. A new law is a struct derived from Conserving, and a line in
 // find().
+#include <deque>
 #include <map>
+#include "energy.hpp"
 #include "logarithm.hpp"
 
 namespace laws {
@@ -38,6 +40,8 @@ struct Svk : Conserving<Svk> {
   void addModuli(const Material &m, const Symmetric &, Moduli &D) const {
     D.add(identity, identity, m.lambda, m.mu);
   }
+  Vector<3> volume(double theta) const { return {theta * theta / 2, theta, 1}; }
+  double volumeSlope(double theta0, double theta1) const { return (theta0 + theta1) / 2; }
   double ellipticity(const Material &m, const Symmetric &C, bool spatial) const {
     // Smallest eigenvalue e over mu of Q(N) = (N.S N) I + (lambda + mu) F N (x) F N + mu F F^T over
     // the unit N of the plane or of the three principal planes of C. With the stretches L1 >= L2 in
@@ -190,46 +194,38 @@ struct Ogden : Conserving<Ogden> {
     rest(m).addModuli(C, D);
   }
   double ellipticity(const Material &m, const Symmetric &C, bool spatial) const {
-    // A number with the sign of the smallest eigenvalue, over mu, in the principal planes (Knowles,
-    // Sternberg 1977): the least of W11, W22, A and
-    // sqrt(W11 W22) + A - |W12 + B|, with Kirchhoff stresses t_i and l_i = L_i^2.
-    const Vector<3> L = principal(C, spatial);
-    const double ratio = (m.lambda + m.bulk) / m.mu, volume = ratio * std::log(determinant(C)) / 2;
-    double least = 1e300;
-    for (int n = spatial ? 0 : 2; n < 3; n++) {
-      const double l1 = std::max(L[(n + 1) % 3], L[(n + 2) % 3]),
-        l2 = std::min(L[(n + 1) % 3], L[(n + 2) % 3]);
-      double t1 = volume, t2 = volume, s1 = ratio, s2 = ratio, A = 0;
+    // With t_i = L_i dW/dL_i: dW/dL_i = t_i/L_i, d2W/dL_i^2 = (L_i dt_i/dL_i - t_i)/L_i^2.
+    const Vector<3> l = principal(C, spatial), L = l.cwiseSqrt(), inverse = L.cwiseInverse();
+    const double lambda = m.lambda + m.bulk, volume = lambda * std::log(determinant(C)) / 2;
+    Vector<3> t(volume, volume, volume);
+    Tensor bend = lambda * inverse * inverse.transpose();
+    for (int i = 0; i < 3; i++) {
       forTerms(m, [&](double c, double p) {
-        const double x1 = c / m.mu * std::pow(l1, p), x2 = c / m.mu * std::pow(l2, p);
-        A += c / m.mu * dividedDifference(l1, l2, p);
-        t1 += x1 - c / m.mu;  s1 += 2 * p * x1;
-        t2 += x2 - c / m.mu;  s2 += 2 * p * x2;
+        t[i] += c * (std::pow(l[i], p) - 1);
+        bend(i, i) += c * 2 * p * std::pow(l[i], p - 1);
       });
-      const double W11 = (s1 - t1) / l1, W22 = (s2 - t2) / l2,
-        across = (ratio + l2 * A - t2) / std::sqrt(l1 * l2);
-      const double both = std::sqrt(std::max(0., W11) * std::max(0., W22)) + A - std::abs(across);
-      least = std::min({least, W11, W22, A, both});
+      bend(i, i) -= t[i] / l[i];
     }
-    return least;
+    return leastInPlanes(t.cwiseProduct(inverse), bend, L, spatial) / m.mu;
   }
 };
 
 // What plasticity.hpp leaves of a metal, its volume: W = lambda/2 (ln J)^2, lambda the bulk modulus
 // (material.idp).
 struct Metal : Conserving<Metal> {
-  static Logarithm volume(const Material &m) { return {m.lambda, 0}; }
-  Symmetric stress(const Material &m, const Symmetric &C) const { return volume(m).stress(C); }
+  static Logarithm rest(const Material &m) { return {m.lambda, 0}; }
+  Symmetric stress(const Material &m, const Symmetric &C) const { return rest(m).stress(C); }
   double gradientCorrection(const Material &m, const Symmetric &M, const Symmetric &H) const {
-    return volume(m).gradientCorrection(M, H);
+    return rest(m).gradientCorrection(M, H);
   }
   void addModuli(const Material &m, const Symmetric &C, Moduli &D) const {
-    volume(m).addModuli(C, D);
+    rest(m).addModuli(C, D);
   }
   double ellipticity(const Material &, const Symmetric &, bool) const { return 1; }   // no measure
 };
 
-const Law *find(const std::string &name) {
+const Law *find(const std::string &name, const std::vector<double> &numbers) {
+  static std::deque<Energy> ofExpressions;
   static const Svk svk;
   static const NeoHookean neoHookean;
   static const MooneyRivlin mooneyRivlin;
@@ -238,7 +234,41 @@ const Law *find(const std::string &name) {
   static const std::map<std::string, const Law *> all = {
     {"svk", &svk}, {"neohookean", &neoHookean}, {"mooney-rivlin", &mooneyRivlin},
     {"ogden", &ogden}, {"metal", &metal}};
+  if (name == "energy") return &ofExpressions.emplace_back(numbers);
   return all.count(name) ? all.at(name) : nullptr;
+}
+
+Vector<3> Law::volume(double theta) const {   // (ln theta)^2 / 2
+  const double strain = std::log(theta);
+  return {strain * strain / 2, strain / theta, (1 - strain) / (theta * theta)};
+}
+
+double Law::volumeSlope(double theta0, double theta1) const {
+  const double x = (theta1 - theta0) / (theta1 + theta0);
+  return std::log(theta0 * theta1) * (1 + (x == 0 ? 0 : atanhRest(x) / x)) / (theta0 + theta1);
+}
+
+double leastInPlanes(const Vector<3> &slope, const Tensor &bend, const Vector<3> &L,
+                     bool spatial) {
+  // In a plane, with A = (L1 W1 - L2 W2)/(L1^2 - L2^2) and B = (L2 W1 - L1 W2)/(L1^2 - L2^2): the
+  // least of W11, W22, A and sqrt(W11 W22) + A - |W12 + B|.
+  double least = infinity;
+  for (int n = spatial ? 0 : 2; n < 3; n++) {
+    const int i = (n + 1) % 3, j = (n + 2) % 3;
+    const double W11 = bend(i, i), W22 = bend(j, j), apart = L[i] * L[i] - L[j] * L[j];
+    double A = (L[i] * slope[i] - L[j] * slope[j]) / apart,
+      B = (L[j] * slope[i] - L[i] * slope[j]) / apart;
+    if (std::abs(apart) < 1e-5 * L[i] * L[i]) {   // equal stretches
+      const double across = (W11 + W22) / 2 - bend(i, j),
+        along = (slope[i] + slope[j]) / (L[i] + L[j]);
+      A = (across + along) / 2;
+      B = (across - along) / 2;
+    }
+    const double both = std::sqrt(std::max(0., W11) * std::max(0., W22)) + A
+      - std::abs(bend(i, j) + B);
+    least = std::min({least, W11, W22, A, both});
+  }
+  return least;
 }
 
 double energy(const Material &m, const Symmetric &C) {

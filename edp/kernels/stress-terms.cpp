@@ -73,20 +73,6 @@ static Symmetric direction(const laws::Material &m, const Symmetric &C0, const S
       * (tensors::cofactor(0.5 * (C0 + C1)) + 1. / 3 * tensors::cofactor(0.5 * (C1 - C0)));
 }
 
-// p = U' [Pa] and U'' [Pa] at theta; p of a step, (U1 - U0)/(theta1 - theta0).
-static double pressureAt(const laws::Material &m, double theta) {
-  return m.bulk * (m.volumeByTrace ? theta : std::log(theta) / theta);
-}
-static double pressureSlope(const laws::Material &m, double theta) {
-  return m.bulk * (m.volumeByTrace ? 1 : (1 - std::log(theta)) / (theta * theta));
-}
-static double pressureAt(const laws::Material &m, double theta0, double theta1) {
-  if (m.volumeByTrace) return m.bulk * (theta0 + theta1) / 2;
-  double x = (theta1 - theta0) / (theta1 + theta0);
-  return m.bulk * std::log(theta0 * theta1) * (1 + (x == 0 ? 0 : laws::atanhRest(x) / x))
-    / (theta0 + theta1);
-}
-
 Volume::Volume(const Elements &all)
   : StressTerm(all), start(all.count(), 0.), star(start), carried(start), now(start),
     dBase(all.ndof, 0.), pressureRemainder(dBase), ofTangent(start), slope(start),
@@ -133,7 +119,7 @@ void Volume::addStress(const Step &step, Deformed &e) {
     }
     else e.T[p] = direction(m, e.Cs[p], j);
   }
-  double atD = mean ? pressureAt(m, theta0, theta1) : pressureAt(m, theta1);
+  double atD = m.bulk * (mean ? m.law->volumeSlope(theta0, theta1) : m.law->volume(theta1)[1]);
   e.pressure = atD;
   if (step.carries) {
     e.pressure = carried[e.element];
@@ -197,7 +183,7 @@ void Volume::addElementTangent(const Step &step, Elements &all, size_t g, const 
       all.addPointForces<T>(q, n, N, f, direction(m, C, j), ownG0);
     }
   });
-  slope[g] = step.stiffnessScale * pressureSlope(m, theta) / all.elementWeight[g];
+  slope[g] = step.stiffnessScale * m.bulk * m.law->volume(theta)[2] / all.elementWeight[g];
   const int *to = &all.pairOf[all.firstPair[g]];
   for (int a = 0; a < n; a++)
     for (int b = 0; b <= a; b++, to++)
@@ -218,7 +204,7 @@ double Volume::mean(const Deformed &e) const {
 void Volume::addEllipticity(const Deformed &e, double *ellipticity) const {
   const laws::Material &m = material(e.first);
   if (!m.volumeByTrace) return;
-  const double p = pressureAt(m, mean(e));
+  const double p = m.bulk * m.law->volume(mean(e))[1];
   for (int k = 0; k < e.points; k++)
     ellipticity[k] += (p - m.bulk * measure(m, e.C1[k])) / m.mu;
 }
@@ -233,8 +219,7 @@ void Volume::addEnergy(Time, const Deformed &e, double *W) const {
   const double theta = mean(e);
   for (int p = 0; p < e.points; p++) {
     const laws::Material &m = material(e.first + p);
-    const double strain = m.volumeByTrace ? theta : std::log(theta);
-    W[p] += m.bulk / 2 * strain * strain;
+    W[p] += m.bulk * m.law->volume(theta)[0];
   }
 }
 

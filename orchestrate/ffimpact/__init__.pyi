@@ -31,10 +31,18 @@ from .input.contact import (
     Contact as Contact,
     Pair as Pair,
 )
+from .input.hyperelastic import (
+    ArrudaBoyce as ArrudaBoyce,
+    BlatzKo as BlatzKo,
+    Gent as Gent,
+    Hyperfoam as Hyperfoam,
+    Yeoh as Yeoh,
+)
 from .input.layers import (
     Layer as Layer,
 )
 from .input.materials import (
+    Hyperelastic as Hyperelastic,
     Incompressible as Incompressible,
     Material as Material,
     Metal as Metal,

@@ -31,7 +31,7 @@ from .input.bodies import FIELDS, SIZES, Body
 from .input.contact import CONTACT, Contact, Pair
 from .input.dimension import AXISYMMETRIC, DIMENSIONS, PLANE_STRAIN, SOLID, Dimension
 from .input.entries import Entries, several
-from .input.materials import MATERIAL, STIFFEST
+from .input.materials import MATERIAL
 from .input.models import RUN, listed
 from .input.obstacles import Obstacle
 from .input.parameter import plain
@@ -419,13 +419,12 @@ class Scene(models.Top):
     @property
     def _projected(self) -> bool:
         """Whether the volume of the elements is projected. This needs quadratic elements, a
-        `volume` that is not "plain" and a metal, or a material with nu above STIFFEST.
+        `volume` that is not "plain" and a material that has some to project.
         """
-        materials = [material for body in self.bodies for material in body.materials]
         return (
             self.values["volume"] != "plain"
             and self.values["degree"] == 2
-            and any(material.nu > STIFFEST or material.law == "metal" for material in materials)
+            and any(material.projectable for body in self.bodies for material in body.materials)
         )
 
     @property

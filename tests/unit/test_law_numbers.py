@@ -53,7 +53,7 @@ def test_entries_that_a_law_does_not_take(law, entries, what):
 def test_a_scene_takes_and_refuses_them():
     """By the names of the file; mu makes young; former names are refused with the present ones."""
     disc = scene.load("disc-normal")
-    with pytest.raises(BadInput, match="^mu: is missing, of law = ogden"):
+    with pytest.raises(BadInput, match="^body.1.mu: is missing, of law = ogden"):
         disc.override({"law": "ogden", "alpha": [2]})
     with pytest.raises(BadInput, match="body.1.law_parameters: '2,1' is no entry any more .accepted: share of mooney-rivlin, alpha and mu of ogden"):
         disc.override({"law": "ogden", "body.1.law_parameters": "2,1"})

@@ -8,7 +8,7 @@ this program; edp/kernels/implicit.cpp documents the numbers and the gap that fo
 
 import ast
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -27,18 +27,21 @@ __all__ = [
     "least",
     "nearest",
     "no_zero",
+    "parsed",
     "program",
     "radius_at",
     "run",
     "settled",
     "sines",
+    "translated",
 ]
 
-ACCEPTED = "numbers, pi, {names}, + - * / ^, sin cos sqrt exp abs min max and parentheses"
+ACCEPTED = "numbers, pi, {names}, + - * / ^, {functions} and parentheses"
 LONGEST = 1000  # largest number of characters of an expression
 # Numbers of the stack operations with two operands and with one operand.
 TWO = {ast.Add: 4, ast.Sub: 5, ast.Mult: 6, ast.Div: 7, ast.Pow: 8, "min": 9, "max": 10}
-ONE = {ast.USub: 11, "sin": 12, "cos": 13, "sqrt": 14, "exp": 15, "abs": 16}
+ONE = {ast.USub: 11, "sin": 12, "cos": 13, "sqrt": 14, "exp": 15, "abs": 16, "log": 17}
+FUNCTIONS = ("sin", "cos", "sqrt", "exp", "abs", "min", "max")
 # Added to the denominator of the derivative of sqrt: at sqrt(0) the derivative stays finite, and
 # the chain rule gives 0 where the gradient of the argument is 0.
 TINY = 1e-300
@@ -66,7 +69,15 @@ def program(entry: str, text: object, names: str) -> tuple[float, ...]:
     `names` contains the names of the variables, one letter each. Raises BadInput, with the name of
     the entry, if the text is not an accepted expression.
     """
-    accepted = f"(accepted: {ACCEPTED.format(names=', '.join(names))})"
+    meanings = {name: (k,) for k, name in enumerate(names, 1)}
+    return translated(entry, str(text), parsed(entry, text, names), meanings)
+
+
+def parsed(
+    entry: str, text: object, names: Collection[str], functions: Collection[str] = FUNCTIONS
+) -> ast.expr:
+    """Parses an expression of variables with these names. Raises BadInput if it is none."""
+    accepted = _accepted(names, functions)
     if not isinstance(text, str) or not text.strip():
         raise BadInput(
             f"{entry}: '{brief(text)}' is no expression {accepted}"
@@ -76,41 +87,77 @@ def program(entry: str, text: object, names: str) -> tuple[float, ...]:
     if len(text) > LONGEST:
         raise BadInput(f"{entry}: {len(text)} characters (accepted: up to {LONGEST})")
     try:
-        return tuple(_tokens(ast.parse(text.strip().replace("^", "**"), mode="eval").body, names))
-    except Stop as stop:
-        raise BadInput(
-            f"{entry}: '{brief(stop.what)}' in '{brief(text)}' is not known {accepted}"
-        ) from None
+        return ast.parse(text.strip().replace("^", "**"), mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         raise BadInput(f"{entry}: '{brief(text)}' is no expression {accepted}") from None
 
 
-def _tokens(node: ast.AST, names: str) -> list[float]:
+def translated(
+    entry: str,
+    text: str,
+    tree: ast.expr,
+    meanings: Mapping[str, Sequence[float]],
+    functions: Collection[str] = FUNCTIONS,
+) -> tuple[float, ...]:
+    """Translates the parsed expression `tree`, a part of `text`. `meanings` has the program of each
+    name. Raises BadInput if the expression has something else.
+    """
+    try:
+        return tuple(_tokens(tree, {"pi": (0.0, math.pi)} | dict(meanings), functions))
+    except Stop as stop:
+        accepted = _accepted(meanings, functions)
+        raise BadInput(
+            f"{entry}: '{brief(stop.what)}' in '{brief(text)}' is not known {accepted}"
+        ) from None
+    except RecursionError:
+        raise BadInput(f"{entry}: is nested too deeply (accepted: fewer parentheses)") from None
+
+
+def _accepted(names: Collection[str], functions: Collection[str]) -> str:
+    words = ACCEPTED.format(names=", ".join(names), functions=" ".join(functions))
+    return f"(accepted: {words})"
+
+
+def _tokens(
+    node: ast.AST, meanings: Mapping[str, Sequence[float]], functions: Collection[str]
+) -> list[float]:
     match node:
         case ast.Constant(value=int() | float() as value) if (
             not isinstance(value, bool) and abs(value) < 1e300
         ):
             return [0.0, float(value)]
-        case ast.Name(id="pi"):
-            return [0.0, math.pi]
-        case ast.Name(id=name) if name in tuple(names):
-            return [1.0 + names.index(name)]
+        case ast.Name(id=name) if name in meanings:
+            return list(meanings[name])
         case ast.UnaryOp(op=ast.UAdd(), operand=operand):
-            return _tokens(operand, names)
+            return _tokens(operand, meanings, functions)
         case ast.UnaryOp(op=ast.USub(), operand=operand):
-            return [*_tokens(operand, names), float(ONE[ast.USub])]
-        case ast.BinOp(left=base, op=ast.Pow(), right=power):
-            exponent = _tokens(power, names)
-            if any(token in (1, 2, 3) for token in exponent[::2]) or len(exponent) > 3:
-                raise Stop("^ " + ast.unparse(power))
-            return [*_tokens(base, names), *exponent, float(TWO[ast.Pow])]
+            return _applied(ONE[ast.USub], _tokens(operand, meanings, functions))
         case ast.BinOp(left=a, op=op, right=b) if type(op) in TWO:
-            return [*_tokens(a, names), *_tokens(b, names), float(TWO[type(op)])]
-        case ast.Call(func=ast.Name(id=name), args=[operand], keywords=[]) if name in ONE:
-            return [*_tokens(operand, names), float(ONE[name])]
-        case ast.Call(func=ast.Name(id=name), args=[a, b], keywords=[]) if name in TWO:
-            return [*_tokens(a, names), *_tokens(b, names), float(TWO[name])]
+            second = _tokens(b, meanings, functions)
+            if isinstance(op, ast.Pow) and not _is_number(second):
+                raise Stop("^ " + ast.unparse(b))
+            return _applied(TWO[type(op)], _tokens(a, meanings, functions), second)
+        case ast.Call(func=ast.Name(id=name), args=args, keywords=[]) if name in functions:
+            operation = {1: ONE, 2: TWO}.get(len(args), {}).get(name)
+            if operation is not None:
+                return _applied(operation, *(_tokens(item, meanings, functions) for item in args))
     raise Stop(ast.unparse(node))
+
+
+def _is_number(code: Sequence[float]) -> bool:
+    return len(code) == 2 and code[0] == 0
+
+
+def _applied(operation: int, *operands: list[float]) -> list[float]:
+    """The program of an operation on the programs of its operands; a number if they are numbers."""
+    if all(map(_is_number, operands)):
+        a, b = np.float64(operands[0][1]), np.float64(operands[-1][1])
+        with np.errstate(all="ignore"):
+            side = SIDES[operation](a, b) if operation in SIDES else None
+            value = float(OPERATIONS[operation](a, b, side)[0])
+        if math.isfinite(value):
+            return [0.0, value]
+    return [*(token for operand in operands for token in operand), float(operation)]
 
 
 # Each operation on a (and b) returns its value and its derivatives with respect to a and b. `side`
@@ -129,6 +176,7 @@ OPERATIONS: dict[float, Callable[[Any, Any, Any], tuple[Any, Any, Any]]] = {
     14: lambda a, b, side: (np.sqrt(a), 0.5 / (np.sqrt(a) + TINY), 0),
     15: lambda a, b, side: (np.exp(a), np.exp(a), 0),
     16: lambda a, b, side: (a * side, side, 0),
+    17: lambda a, b, side: (np.log(a), 1 / a, 0),
 }
 SIDES: dict[float, Callable[[Any, Any], Any]] = {
     9: lambda a, b: (a < b) * 1.0,

@@ -30,6 +30,7 @@ from .entries import several
 from .layers import THINNEST, Layer
 from .materials import (
     LAWS,
+    MADE,
     MATERIAL,
     NOT_RIGID,
     MadeOf,
@@ -181,7 +182,8 @@ class Body(MadeOf):
         own = {name: getattr(self, name) for name in MATERIAL if name in self}
         law = LAWS.get(own.get("law", ""), Material)
         needed = {name for name in MATERIAL if law.model_fields[name].is_required()}
-        return law(**own) if needed | {"law", "nu"} <= set(own) else None
+        needed |= {"law", "nu"} - set(MADE.get(own.get("law", ""), ()))
+        return law(**own) if needed <= set(own) else None
 
     def table(self) -> dict[str, Any]:
         """The table `[[body]]`."""

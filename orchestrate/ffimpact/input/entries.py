@@ -64,12 +64,8 @@ class _Made(ModelMetaclass):
     """
 
     def __call__(cls, *unnamed: Any, **entries: Any) -> Any:
-        if unnamed:
-            accepted = ", ".join(cls.__signature__.parameters)
-            raise BadInput(
-                f"{cls.__name__}: '{brief(unnamed[0])}' has no name (accepted: entries by name: {accepted})"
-            )
         model: Any = cls  # a subclass of Entries
+        entries = model.named(unnamed, entries)
         singular = {f"{name}s": name for name in model.nested}  # supports=[...] is support=[...]
         set_entries = {
             singular.get(name, name): plain(value)
@@ -150,6 +146,16 @@ class Entries(BaseModel, metaclass=_Made):
             rules = [item for item in field.metadata if not isinstance(item, str)]
             if texts:
                 field.metadata = [rules[0].means(*texts), *rules[1:]]
+
+    @classmethod
+    def named(cls, unnamed: tuple[Any, ...], entries: dict[str, Any]) -> dict[str, Any]:
+        """The entries by name of a call in Python. Raises BadInput for arguments without a name."""
+        if unnamed:
+            accepted = ", ".join(cls.__signature__.parameters)
+            raise BadInput(
+                f"{cls.__name__}: '{brief(unnamed[0])}' has no name (accepted: entries by name: {accepted})"
+            )
+        return entries
 
     @model_validator(mode="wrap")
     @classmethod

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from pydantic import model_validator
@@ -14,16 +14,19 @@ from pydantic import model_validator
 from ..failure import BadInput, brief
 from .damping import Branches, Damping, flat
 from .dimension import Dimension
+from .energies import Energy, Refused, energy
 from .entries import Entries, no_more, rule_of
 from .metals import YIELD_ENTRIES, OfMetal
 from .parameter import real, word
-from .rules import Numbers, Vector, number
+from .rules import Named, Numbers, Text, Vector, number
 
 __all__ = [
+    "Hyperelastic",
     "Incompressible",
     "LAWS",
     "LAW_ENTRIES",
     "LAW_WORDS",
+    "MADE",
     "MATERIAL",
     "MadeOf",
     "Material",
@@ -42,7 +45,7 @@ __all__ = [
 ]
 
 # The words of the laws in edp/kernels/laws.cpp.
-LAW_WORDS = ("svk", "neohookean", "mooney-rivlin", "ogden", "incompressible", "metal")
+LAW_WORDS = ("svk", "neohookean", "mooney-rivlin", "ogden", "energy", "incompressible", "metal")
 LAW = word("svk", LAW_WORDS).means(
     "constitutive law: St. Venant-Kirchhoff (5), compressible neo-Hookean (6), or another"
 )
@@ -56,9 +59,17 @@ DENSITY = real(1722, 1e-15, 1e12, "kg/m3").means("reference density")
 LOSS_MODELS = ("flat", "kelvin-voigt")
 # Largest nu in the speed of waves. The stiffness by a larger nu acts on the volume of elements.
 STIFFEST = 0.45
-# The entries of some laws beside young and nu. Those of ogden replace young.
-LAW_ENTRIES = {"mooney-rivlin": ("share",), "ogden": ("alpha", "mu"), "metal": YIELD_ENTRIES}
+# The entries of some laws beside young and nu; those without which a law may be; those of the others
+# that these make.
+LAW_ENTRIES = {
+    "mooney-rivlin": ("share",),
+    "ogden": ("alpha", "mu"),
+    "energy": ("energy", "parameters"),
+    "metal": YIELD_ENTRIES,
+}
 OWN_ENTRIES = {name for entries in LAW_ENTRIES.values() for name in entries}
+OPTIONAL = ("parameters", *YIELD_ENTRIES)
+MADE = {"ogden": ("young",), "energy": ("nu", "young")}
 
 
 class OfMaterial(OfMetal, Entries):
@@ -78,6 +89,17 @@ class OfMaterial(OfMetal, Entries):
         list[float] | None,
         Numbers(-1e18, 1e18, 3),
         "ogden: moduli of the terms [Pa], in place of young",
+    ] = None
+    energy: Annotated[
+        str | None,
+        Text(accepted="an expression of I1, I2, J or of L1, L2, L3, J in quotes"),
+        "energy: W [J/m3], an expression of the invariants I1, I2 of C and J = det F, or of the "
+        "principal stretches L1, L2, L3 and J; in place of young and nu",
+    ] = None
+    parameters: Annotated[
+        dict[str, float] | None,
+        Named(-1e18, 1e18),
+        "energy: numbers by their names in the expression",
     ] = None
     viscosity: Annotated[
         float | None,
@@ -173,6 +195,11 @@ class Material(OfMaterial):
             yield "law", f": '{self.law}' is another law (accepted: {other})"
             return
         yield from self._of_law()
+        if self.loss_range and self.loss_range[0] >= self.loss_range[1]:
+            yield "loss_range", f": {brief(self.loss_range)} does not grow (accepted: low, high)"
+        if self.law == "energy":
+            yield from self._of_energy() if "energy" in self else ()
+            return
         if self.law == "incompressible" and self.nu != 0.5:
             yield "nu", f": {self.nu:g} of law = incompressible (accepted: 0.5)"
         elif 0.4999 < self.nu < 0.5:
@@ -186,8 +213,26 @@ class Material(OfMaterial):
             )
         if self.alpha and self.mu:
             yield from self._of_terms(self.alpha, self.mu)
-        if self.loss_range and self.loss_range[0] >= self.loss_range[1]:
-            yield "loss_range", f": {brief(self.loss_range)} does not grow (accepted: low, high)"
+
+    def _of_energy(self) -> Iterator[tuple[str, str]]:
+        """Yields what the energy lacks."""
+        try:
+            W = self.expression
+        except Refused as refused:
+            yield refused.entry, refused.text
+            return
+        if text := W.refusal(self.nu):
+            yield "energy", text
+            return
+        nu = 0.5 if self.nu == 0.5 else W.nu()
+        for name, own, made in (("nu", self.nu, nu), ("young", self.young, W.young(nu))):
+            if own is not None and not math.isclose(own, made, rel_tol=1e-6, abs_tol=1e-9):
+                other = " or 0.5: J = 1" if name == "nu" else ""
+                yield (
+                    name,
+                    f": {own:g} beside energy, which makes it {made:.9g} (accepted: without it{other})",
+                )
+                return
 
     def _of_law(self) -> Iterator[tuple[str, str]]:
         """Yields entries of other laws, and what those of its own lack."""
@@ -196,7 +241,7 @@ class Material(OfMaterial):
             for entry in entries:
                 if entry in self and entry not in taken:
                     yield entry, f": of law = {law}, not of {self.law} (accepted: without it)"
-                if entry not in self and entry in taken and law != "metal":
+                if entry not in self and entry in taken and entry not in OPTIONAL:
                     yield entry, f": is missing, of law = {self.law} (accepted: {accepted(entry)})"
         if self.law == "metal":
             yield from self.refusals_of_metal(self.young)
@@ -231,12 +276,37 @@ class Material(OfMaterial):
         return float((1 + self.nu) * np.dot(self.mu or [0.0], self.alpha or [0.0]))
 
     @property
+    def expression(self) -> Energy:
+        """The energy of law = energy. Raises Refused."""
+        return energy(self.energy, self.parameters or {})
+
+    @property
+    def made(self) -> dict[str, float]:
+        """The entries that those of the law make, without nu = 0.5 of law = energy. Raises Refused."""
+        if self.law == "ogden":
+            return {"young": self.stiffness_of_terms}
+        W = self.expression
+        if text := W.refusal(self.nu):
+            raise Refused("energy", text)
+        nu = 0.5 if self.nu == 0.5 else W.nu()
+        return {"nu": nu, "young": W.young(nu)}
+
+    @property
+    def projectable(self) -> bool:
+        """Whether it has a part of the volume that can act on element means (edp/program/law)."""
+        return self.nu > STIFFEST and (
+            self.law != "energy" or self.numbers[1] > 0 or self.nu == 0.5
+        )
+
+    @property
     def numbers(self) -> list[float]:
         """The numbers of the law for the kernels (edp/kernels/laws.cpp): a share of the shear modulus,
-        each exponent with such a share, or those of the yield stress.
+        each exponent with such a share, the programs of the energy, or those of the yield stress.
         """
         if self.law == "metal":
             return self.yield_numbers
+        if self.law == "energy":
+            return self.expression.numbers(self.nu == 0.5)
         if self.law != "ogden":
             return [self.share] if self.share is not None else []
         parts = np.multiply(self.mu or [], self.alpha or [])
@@ -317,9 +387,43 @@ class Metal(Material):
     law: Annotated[str, LAW] = "metal"
 
 
+class Hyperelastic(Material):
+    """A law by its energy W [J/m3], an expression, with its parameters as keywords:
+    Hyperelastic("c10*(I1-3) - 2*c10*log(J) + k/2*log(J)^2", c10=1e6, k=1e7, density=1100).
+
+    Variables are I1, I2, J or L1, L2, L3, J; `young` and `nu` follow, except nu = 0.5: J = 1.
+    """
+
+    law: Annotated[str, LAW] = "energy"
+    nu: Annotated[float | None, NU] = None  # type: ignore[assignment]
+    young: Annotated[float | None, YOUNG] = None  # type: ignore[assignment]
+
+    if TYPE_CHECKING:
+
+        def __init__(self, energy: str = "", /, **entries: Any) -> None: ...
+
+    @classmethod
+    def named(cls, unnamed: tuple[Any, ...], entries: dict[str, Any]) -> dict[str, Any]:
+        own = {name: value for name, value in entries.items() if name in cls.names(None)}
+        parameters = {name: value for name, value in entries.items() if name not in own}
+        if unnamed:
+            own["energy"] = unnamed[0]
+        if parameters:
+            own["parameters"] = (own.get("parameters") or {}) | parameters
+        return super().named(unnamed[1:], own)
+
+
 LAWS: dict[str, type[Material]] = {
     model.model_fields["law"].default: model
-    for model in (SaintVenantKirchhoff, NeoHookean, Incompressible, MooneyRivlin, Ogden, Metal)
+    for model in (
+        SaintVenantKirchhoff,
+        NeoHookean,
+        Incompressible,
+        MooneyRivlin,
+        Ogden,
+        Hyperelastic,
+        Metal,
+    )
 }
 MATERIAL = tuple(OfMaterial.model_fields)
 NOT_RIGID = tuple(
@@ -357,15 +461,18 @@ def completed(table: OfMaterial, top: OfMaterial) -> Material:
     Viscosity or branches of the body replace a loss at the top of the file, and a loss of the body
     both; the law of a body replaces the entries of another law there.
     """
-    law = table.law or top.law
-    of_law = LAW_ENTRIES.get(law or "", ())
-    has_terms = law == "ogden" and all(name in table or name in top for name in of_law)
-    needed = [name for name in NEEDED if not (name == "young" and has_terms)]
+    law = table.law or top.law or ""
+    made, own = (
+        MADE.get(law, ()),
+        [name for name in LAW_ENTRIES.get(law, ()) if name not in OPTIONAL],
+    )
+    needed = [name for name in (*NEEDED, *own) if name not in made]
     missing = [name for name in needed if name not in table and name not in top]
     if missing:
         raise BadInput(
             *(
-                f"{table.at(name)}: is missing, here and at the top of the file (accepted: "
+                f"{table.at(name)}: is missing, "
+                f"{f'of law = {law}' if name in own else 'here and at the top of the file'} (accepted: "
                 f"{accepted(name)})"
                 for name in missing
             )
@@ -387,8 +494,14 @@ def completed(table: OfMaterial, top: OfMaterial) -> Material:
             f"{table.at(name)}: '{brief(values[name])}' beside loss_model = 'flat', which sets branches "
             "(accepted: one of the two)"
         )
-    if has_terms and "mu" in table and "young" not in table:
-        values["young"] = None  # that at the top is of other bodies
-    if has_terms and values["young"] is None:
-        values["young"] = Material.model_construct(**values).stiffness_of_terms
+    for name in made:
+        # those at the top are of other bodies
+        if name not in table and any(entry in table for entry in LAW_ENTRIES[law]):
+            values[name] = None
+    if made:
+        try:
+            follow = Material.model_construct(**values).made
+        except Refused as refused:
+            raise BadInput(f"{table.at(refused.entry)}{refused.text}") from None
+        values |= {name: number for name, number in follow.items() if values[name] is None}
     return Material.model_construct(**values)

@@ -15,6 +15,7 @@ from .parameter import (
 
 __all__ = [
     "DEPENDS_ON",
+    "KEPT",
     "NOT_DECISIVE",
     "OUTPUT",
     "PARAMETERS",
@@ -29,6 +30,7 @@ __all__ = [
     "with_unit",
 ]
 
+_OF_ENERGY = ("energy", "parameters")
 # Entries of a scene that depend on other entries. If one of the other entries is changed and the
 # dependent entry is not, the dependent entry is reset to automatic (auto, 0, none).
 # `friction_static` sets both coefficients of friction, and `loss` sets the viscosity; the range of a
@@ -39,13 +41,17 @@ __all__ = [
 DEPENDS_ON = {
     "friction_dynamic": ("friction_static",),
     "viscosity": ("loss",),
-    "loss_range": ("young", "mu", "density", "radius"),
-    **dict.fromkeys(("share", "alpha", "mu"), ("law",)),
-    "young": ("mu",),
-    "penalty": ("young", "mu", "density", "material", "radius", "exponent"),
-    "dt": ("young", "mu", "density", "material", "radius"),
+    "loss_range": ("young", "mu", *_OF_ENERGY, "density", "radius"),
+    **dict.fromkeys(("share", "alpha", "mu", "energy", "parameters"), ("law",)),
+    "young": ("mu", *_OF_ENERGY),
+    "nu": _OF_ENERGY,
+    "penalty": ("young", "mu", *_OF_ENERGY, "density", "material", "radius", "exponent"),
+    "dt": ("young", "mu", *_OF_ENERGY, "density", "material", "radius"),
     **dict.fromkeys(("mesh_size", "contact_mesh_size"), ("radius",)),
 }
+
+# A value of a dependent entry that does not depend on others: J = 1 with every energy.
+KEPT = {"nu": 0.5}
 
 NOT_DECISIVE = ("checkpoint_every",)  # parameters that do not change the results
 # Parameters that only request output, with the value that requests none.

@@ -28,6 +28,7 @@ __all__ = [
     "InSpace",
     "MOST_TURN",
     "Name",
+    "Named",
     "Numbers",
     "OfPlace",
     "Partners",
@@ -158,6 +159,35 @@ class Numbers(Rule):
     def schema(self) -> dict[str, Any]:
         component = {"type": "number", "minimum": self.low, "maximum": self.high}
         return {"type": "array", "items": component, "minItems": 1, "maxItems": self.largest_count}
+
+
+@dataclass(frozen=True)
+class Named(Rule):
+    """A table of numbers by names, which are words that an expression may contain."""
+
+    low: float
+    high: float
+    meaning: str = ""
+
+    @property
+    def accepted(self) -> str:
+        return f"a table of names, each with a number {self.low:g} to {self.high:g}"
+
+    def checked(self, value: Any, dimension: Dimension | None) -> Any:
+        if not isinstance(value, dict):
+            raise BadInput(f": '{brief(value)}' is no table (accepted: {self.accepted})")
+        component, numbers = number(self.low, self.high, ""), {}
+        for name, item in value.items():
+            if not (isinstance(name, str) and name.isidentifier() and name.isascii()):
+                raise BadInput(f".{brief(name)}: is no name (accepted: letters, digits and _)")
+            try:
+                numbers[name] = float(component.checked(item, dimension))
+            except BadInput as error:
+                raise BadInput(f".{name}{error}") from None
+        return numbers
+
+    def schema(self) -> dict[str, Any]:
+        return {"type": "object", "additionalProperties": number(self.low, self.high, "").schema()}
 
 
 @dataclass(frozen=True)

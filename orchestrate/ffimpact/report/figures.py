@@ -92,6 +92,7 @@ LAWS = {
     "mooney-rivlin": "Mooney–Rivlin",
     "ogden": "Ogden",
     "metal": "metal",
+    "energy": "by an energy",
     "incompressible": "neo-Hookean with J = 1",
 }
 BLUE, ORANGE, GREEN, PURPLE, BLACK, GREY = (
@@ -194,7 +195,9 @@ def material(body: Table) -> str:
             if "mass" in body
             else f"rigid, ρ = {body['density']:g} kg/m³"
         )
-    listed = [f"{name} = {body[name]}" for name in ("share", "alpha", "mu") if name in body]
+    listed = [
+        f"{name} = {body[name]}" for name in ("share", "alpha", "mu", "parameters") if name in body
+    ]
     own = f" ({', '.join(listed)})" if listed else ""
     viscosities = "".join(
         f", {sign} = {body[name]:.3g} Pa s"

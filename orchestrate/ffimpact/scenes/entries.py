@@ -93,7 +93,12 @@ def reset_dependents(content: Table, names: list[str]) -> tuple[str, ...]:
                     and where.startswith("body.")
                 )
             ]
-            if changed_names and table[key] not in ("auto", 0, "none"):
+            if changed_names and table[key] not in (
+                "auto",
+                0,
+                "none",
+                parameters.KEPT.get(key),
+            ):
                 value, name = table.pop(key), f"{path}.{key}".lstrip(".")
                 fixed = f"{value:g}" if isinstance(value, float) else brief(value)
                 messages.append(
