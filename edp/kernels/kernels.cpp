@@ -76,6 +76,12 @@ static void addBodies() {
                          incompressible[q]});
     }
   });
+  add("kernelNuAtPoints", +[]() {         // the largest of what acts at points
+    double most = 0;
+    for (const laws::Material &m : elements.materials)
+      most = std::max(most, m.lambda / (2 * (m.lambda + m.mu)));
+    return most;
+  });
   add("kernelBodies", +[](Sparse gradient, Sparse mass, Reals free) {
     elements.free = copied<double>(free);
     elements.make(entries(gradient));

@@ -112,15 +112,6 @@ class Energy:
         """Young's modulus [Pa] at rest, for nu() or nu = 0.5 (J = 1)."""
         return 2 * (1 + nu) * self.moduli(nu == 0.5)[1]
 
-    def nu_of_points(self, nu: float) -> float:
-        """Poisson's ratio of the part that acts at points, if the terms of J alone act on element
-        means as far as they may (edp/program/law/material.idp); `nu` is that of the material.
-        """
-        lame, mu = self.moduli(nu == 0.5)
-        split = self.moduli(True)[0]
-        lame = max(min(lame, split), lame - self._unit_volume()[0])
-        return lame / (2 * (lame + mu))
-
     def numbers(self, held: bool) -> list[float]:
         """The numbers of the law for edp/kernels/energy.hpp. If J = 1, terms of J alone have no
         part in W; terms in log J make the stress at rest vanish and set the lambda of points.

@@ -388,10 +388,12 @@ class Metal(Material):
 
 
 class Hyperelastic(Material):
-    """A law by its energy W [J/m3], an expression, with its parameters as keywords:
-    Hyperelastic("c10*(I1-3) - 2*c10*log(J) + k/2*log(J)^2", c10=1e6, k=1e7, density=1100).
+    """A law by its energy W [J/m3], an expression of I1, I2, J or of L1, L2, L3, J.
 
-    Variables are I1, I2, J or L1, L2, L3, J; `young` and `nu` follow, except nu = 0.5: J = 1.
+    Parameters are keywords:
+    Hyperelastic("c10*(I1-3) - 2*c10*log(J) + k/2*log(J)^2", c10=1e6, k=1e7, density=1100).
+    `young` and `nu` follow, except nu = 0.5: J = 1. Yeoh, Gent, ArrudaBoyce, BlatzKo and Hyperfoam
+    make energies of the literature.
     """
 
     law: Annotated[str, LAW] = "energy"

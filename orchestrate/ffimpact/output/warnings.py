@@ -16,7 +16,6 @@ from typing import Any
 import numpy as np
 
 from ..input.damping import Damping
-from ..input.energies import energy
 from ..input.parameters import Table
 from . import points
 from .contacts import THRESHOLD, Interval, thresholds
@@ -808,31 +807,19 @@ def _discretisation(e: Evidence) -> Iterator[Sentence]:
     4 to 17 % at 0.495 and up to 29 % at 0.498.
     """
     facts, nu = e.facts, max(body["nu"] for body in e.bodies)
-    of_points = max(
-        (
-            energy(body["energy"], body.get("parameters") or {}).nu_of_points(body["nu"])
-            for body in e.bodies
-            if body.get("law") == "energy"
-        ),
-        default=0.0,
-    )
+    at_points = facts.get("nu_at_points", 0.0 if facts["projected"] else nu)
     if facts["degree"] == 1 and nu > LOCKING_LINEAR:
         yield warn(
             f"locking: linear elements are too stiff at nu = {nu:g}: above {LOCKING_LINEAR} they "
             "lock, and so does the run that estimates the error: take "
             "degree=2"
         )
-    if facts["degree"] == 2 and not facts["projected"] and nu >= LOCKING_QUADRATIC > of_points:
+    if facts["degree"] == 2 and at_points > LOCKING_QUADRATIC - 1e-9:
         yield warn(
-            f"locking: quadratic elements are too stiff at nu = {nu:g}: from {LOCKING_QUADRATIC} "
-            "on, with the mesh of accuracy 1 %, peak forces are up to a "
-            "third too large and contact times up to 3 % too short: take volume=auto"
-        )
-    if facts["degree"] == 2 and of_points >= LOCKING_QUADRATIC:
-        yield warn(
-            f"locking: an energy acts at points as with nu = {of_points:g}: from {LOCKING_QUADRATIC} "
-            "on elements are too stiff: take a term of J alone for the volume, such as "
-            "k/2*log(J)^2, which acts on the volume of elements"
+            f"locking: quadratic elements are too stiff at nu = {at_points:g} at points: from "
+            f"{LOCKING_QUADRATIC} on, with the mesh of accuracy 1 %, peak forces are up to a "
+            "third too large and contact times up to 3 % too short: take volume=auto, and the volume "
+            "of law=energy as a term of J alone, such as k/2*log(J)^2"
         )
     spun = max(body["spin2"] * (body["reach"] / _wave(body)) ** 2 for body in e.bodies)
     if facts["flown"] and spun > facts["accuracy"]:
