@@ -232,7 +232,7 @@ BAD = [
     ([("body.2.young", "soft")], "body.2.young: 'soft' is not a number (accepted: 1e-06 to 1e+18)"),
     ([("body.2.nu", 0.6)], "body.2.nu: 0.6 is out of range (accepted: 0 to 0.5)"),
     ([("body.1.law", "incompressible"), ("body.1.nu", "0.3")], "body.1.nu: 0.3 of law = incompressible (accepted: 0.5)"),
-    ([("body.1.law", "hooke")], "body.1.law: 'hooke' is not known; did you mean neohookean? (accepted: svk|neohookean|mooney-rivlin|ogden|incompressible)"),
+    ([("body.1.law", "hooke")], "body.1.law: 'hooke' is not known; did you mean neohookean? (accepted: svk|neohookean|mooney-rivlin|ogden|energy|incompressible|metal)"),
     ([("body.1.shape", "blob")], "body.1.shape: 'blob' is not known (accepted: disc|ellipse|rectangle|ring|polygon|mesh)"),
     ([("body.1.shape", "ring")], "body.1.inner_radius: is missing (accepted: 1e-09 to 1e+09)"),
     ([("body.1.shape", "ring"), ("body.1.inner_radius", 0.5)], "body.1.inner_radius: 0.5 is not less than the radius 0.5"),
