@@ -148,3 +148,15 @@ def ball(folder: Path, speed: float, first: float, **more) -> Outcome:
     return bodies(folder, STEEL | {"yield_stress": first, "dimension": "axisymmetric",
                                    "body": [{"shape": "ball", "radius": 0.005, "position": 0.005, "velocity": -speed}],
                                    "obstacle": [{"kind": "plane"}]} | more)
+
+
+def sheared_layer(folder: Path, ratio: float) -> float:
+    """Shear force over width of a perfectly plastic layer in plane strain, `ratio` times as wide as
+    thick, sheared slowly by 0.1, over sigma_y/sqrt(3); the free ends bear less."""
+    first, height, T = 400e6, 0.005, 0.01
+    along = f"0.1*{height}*(1-cos(pi*t/{T}))/2"
+    run = bodies(folder, STEEL | {"yield_stress": first, "end_time": T, "dt": T / 60, "body": [
+        {"shape": "rectangle", "width": ratio * height, "height": height, "position": [0, 0],
+         "support": [{"where": "bottom", "fix": "all"}, {"where": "top", "fix": "all", "motion": [along, 0]}]} | _sizes(height / 2)]})
+    force = run.history["support_force_x_2"][50]
+    return float(force / (ratio * height) / (first / math.sqrt(3)))

@@ -17,6 +17,13 @@ def test_pulled_bar(tmp_path):
     assert max(found.values()) < 1e-4
 
 
+def test_sheared_layer(tmp_path):
+    """The shear stress is sigma_y/sqrt(3); what the free ends lack falls with the width."""
+    narrow, wide = (metals.sheared_layer(tmp_path / str(n), n) for n in (10, 20))
+    assert 0.98 < narrow < wide < 1
+    assert 2 * wide - narrow == pytest.approx(1, abs=1e-3)
+
+
 RATE = 0.1 * np.pi / 0.01 / 1.1   # of the logarithmic stretch at half the way [1/s]
 
 
