@@ -63,6 +63,7 @@ __all__ = [
     "energies",
     "forces",
     "limits",
+    "made_of",
     "obstacles_of",
     "panels",
     "pictures",
@@ -78,6 +79,7 @@ COLOURS = (BLUE, ORANGE, GREEN, PURPLE, "#56b4e9", "#e69f00")  # of the bodies
 ACROSS = 3  # largest number of panels side by side
 # Of many bodies, titles and legends list this number of the first and of the last ones.
 NAMED = 6
+IN_TITLE = 2  # the same in titles
 GRID = 200  # grid points along each side of a picture, at which the gap to obstacles is computed
 DOTS = (0, (1, 1.5))
 # Work: its name, its column, how it enters the sum that is constant, its sign there, its colour.
@@ -104,21 +106,27 @@ def title(scene: Table) -> str:
         for k, layer in enumerate(body.get("layer", []), 1):
             name = f"{layer_name(layer, k)} of {body['name']}"
             materials.setdefault(material(layer), []).append(name)
-    lines = [
-        as_written(scene["title"]),
-        *(f"{', '.join(ends(names, '...'))}: {words}" for words, names in materials.items()),
+    return "\n".join([as_written(scene["title"]), *made_of(materials)])
+
+
+def made_of(materials: Mapping[str, list[str]]) -> list[str]:
+    """Returns a line for each material with the names of what is made of it; of many the first and
+    the last.
+    """
+    kinds = [
+        f"{', '.join(ends(names, '...', IN_TITLE))}: {words}" for words, names in materials.items()
     ]
-    return "\n".join(lines)
+    return ends(kinds, "...", IN_TITLE)
 
 
-def ends(items: list[T], between: T | None = None) -> list[T]:
-    """Returns the first and the last of many items, with `between` instead of the others if it is
-    not None. Few items are returned unchanged.
+def ends(items: list[T], between: T | None = None, count: int = NAMED) -> list[T]:
+    """Returns the first and the last `count` of many items, with `between` instead of the others if
+    it is not None. Few items are returned unchanged.
     """
     return (
         items
-        if len(items) <= 2 * NAMED
-        else [*items[:NAMED], *([] if between is None else [between]), *items[-NAMED:]]
+        if len(items) <= 2 * count
+        else [*items[:count], *([] if between is None else [between]), *items[-count:]]
     )
 
 

@@ -123,10 +123,12 @@ def title(scene: Table) -> str:
     body = BODY.get(impact["kind"], "")
     above = f" from a height of {impact['height']:g} m" if impact["height"] > 0 else ""
     text = f"{body}{material(impact)}, {impact['speed']:g} m/s{angle}{above}"
-    for number, layer in enumerate(impact["layer"], 1):
-        text += f"\n{layer_name(layer, number)}: {material(layer)}"
     if scene.get("degree") == 1:
         text += ", linear elements"
+    layers: dict[str, list[str]] = {}
+    for number, layer in enumerate(impact["layer"], 1):
+        layers.setdefault(material(layer), []).append(layer_name(layer, number))
+    text += "".join(f"\n{line}" for line in bodies.made_of(layers))
     if impact.get("friction_static", 0) > 0:
         text += (
             f"\nfriction {impact['friction_static']:g} static, {impact['friction_dynamic']:g} dynamic, "
