@@ -343,7 +343,8 @@ def _roller(chance: random.Random, speed: float, c: float, material: Point) -> P
 HELD_SHAPES = {"drop-weight": _weight, "disc-beam": _on_beam, "hollow-ball": _hollow, "roller": _roller}
 
 
-# ---- bodies of revolution on curved surfaces, hollow bodies, rubber, unlike materials, strips
+# ---- bodies of revolution on curved surfaces, hollow bodies, rubber, unlike materials, strips, layers
+# and losses that do not depend on frequency
 
 # By family: the number of each scene in thirty.
 OTHER_MIXTURE = {"curved": {"ball-sphere": 10, "ellipsoid-bowl": 8, "ellipsoid-cylinder": 12},
@@ -351,16 +352,30 @@ OTHER_MIXTURE = {"curved": {"ball-sphere": 10, "ellipsoid-bowl": 8, "ellipsoid-c
                  "incompressible": {"block-circle": 14, "disc-normal": 8, "ball-axisymmetric": 8},
                  "unlike": {"disc-slab": 16, "ball-cylinder": 14},
                  "strips": {"disc-strip": 12, "ball-plate": 10, "disc-free-strip": 8}}
+# The same of bodies with layers, and with a loss that does not depend on frequency.
+LAYER_MIXTURE = {"layered": {"layered-disc": 12, "layered-ball": 10, "layered-pad": 8},
+                 "lossy": {"lossy-disc": 12, "lossy-ball": 10, "lossy-pad": 8}}
+FAMILIES = OTHER_MIXTURE | LAYER_MIXTURE
 OTHER_ACCURACIES = (0.02, 0.05, 0.1)
 FASTEST_OTHER = 0.08  # upper bound of the speed over sqrt(E/density)
 NEARLY = (0.49, 0.495, 0.499)  # Poisson's ratios
 UNLIKE = (0.0333, 0.1, 0.3, 3.0, 10.0, 30.0)  # ratios of Young's moduli
+LOSSES = (0.03, 0.1, 0.3, 0.6)  # loss factors that do not depend on frequency
 
 
 def others(seed: int, count: int) -> list[tuple[str, Point]]:
     """About `count` scenes of each family in OTHER_MIXTURE, as scene and overrides."""
+    return _of_families(seed, count, OTHER_MIXTURE)
+
+
+def layers(seed: int, count: int) -> list[tuple[str, Point]]:
+    """The same of the families in LAYER_MIXTURE."""
+    return _of_families(seed, count, LAYER_MIXTURE)
+
+
+def _of_families(seed: int, count: int, mixture: dict[str, dict[str, int]]) -> list[tuple[str, Point]]:
     entries = []
-    for family, shares in OTHER_MIXTURE.items():
+    for family, shares in mixture.items():
         for scene, share in shares.items():
             chance = random.Random(f"{seed} {family} {scene}")
             many = max(1, round(count * share / 30))
@@ -376,8 +391,8 @@ def others(seed: int, count: int) -> list[tuple[str, Point]]:
 
 
 def family(scene: str) -> str:
-    """The family of a scene: a key of OTHER_MIXTURE, or else the scene itself."""
-    return next((name for name, shares in OTHER_MIXTURE.items() if scene in shares), scene)
+    """The family of a scene: a key of FAMILIES, or else the scene itself."""
+    return next((name for name, shares in FAMILIES.items() if scene in shares), scene)
 
 
 def _rounded(value):
@@ -462,7 +477,51 @@ def _plate(chance: random.Random, speed: float, c: float, material: Point) -> Po
     return {"body.1.velocity": -speed, "body.2.radius": 0.1 * chance.choice([0.6, 1.0, 1.4])}
 
 
+def _other_layer(chance: random.Random, material: Point) -> tuple[Point, float]:
+    """The entries of a layer of another material, half of them with a loss, and the factor of the speed
+    of waves in the softer material."""
+    stiffer = chance.choice(UNLIKE)
+    layer = {"young": material["young"] * stiffer, "density": material["density"] * chance.choice([0.3, 1.0, 3.0])}
+    layer |= {"loss": chance.choice(LOSSES)} if chance.random() < 0.5 else {}
+    return {f"layer.1.{name}": value for name, value in layer.items()}, min(1.0, stiffer**0.5)
+
+
+def _layered_disc(chance: random.Random, speed: float, c: float, material: Point) -> Point:
+    layer, slower = _other_layer(chance, material)
+    entries = {"layer.1.radius": 0.05 * chance.choice([0.5, 0.8, 0.93]), "velocity": [speed * slower * chance.choice([0.0, 0.5]), -speed * slower]}
+    return {f"body.1.{name}": value for name, value in (layer | entries).items()} | _friction(chance)
+
+
+def _layered_ball(chance: random.Random, speed: float, c: float, material: Point) -> Point:
+    layer, slower = _other_layer(chance, material)
+    entries = {"layer.1.radius": 0.05 * chance.choice([0.5, 0.8, 0.93]), "velocity": -speed * slower}
+    return {f"body.1.{name}": value for name, value in (layer | entries).items()} | _friction(chance)
+
+
+def _layered_pad(chance: random.Random, speed: float, c: float, material: Point) -> Point:
+    layer, slower = _other_layer(chance, material)
+    edge = {"kind": "half-plane", "point": [0.0, chance.choice([-0.01, 0.0, 0.014])], "normal": [0.0, 1.0]}
+    return {f"body.2.{name}": value for name, value in layer.items()} | {
+        "body.2.layer.1.where": edge, "body.1.velocity": [speed * slower * chance.choice([0.0, 0.5]), -speed * slower],
+        "body.1.young": material["young"] * chance.choice([1.0, 10.0])} | _friction(chance)
+
+
+def _lossy_disc(chance: random.Random, speed: float, c: float, material: Point) -> Point:
+    return {"loss": chance.choice(LOSSES), "body.1.velocity": [speed * chance.choice([0.0, 0.5]), -speed]} | _friction(chance)
+
+
+def _lossy_ball(chance: random.Random, speed: float, c: float, material: Point) -> Point:
+    return {"loss": chance.choice(LOSSES), "body.1.velocity": -speed} | _friction(chance)
+
+
+def _lossy_pad(chance: random.Random, speed: float, c: float, material: Point) -> Point:
+    return {"body.2.loss": chance.choice(LOSSES), "body.1.young": material["young"] * chance.choice([1.0, 10.0]),
+            "body.1.velocity": [speed * chance.choice([0.0, 0.5]), -speed]} | _friction(chance)
+
+
 OTHER_SHAPES = {"ball-sphere": _ball_sphere, "ellipsoid-bowl": _ellipsoid_bowl, "ellipsoid-cylinder": _ellipsoid_cylinder,
                 "shell-wall": _shell, "gas-shell": _gas_shell, "ring-circle": _ring, "block-circle": _block_circle,
                 "disc-normal": _rubber, "ball-axisymmetric": _rubber, "disc-slab": _slab, "ball-cylinder": _ball_cylinder,
-                "disc-strip": _strip, "ball-plate": _plate, "disc-free-strip": _strip}
+                "disc-strip": _strip, "ball-plate": _plate, "disc-free-strip": _strip,
+                "layered-disc": _layered_disc, "layered-ball": _layered_ball, "layered-pad": _layered_pad,
+                "lossy-disc": _lossy_disc, "lossy-ball": _lossy_ball, "lossy-pad": _lossy_pad}

@@ -56,7 +56,7 @@ def tables_of(level: tuple[float, float, float], layers: str) -> dict:
     bulk, near, dt = level
     body = {"shape": "ball", "radius": RADIUS, "position": RADIUS, "velocity": -SPEED, "mesh_size": bulk, "contact_mesh_size": near,
             "layer": LAYERS[layers]} | COVER  # fmt: skip
-    return {"dimension": "axisymmetric", "dt": dt, "fields": 0, "contact": {"penalty": PENALTY}, "body": [body], "obstacle": [{"kind": "plane"}]}
+    return {"dimension": "axisymmetric", "accuracy": 0.02, "dt": dt, "fields": 0, "contact": {"penalty": PENALTY}, "body": [body], "obstacle": [{"kind": "plane"}]}
 
 
 def compare(level: tuple[float, float, float], out: Path) -> tuple[list[dict], list[dict]]:

@@ -32,7 +32,7 @@ from . import draws, page
 # and of `flat`; the compared histories also on 1001 and 1002 of all kinds of scenes, 301 of `held` and `others`,
 # 302 and 401 of `held`.
 # Mesh sizes are calibrated on the seeds 1, 2, 5, 40 and 7.
-SCENES = {"round": (69, 240), "coarse": (73, 180), "flat": (79, 60), "held": (85, 60), "others": (87, 30)}
+SCENES = {"round": (69, 240), "coarse": (73, 180), "flat": (79, 60), "held": (85, 60), "others": (87, 30), "layers": (89, 30)}
 # Elements and steps of the reference are 3 times smaller than those of the first run. In these
 # scenes, which would take hours, they are 2 times smaller than those of the answer, which finer
 # runs may have made.
@@ -53,7 +53,7 @@ ANSWERS = (*estimate.RESULTS, *estimate.HIGHEST, "support_peak_1", "support_peak
 # Columns of cover().
 COVER = {"answer": "", "cases": "", "within": ".1%", "times": ".1f", "needed": ".2f"}
 TITLES = {"coarse": "at coarse accuracies", "flat": "where faces strike flat", "held": "of what is held, loaded or rigid",
-          "others": "in five other families of scenes"}
+          "others": "in five other families of scenes", "layers": "of layers and of a flat loss"}
 LATER: dict = {"message": "not begun"}
 Drawn = tuple[str, study.Point]  # a built-in scene and its overrides
 
@@ -64,7 +64,7 @@ def main(argv: list[str]) -> int:
     Returns 0 if enough scenes reach the requested accuracy and the median error is not too small.
     """
     parser = commands.command("promise", __doc__, page=True)
-    parser.add_argument("--scenes", metavar="N", type=whole, help=f"how many, with --others of each family (default: {SCENES['round'][1]})")
+    parser.add_argument("--scenes", metavar="N", type=whole, help=f"how many, with --others and --layers of each family (default: {SCENES['round'][1]})")
     parser.add_argument("--seed", metavar="N", type=whole, help=f"other scenes (default: {SCENES['round'][0]})")
     parser.add_argument("--hard", action="store_true",
                         help="also gravity, other integrators, linear elements ...: nothing above what was asked without a warning")
@@ -74,11 +74,13 @@ def main(argv: list[str]) -> int:
                         help="supports, loads, rigid bodies, obstacles that move: stated errors hold there too")
     parser.add_argument("--others", action="store_true",
                         help="curved, hollow, nearly incompressible, unlike, and strips: stated errors hold there too")
+    parser.add_argument("--layers", action="store_true",
+                        help="bodies with layers, and with a loss that does not depend on frequency: stated errors hold there too")
     parser.add_argument("--limit", metavar="S", type=float, default=LIMIT, help=f"longest time of a scene (default: {LIMIT:g} s); "
                         "scenes that take longer are left out")
     parser.add_argument("--minutes", metavar="M", type=float, default=math.inf, help="no scene begins later than that; the same command "
                         "goes on with the others")
-    kinds = (*draws.SCENES, *draws.HELD_MIXTURE, *draws.OTHER_MIXTURE)
+    kinds = (*draws.SCENES, *draws.HELD_MIXTURE, *draws.FAMILIES)
     parser.add_argument("--of", metavar="KIND", nargs="+", choices=kinds, help=f"of these scenes or families only: {', '.join(kinds)}")
     options = parser.parse_args(argv)
     kind = next((kind for kind in SCENES if getattr(options, kind, False)), "round")
@@ -86,7 +88,7 @@ def main(argv: list[str]) -> int:
     table = compare(_drawn(options, kind, seed, max(1, count)), options.out, options.limit, options.minutes)
     if kind != "round":
         name = table.scene.str.partition(":")[0]
-        part = table.accuracy.map("accuracy {:g}".format) if kind == "coarse" else name.map(draws.family) if kind == "others" else name
+        part = table.accuracy.map("accuracy {:g}".format) if kind == "coarse" else name.map(draws.family) if kind in ("others", "layers") else name
         return _finish_parts(options, table.assign(family=part), argv, f"Whether stated errors hold {TITLES[kind]}")
     good = silent(table) == 0 if options.hard else kept(table) and covered(table)
     requirement = "the requirement on silent errors" if options.hard else "the requirement"

@@ -80,6 +80,17 @@ def test_energies_are_compared_at_the_end_of_the_shorter_run():
     assert abs(math.sin(40) - math.sin(38)) / 5 > 0.08
 
 
+def test_energies_of_damped_bodies_are_compared_at_the_end_of_the_shorter_run():
+    """A body goes on losing energy after its contact, so that a longer run has less of it."""
+    def ends(last: float, rate: float = 500.0) -> Answers:
+        t = np.linspace(0, last, 401)
+        lost = rate * t
+        return run(ANSWERS | {"energy_final": 4.0 - lost[-1], "vibration_energy": 3.0 - lost[-1]}, t=t, viscous_work=lost)
+
+    assert estimate.differences(ends(4e-3), ends(3.6e-3))["energy"] == pytest.approx(0, abs=1e-9)
+    assert estimate.differences(ends(4e-3), ends(3.6e-3, 450.0))["energy"] == pytest.approx(50 * 3.6e-3 / 5, rel=0.1)
+
+
 def test_time_histories_are_compared_near_their_ends():
     """A deviation of 1 % in the last quarter is one of all results, over their scales. An earlier one
     counts for the friction work, and for largest values while they are reached. A history with other

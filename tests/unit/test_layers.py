@@ -15,11 +15,11 @@ RUBBER = {"law": "neohookean", "young": 7e6, "nu": 0.45, "density": 1722.0}
 LOW = {"kind": "half-plane", "point": [0, 0.01], "normal": [0.3, -1]}
 
 
-def scene(*layers, dimension="plane-strain", shape="disc", size=0.02, **more) -> ff.Scene:
+def scene(*layers, dimension="plane-strain", shape="disc", size=0.02, accuracy=0.02, **more) -> ff.Scene:
     """A body with layers above a plane."""
     of_shape = {} if shape == "rectangle" else {"radius": RADIUS}
     body = {"shape": shape, "position": [0, 0.06], "velocity": [0, -1], "layer": list(layers), "mesh_size": size} | of_shape | RUBBER | more
-    return ff.Scene.read({"dimension": dimension, "body": [body], "obstacle": [{"kind": "plane"}]})
+    return ff.Scene.read({"dimension": dimension, "accuracy": accuracy, "body": [body], "obstacle": [{"kind": "plane"}]})
 
 
 def made(*layers, **more) -> assembly.Assembly:
@@ -108,6 +108,20 @@ def test_elements_between_a_core_and_a_thin_cover(kind, spin):
     built = made({"radius": 0.047}, dimension=kind, **shape)
     ends = built.mesh.points[built.mesh.edges[built.mesh.labels == INTERFACE]]
     assert np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).max() < 1.3 * 0.003
+
+
+@pytest.mark.parametrize("kind", ["plane-strain", "axisymmetric"])
+def test_elements_at_layers_follow_the_accuracy(kind):
+    """So that the coarser runs of an error estimate have longer ones, too: by the factor 2 for four times the accuracy.
+    They never bend by more than a third of the cover."""
+    longest = {}
+    for accuracy in (0.005, 0.02, 0.4):
+        read = scene({"radius": 0.046}, dimension=kind, shape="disc" if kind == "plane-strain" else "ball", size=0.0, accuracy=accuracy)
+        built = assembly.assemble(read.ready())
+        ends = built.mesh.points[built.mesh.edges[built.mesh.labels == INTERFACE]]
+        longest[accuracy] = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).max()
+    assert longest[0.02] == pytest.approx(0.004, rel=0.2) and longest[0.005] == pytest.approx(0.002, rel=0.2)
+    assert longest[0.4] > 0.008 and longest[0.4] ** 2 / (8 * 0.046) < 0.004 / 3
 
 
 def test_regions_cut_along_straight_lines_and_the_later_one_wins():

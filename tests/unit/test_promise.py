@@ -144,10 +144,12 @@ def test_coverage_without_cases_is_not_held():
     assert [promise.held(SimpleNamespace(within=within, cases=cases)) for within, cases in rows] == [False, True, False]
 
 
-def test_drawn_scenes_of_other_families_are_accepted():
+@pytest.mark.parametrize("kind, mixture", [("others", draws.OTHER_MIXTURE), ("layers", draws.LAYER_MIXTURE)])
+def test_drawn_scenes_of_other_families_are_accepted(kind, mixture):
     """Each family has about the same number of scenes; equal seeds give equal scenes."""
-    drawn = draws.others(3, 10)
-    assert drawn == draws.others(3, 10) and not any(entry in drawn for entry in draws.others(4, 10))
+    draw = getattr(draws, kind)
+    drawn = draw(3, 10)
+    assert drawn == draw(3, 10) and not any(entry in drawn for entry in draw(4, 10))
     families = [draws.family(name) for name, _ in drawn]
-    assert set(families) == set(draws.OTHER_MIXTURE) and all(9 <= families.count(family) <= 11 for family in families)
+    assert set(families) == set(mixture) and all(9 <= families.count(family) <= 11 for family in families)
     assert all(promise.open_scene(name, point) and draws.words(point) for name, point in drawn[::3])

@@ -28,6 +28,7 @@ __all__ = [
     "circles_between",
     "contents",
     "layers_of_cells",
+    "longest",
     "on_boundary",
     "surfaces_between",
     "with_interfaces",
@@ -37,6 +38,7 @@ SAMPLES = 400  # number of points of a curve between which crossings are sought
 NEAR = 1e-9  # distance that counts as none, over the bounding radius
 BESIDE = 1e-7  # distance from a curve at which the layers on its sides are looked up, the same
 SAME = 1e-9  # distance of parameters in [0, 1] that are the same
+BENT = 1.5  # largest size of a curved side over sqrt(R t): it bends by 0.28 of the thickness t
 ROUND = 16  # number of points of a circle whose distance from the boundary is looked up
 ON = 1e-6  # distance of corners that are on the boundary of a region, over the bounding radius
 
@@ -243,10 +245,10 @@ def _largest(
     sizes: Sizes,
     near: float,
 ) -> float:
-    """The largest element size [m] on an edge: the distance from the next parallel or concentric
-    one; of a circle also that from the boundary and half its radius.
+    """The largest element size [m] on an edge: `sizes.of_layers` times the distance from the next
+    parallel or concentric one; of a circle also from the boundary, and half its radius.
     """
-    apart = [sizes.bulk]
+    apart: list[float] = []
     if isinstance(edge, Circle):
         circles = [other for other in edges if isinstance(other, Circle)]
         apart += [
@@ -255,16 +257,24 @@ def _largest(
             if (other.centre == edge.centre).all()
         ]
         away = -gap(edge.at(np.linspace(0, 1, ROUND)))
-        apart += [edge.radius / 2, *([float(away.min())] if away.min() > 0 else [])]
-    else:
-        along = edge.end - edge.start
-        lines = [other for other in edges if isinstance(other, Segment)]
-        apart += [
-            abs(float(other.side(edge.start[None])[0]))
-            for other in lines
-            if abs(np.dot(along, other.normal(along[None])[0])) <= NEAR * np.linalg.norm(along)
-        ]
-    return min(distance for distance in apart if distance > near)
+        apart += [float(away.min())] if away.min() > 0 else []
+        largest = [longest(thick, edge.radius, sizes) for thick in apart if thick > near]
+        return min([sizes.bulk, edge.radius / 2, *largest])
+    along = edge.end - edge.start
+    lines = [other for other in edges if isinstance(other, Segment)]
+    apart += [
+        abs(float(other.side(edge.start[None])[0]))
+        for other in lines
+        if abs(np.dot(along, other.normal(along[None])[0])) <= NEAR * np.linalg.norm(along)
+    ]
+    return min([sizes.bulk, *(sizes.of_layers * thick for thick in apart if thick > near)])
+
+
+def longest(thick: float, radius: float, sizes: Sizes) -> float:
+    """The largest element size [m] on a circle of this radius on a side of a layer. The middle of a
+    curved side, which is s long, is s^2/(8 R) away from its chord.
+    """
+    return min(sizes.of_layers * thick, BENT * math.sqrt(radius * thick))
 
 
 def layers_of_cells(corners: np.ndarray, layers: Layers) -> tuple[np.ndarray, bool]:

@@ -160,7 +160,8 @@ class Sizes:
 
     `near` (n, axes) [m] are the outline points of the expected contact, in the coordinates of the
     body's mesh. The size `contact` applies up to the distance `slack` from these points. Across
-    the unit vector `along` (axes,) elements are `stretch` times as long.
+    the unit vector `along` (axes,) elements are `stretch` times as long. Elements at a layer are
+    `of_layers` times as long as it is thick, at most.
     """
 
     bulk: float
@@ -169,6 +170,7 @@ class Sizes:
     slack: float  # half the spacing of points on the outline [m]
     along: np.ndarray | None = None
     stretch: float = 1.0
+    of_layers: float = 1.0
 
     def at(self, points: np.ndarray) -> np.ndarray:
         """Element sizes (n,) [m] at points (n, axes), linear in the distance from the contact: both

@@ -37,6 +37,7 @@ __all__ = [
 
 DEPTH = 3
 PLANES = {0: AXIS, 2: DEPTH}  # planes of symmetry: the axis normal to the plane, and its label
+BENT = 1.5  # largest size of a face on a layer over sqrt(R t)
 LARGEST = 0.52  # largest element size of a ball over its radius: twelve elements per full turn
 MOST_SOURCES = 2000  # largest number of points from which the size field measures distances
 FILL = 0.118  # volume of a regular tetrahedron over the cube of its edge
@@ -178,7 +179,7 @@ def mesh_shape(
     spherical = kind in ("ball", "shell")
     radii = {"ball": 1, "shell": 2, "cylinder": 1, "tube": 2}.get(kind, 0)  # number of them
     bulk = min(sizes.bulk, LARGEST * lengths[0]) if spherical else sizes.bulk
-    bulk = min(bulk, _largest_in_layers(lengths[:radii], parts))
+    bulk = min(bulk, min(sizes.of_layers, BENT) * _largest_in_layers(lengths[:radii], parts))
     largest, contact, slack = (
         float(np.round(size / scale, mesh.DIGITS))
         for size in (bulk, min(bulk, sizes.contact), sizes.slack)

@@ -225,7 +225,7 @@ SUMMARY = (
     _both("final_spin", "rad/s", "as rebound_spin, at end_time; null unless the run goes on after "
         "the contact"),
     _whole("energy_initial", "J/m", "kinetic + elastic + contact energy at the start"),
-    _whole("energy_final", "J/m", "the same at the end of contact, or at end_time"),
+    _whole("energy_final", "J/m", "the same at the end of contact, or at end_time; of damped bodies at the end of the run"),
     _part("kinetic_final", "J/m", "kinetic energy at the end"),
     _part("elastic_final", "J/m", "elastic energy at the end"),
     _both("vibration_energy", "J/m", "kinetic and elastic energy less translation_energy, "

@@ -119,6 +119,7 @@ FILE_MESH = (
 OF_ITSELF = "friction_work of itself"
 HIGHEST = ("max_pressure", "max_penetration")  # largest values of columns of the history
 WORKS = ("support_work", "load_work")
+DAMPING = "viscous_work"  # column of the energy that damping has taken
 EARLY = 0.75  # share of the contact, and of the impulse, from which on histories are compared
 HIGH = 0.75  # share of a largest value above which histories are compared
 # Shares of the impulse at which times are compared. They are dense at the end of contact.
@@ -370,8 +371,8 @@ def differences(fine: Answers, coarse: Answers) -> dict[str, float]:
       the one with the largest difference counts;
     - energies and works: the largest energy. Friction work is also compared to itself.
 
-    Gases and supports exchange energy with their bodies after contact, too. So works, and energies
-    without the work that follows, are compared at the end of the shorter run. A held body vibrates
+    Gases and supports exchange energy with their bodies after contact, too, and damped bodies lose
+    energy. So works, and energies without the work that follows, are compared at the end of the shorter run. A held body vibrates
     on its support: its velocities at the end are of one instant and are left out.
     """
     first, second = fine.summary, coarse.summary
@@ -391,8 +392,11 @@ def differences(fine: Answers, coarse: Answers) -> dict[str, float]:
         return float(np.interp(together, run.history["t"], run.history[name]))
 
     def later(run: Answers) -> float:
-        """The work [J/m] after the end of the shorter run."""
-        return sum(float(run.history[name][-1]) - until(run, name) for name in works)
+        """The work [J/m] after the end of the shorter run, less what damping takes."""
+        signs = dict.fromkeys(works, 1.0) | dict.fromkeys({DAMPING} & {*run.history}, -1.0)
+        return sum(
+            sign * (float(run.history[name][-1]) - until(run, name)) for name, sign in signs.items()
+        )
 
     def energy_apart(name: str) -> float:
         return abs(value(first, name) - later(fine) - value(second, name) + later(coarse))

@@ -34,7 +34,7 @@ from ..input.materials import Material
 from ..input.parameters import NOT_DECISIVE, Table, Value
 from ..input.toml_text import to_toml
 from ..mesh import mesh, revolution, solid_mesh, solids
-from ..mesh.layers import circles_between, surfaces_between, with_interfaces
+from ..mesh.layers import circles_between, longest, surfaces_between, with_interfaces
 from ..mesh.mesh import AXIS, FREE, Curve, Sizes, mesh_body, nearest
 from ..mesh.solids import Solid
 from .approach import (
@@ -89,6 +89,9 @@ UNLIMITED = 1e-3  # accuracy for which no element of the rule has a limited size
 RESOLVED = 0.5  # largest element in a contact over its half-width
 ASIDE = 0.02  # distance from a corner of an obstacle that counts as on it, over the pair's radius
 SMALLEST = 1e-3  # smallest element in a contact over the pair's radius
+# Accuracies for which elements at a layer are as long as it is thick, in space as long as
+# solid_mesh.py allows. Errors are quadratic in them.
+LAYERED = {PLANE_STRAIN: 0.02, AXISYMMETRIC: 0.02, SOLID: 0.06}
 BETWEEN = 0.2  # distance of bodies in the mesh over their largest extent
 
 
@@ -610,7 +613,8 @@ def element_sizes(k: int, auto: AutomaticValues) -> Sizes:
     )
     near = np.vstack([np.empty((0, auto.scene.kind.axes)), *(points for _, points, _ in hits)])
     slack = max([0.0, *(slack for *_, slack in hits)])
-    return Sizes(bulk, min(bulk, contact), near, slack, along, stretch)
+    thick = math.sqrt(auto.scene.number("accuracy") / LAYERED[auto.scene.kind])
+    return Sizes(bulk, min(bulk, contact), near, slack, along, stretch, thick)
 
 
 def _bulk(k: int, auto: AutomaticValues) -> float:
@@ -783,9 +787,8 @@ def _meshed(scene: Scene, k: int, size: Sizes) -> mesh.Mesh:
     body, boundary = scene.bodies[k], boundary_curves(scene, k)
     interfaces: list[tuple[Curve, float]] = []
     if body.layers:
-        # elements on the outline are as long as the layer below it is thick
-        thin = [
-            abs(radius - own)
+        thin = [  # element sizes on the outline above thin layers
+            longest(abs(radius - own), radius, size)
             for own in (layer.radius for layer in body.layers)
             if own is not None
             for radius in body.radii
