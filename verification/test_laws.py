@@ -143,15 +143,18 @@ def test_uniaxial_curves_of_the_literature(measure, name):
         assert numbers[f"uniaxial{i}"] == pytest.approx(expected, rel=1e-8 if name == "Blatz-Ko" else 2e-3, abs=1e-8), L
 
 
-def test_sign_of_the_ellipticity_of_an_energy(measure):
-    """St. Venant-Kirchhoff's energy of invariants and of stretches loses ellipticity where the closed
-    form of the written law does."""
-    nu, mu = 0.1, 7e6 / 2.2   # shear across oblique directions is decisive
-    lame = 2 * mu * nu / (1 - 2 * nu)
-    texts = ("l/8*(I1-3)^2 + m/4*(I1^2 - 2*I2 - 2*I1 + 3)", "l/8*(L1^2+L2^2+L3^2-3)^2 + m/4*((L1^2-1)^2+(L2^2-1)^2+(L3^2-1)^2)")
-    svk = measure("ellipticity", law="svk", nu=nu, volume="plain")
-    for text in texts:
-        energy = measure("ellipticity", law="energy", energy=text, parameters=(("l", lame), ("m", mu)), volume="plain")
-        closed, own = (np.array([numbers[f"closed{i}"] for i in range(100)]) for numbers in (svk, energy))
-        clear = abs(closed) > 1e-6
-        assert (np.sign(closed) == np.sign(own))[clear].all() and 10 < (closed < 0).sum() < 90
+@pytest.mark.parametrize("text, parameters, lost", [
+    ("l/8*(I1-3)^2 + m/4*(I1^2 - 2*I2 - 2*I1 + 3)", (("l", 7e6), ("m", 2e6)), True),   # St. Venant-Kirchhoff
+    ("l/8*(L1^2+L2^2+L3^2-3)^2 + m/4*((L1^2-1)^2+(L2^2-1)^2+(L3^2-1)^2)", (("l", 7e6), ("m", 2e6)), True),
+    ("m/2*(I2/J^2 + 2*J - 5)", (("m", 2e6),), True),
+    ("m/2*(L1^-2 + L2^-2 + L3^-2 + 2*J - 5)", (("m", 2e6),), True),
+    ("m/2*(I1*J^(-2/3)-3) + k/2*(J-1)^2", (("m", 2e6), ("k", 1e7)), False),
+])
+def test_sign_of_the_ellipticity_of_an_energy(measure, text, parameters, lost):
+    """The closed form has the sign of the smallest eigenvalue over 720 directions, by differences of
+    the stress; in some states the coupling of the axes decides (Blatz-Ko)."""
+    numbers = measure("ellipticity", law="energy", energy=text, parameters=parameters, volume="plain")
+    closed, tried = (np.array([numbers[f"{name}{i}"] for i in range(100)]) for name in ("closed", "found"))
+    clear = abs(closed) > 1e-4 * (1 + abs(tried))
+    assert clear.sum() > 90 and (np.sign(closed) == np.sign(tried))[clear].all()
+    assert (10 < (closed < 0).sum() < 90) == lost
