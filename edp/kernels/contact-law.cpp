@@ -47,6 +47,29 @@ void Law::elastic(double vN0, double vN1, double k, double &t, double &stiff) co
   }
 }
 
+void Law::adhere(double vN0, double vN1, double A, double &t, double &stiff) const {
+  const auto share = [&](double vN) { return std::max(0., std::min(1., vN / range)); };
+  const auto inside = [&](double vN) { return vN > 0 && vN < range; };
+  const auto slope = [](double s) { return 6 * s * (1 - s); };
+  const double s0 = share(vN0), s1 = share(vN1), s = share((vN0 + vN1) / 2);
+  if (lawInstant == stepMean) {
+    const double mean = 3 * (s0 + s1) - 2 * (s0 * s0 + s0 * s1 + s1 * s1);   // (h1 - h0)/(s1 - s0)
+    if (inside(vN0) && inside(vN1)) {
+      t -= A / range * mean;
+      stiff -= A / (range * range) * (3 - 2 * s0 - 4 * s1);
+    }
+    else if (s0 != s1) {
+      const double force = A * mean * (s1 - s0) / (vN1 - vN0);
+      t -= force;
+      stiff -= (A / range * slope(s1) - force) / (vN1 - vN0);
+    }
+    return;
+  }
+  const double at = lawInstant == stepEnd ? s1 : s, middle = lawInstant == stepMiddle ? 0.5 : 1;
+  t -= A / range * slope(at);
+  if (at > 0 && at < 1) stiff -= middle * A / (range * range) * (6 - 12 * at);
+}
+
 void Law::regularise(double vOverEps, double &phi, double &dPhi) const {
   switch (regularization) {
     case sqrtOf:
@@ -121,7 +144,8 @@ Law::MuPhiVector Law::muPhiVector(const double *v, const Candidate &a, double tN
 }
 
 void Law::at(const Candidate &a, const double *x, const double *linearisedAt, Forces &f) const {
-  normal(a.vN0, x[0], a.k, f.t[0], f.slope[0][0]);
+  normal(a.vN0 - range, x[0] - range, a.k, f.t[0], f.slope[0][0]);
+  if (a.adhesion > 0) adhere(a.vN0, x[0], a.adhesion, f.t[0], f.slope[0][0]);
   if (slips == 0) return;
   double v[2];
   for (int i = 0; i < slips; i++) v[i] = x[1 + i] / dt;

@@ -1,7 +1,7 @@
 // contact-law.hpp: forces on one contact point in a step and their derivatives: the normal force
 // (10), t_N = k v_N^m for a penetration v_N > 0, and, with friction, the tangential force
-// (11)-(13), t_T = -mu_f(v_T) phi(v_T) |t_N|, v_T = slip/dt. k has the weight of the point. Exports
-// Law, Candidate, Forces.
+// (11)-(13), t_T = -mu_f(v_T) phi(v_T) |t_N|, v_T = slip/dt. k has the weight of the point. With
+// adhesion a point is attracted over the distance `range`. Exports Law, Candidate, Forces.
 #pragma once
 #include <memory>
 #include "expression.hpp"
@@ -13,16 +13,22 @@ using tensors::stepMiddle;
 using tensors::stepEnd;
 enum Regularization { linear, linearPrinted, sqrtOf, tanhOf };
 
-// A contact candidate: penetration at the start of the step [m], stiffness, coefficients of
-// friction, stick or slip status; weight [m, m2] if mu_f is the expression of the law, else 0.
-struct Candidate { double vN0, k, muStatic, muDynamic;  bool sticks;  double weight = 0; };
+// A contact candidate: penetration at the start of the step [m], with adhesion from the gap `range`
+// on; stiffness, coefficients of friction, stick or slip status; weight [m, m2] if mu_f is the
+// expression of the law, else 0; energy of adhesion [J/m, J].
+struct Candidate {
+  double vN0, k, muStatic, muDynamic;
+  bool sticks;
+  double weight = 0, adhesion = 0;
+};
 struct Forces { double t[3], slope[3][3]; };    // (t_N, -t_T) and d/d(penetration, slip)
 
 // m, epsilon [m/s], the share of epsilon that is a ramp, the step [s], the retardation time tau of
 // the penalty [s]; jumps: mu_f changes by a jump at epsilon; slips: number of tangential
-// components, 0 without friction.
+// components, 0 without friction; the energy of adhesion [J/m2] and its range [m].
 struct Law {
   double exponent = 1, slipVelocity = 1, bridge = 0.01, dt = 1, retardation = 0;
+  double adhesion = 0, range = 0;
   bool jumps = false;
   int slips = 0, lawInstant = stepMean, regularization = linear;
   // mu_f of |v_T| [m/s] and the pressure t_N/weight [Pa], in place of coefficients
@@ -40,6 +46,10 @@ struct Law {
   // and end of the step. stepMean: the mean (Phi_1 - Phi_0)/(vN1 - vN0) of the potential Phi =
   // k v_N^(m+1)/(m+1), whose work is the change of Phi, by a series where vN hardly changes.
   void elastic(double vN0, double vN1, double k, double &t, double &stiff) const;
+
+  // Adds the force of adhesion, with the potential -A h, h = 3 s^2 - 2 s^3, s = v_N/range from 0 to
+  // 1, and A the energy of the candidate: at most 1.5 A/range, 0 at both ends of the range.
+  void adhere(double vN0, double vN1, double A, double &t, double &stiff) const;
 
   // phi (13) and its derivative at |v|/eps. At eps sqrt is 0.71 and tanh 0.76. The printed phi3
   // jumps upwards at eps, and a step may then have no solution: a ramp over the last fraction

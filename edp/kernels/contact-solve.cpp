@@ -298,7 +298,7 @@ void Problem::place() {   // x = x_w - B C B^T tau
 }
 
 void Problem::evaluate(const Vector *at) {
-  // t, D and t - tau at x; negative diagonal terms of D count as 0. `at`, if not null, has the
+  // t, D and t - tau at x; negative diagonal terms of D count as 0 without adhesion. `at`, if not null, has the
   // velocity at which friction is linearised, slips values for each point; nan: not linearised.
   const int k = B.gapRows;
   t = Vector::Zero(x.size());
@@ -311,7 +311,8 @@ void Problem::evaluate(const Vector *at) {
     for (int i = 0; i < k; i++) t[k * b + i] = f.t[i];
     for (int i = 0; i < k; i++)
       for (int j = 0; j < k; j++)
-        slopes[k * k * b + k * i + j] = i == j ? std::max(f.slope[i][j], 0.) : f.slope[i][j];
+        slopes[k * k * b + k * i + j] =
+          i == j && law.range == 0 ? std::max(f.slope[i][j], 0.) : f.slope[i][j];
   }
   for (size_t s = 0; s < B.geometric.size(); s++) {
     const int b = B.points + s;
@@ -357,7 +358,7 @@ bool Problem::correctForces() {
   // The same increments as correct(), without friction, by a Cholesky factorisation for the loaded
   // points a, D > 0: (D^-1 + G)_aa step_a = (D^-1 (t - tau) - G r)_a, G = B C B^T; r = t - tau at
   // the other points, where step = r. Returns false for a diagonal C, many points, or if it fails.
-  if (isDiagonal(C, B.n)) return false;
+  if (isDiagonal(C, B.n) || law.range > 0) return false;
   Indices loaded;
   step = unbalance;
   for (int b = 0; b < B.blocks(); b++) if (slopes[b] > 0) { loaded.push_back(b);  step[b] = 0; }

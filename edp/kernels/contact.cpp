@@ -58,7 +58,8 @@ double Contact::dampingWork() const {
   double work = 0, t, stiff;
   for (long s = 0; s < ns(); s++) {
     const double q0 = gaps.q0[s], q1 = script.q1[s];
-    if (q0 > 0 || q1 > 0) work += law.normal(q0, q1, script.k[s], t, stiff) * (q1 - q0);
+    if (q0 > 0 || q1 > 0)
+      work += law.normal(q0 - law.range, q1 - law.range, script.k[s], t, stiff) * (q1 - q0);
   }
   return work;
 }
@@ -200,7 +201,7 @@ void Contact::restore() {
 
 Candidate Contact::point(long s) const {
   return {gaps.q0[s], script.k[s], script.muStatic[s], script.muDynamic[s],
-          script.sticks[s] == 1, script.weight[s]};
+          script.sticks[s] == 1, script.weight[s], script.adhesion[s]};
 }
 
 void Contact::takeUnknowns() {

@@ -12,10 +12,10 @@ class Factor;
 namespace contact {
 
 // Arrays of the scripts, of the last evaluation: q at the end of the step, gap and slip, forces t
-// of the candidates and B^T t on all unknowns; k, coefficients of friction and weight of a
-// Candidate; status, 1: stick.
+// of the candidates and B^T t on all unknowns; k, coefficients of friction, weight and energy
+// of adhesion of a Candidate; status, 1: stick.
 struct Arrays {
-  Kept<double> q1, gapSlip, candidateForces, force, k, muStatic, muDynamic, weight;
+  Kept<double> q1, gapSlip, candidateForces, force, k, muStatic, muDynamic, weight, adhesion;
   Kept<long> sticks;
 };
 

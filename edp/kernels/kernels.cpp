@@ -297,6 +297,7 @@ static void addContactLaw() {
     touching.problem.sticksBelow = sticksBelow;
     touching.problem.mostStatusChanges = int(mostStatusChanges);
   });
+  add("kernelAdhesionRange", +[](double range) { touching.law.range = gaps.reach = range; });
   add("kernelFriction", +[](Reals code) {
     touching.law.friction = std::make_shared<expressions::Expression>(copied<double>(code));
   });
@@ -332,9 +333,9 @@ static void addStep() {
   // Kernels of contact.hpp, step.hpp and explicit.hpp. The first two are called once.
   add("kernelContactArrays", +[](Reals q1, Reals gapSlip, Reals candidateForces, Reals force,
                                 Reals k, Reals muStatic, Reals muDynamic, Reals weight,
-                                Ints sticks) {
+                                Reals adhesion, Ints sticks) {
     touching.script = {{&q1}, {&gapSlip}, {&candidateForces}, {&force}, {&k}, {&muStatic},
-                       {&muDynamic}, {&weight}, {&sticks}};
+                       {&muDynamic}, {&weight}, {&adhesion}, {&sticks}};
   });
   add("kernelStepArrays", +[](Reals d, Reals v, Reals frameMotion, Reals seconds, Ints counts,
                              Sparse translations) {

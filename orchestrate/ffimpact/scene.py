@@ -546,6 +546,10 @@ class Scene(models.Top):
         common = self.contact_values
         for path, own in [("contact", common), *((pair.entry, pair.own) for pair in self.pairs)]:
             static = own.get("friction_static", common["friction_static"])
+            if common["adhesion"] and float(static) > 0:
+                raise BadInput(
+                    f"{path}.friction_static: {static:g} beside adhesion (accepted: 0, or without adhesion)"
+                )
             inherited = "auto" if "friction_static" in own else common["friction_dynamic"]
             dynamic = own.get("friction_dynamic", inherited)
             if dynamic != "auto" and float(dynamic) > float(static):

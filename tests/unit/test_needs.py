@@ -30,6 +30,7 @@ SCENES = {
     "start = 'equilibrium' needs": ({"start": "equilibrium", "gravity": 9.81, "body": [DISC | {"velocity": [0, 0], "position": [0, 0.05]}]}, {"integrator": IMPLICIT}),
     "given_shape = 'inflated' needs": ({"body": [DISC, RING | {name: DISC[name] for name in ("law", "young", "nu", "density")}
                                                  | {"load": [{"where": "inner", "gas": {"gauge_pressure": 1e3, "given_shape": "inflated"}}]}]}, {"degree": (2,)}),
+    "adhesion needs": ({"contact": {"adhesion": 0.1, "adhesion_range": 1e-4}}, {"integrator": ("energy-momentum", "central-difference")}),
     "penalty_damping needs": ({"contact": {"penalty_damping": 1e-5}}, {"integrator": (*MIDDLE, "central-difference")}),
 }
 REFUSED = [(what, entry, word) for what, (_, accepted) in SCENES.items() for entry, words in accepted.items()

@@ -126,6 +126,17 @@ class Contact(OfContact):
         "retardation time tau of the penalty: a closing contact takes t_N + tau dt_N/dt instead of "
         "t_N of (10), never below 0; 0 = none. It takes energy (penalty_damping_work)",
     ] = None
+    adhesion: Annotated[
+        float | None,
+        real(0, 0, 1e9, "J/m2"),
+        "energy w of adhesion: surfaces within adhesion_range of each other attract each other, "
+        "and to part them takes w",
+    ] = None
+    adhesion_range: Annotated[
+        float | None,
+        real(0, 0, 1.0, "m"),
+        "gap from which on adhesion acts; the largest traction is 1.5 adhesion/adhesion_range",
+    ] = None
     self_contact: Annotated[
         str | None,
         Parameter("", "word", None, "-", words=("auto", "on", "off")),
@@ -135,6 +146,11 @@ class Contact(OfContact):
 
     def refusals(self) -> Iterator[tuple[str, str]]:
         yield from super().refusals()
+        for name, other in (("adhesion", "adhesion_range"), ("adhesion_range", "adhesion")):
+            if getattr(self, name) and not getattr(self, other):
+                yield other, f": is missing, beside {name} (accepted: more than 0)"
+        if self.adhesion and self.friction:
+            yield "friction", ": beside adhesion (accepted: one of the two)"
         if self.friction is None:
             return
         for name in ("friction_static", "friction_dynamic"):

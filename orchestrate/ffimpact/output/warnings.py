@@ -60,6 +60,7 @@ PEAK_WIDTH, PEAK_SHARE = (
     0.5,
     0.8,
 )  # a time over the transit time of a wave; a mean force over the peak
+IN_ZONE = 3  # elements in the cohesive zone of adhesion
 BOUNCES = 5  # smallest number of short flights of a rigid body that are a warning
 BENT = 0.1  # deviation of a function of time from a straight line in a step
 CORNER = 0.05  # share of the impulse that begins at a sharp corner
@@ -933,6 +934,23 @@ def _bounces(e: Evidence) -> Iterator[Sentence]:
         )
 
 
+def _adhesion(e: Evidence) -> Iterator[Sentence]:
+    """The cohesive zone at the edge of a contact, E* w/sigma^2 long, sigma the largest traction. On
+    coarser elements points part one by one, each with a force of its own.
+    """
+    w, reach = e.facts.get("adhesion", 0.0), e.facts.get("adhesion_range", 0.0)
+    soft = [body["young"] / (1 - body["nu"] ** 2) for body in e.bodies if not body["rigid"]]
+    if not (w and soft):
+        return
+    zone, size = min(soft) * w / (1.5 * w / reach) ** 2, e.facts["smallest_element"]
+    if size > zone / IN_ZONE:
+        yield warn(
+            f"adhesion: surfaces part in a zone of {rounded(zone)} m, in which elements of {rounded(size)} m "
+            f"are too large: at least {IN_ZONE} are needed. The force that parts them is too large: "
+            "take a smaller contact_mesh_size, or a larger adhesion_range"
+        )
+
+
 def _penalty_damping(e: Evidence) -> Iterator[Sentence]:
     """The energy that the damping of the penalty has taken. It is not a property of a material."""
     taken = e.numbers.get("penalty_damping_work", 0.0)
@@ -964,5 +982,6 @@ RULES = (
     _discretisation,
     _friction,
     _bounces,
+    _adhesion,
     _penalty_damping,
 )

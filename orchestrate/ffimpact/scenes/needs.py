@@ -95,6 +95,13 @@ NEEDS = (
     ),
     # The nodes of straight elements are not moved.
     Need("given_shape = 'inflated' needs", True, lambda body: body.inflated, {"degree": (2,)}),
+    # The potential of adhesion is not convex; other integrators gain energy from it.
+    Need(
+        "adhesion needs",
+        False,
+        lambda scene: scene.contact_values["adhesion"] > 0,
+        {"integrator": (IMPLICIT, EXPLICIT)},
+    ),
     # The others take contact forces at the end of a step, where their work is not exact.
     Need(
         "penalty_damping needs",
