@@ -49,6 +49,10 @@ struct Law {
 
   // Adds the force of adhesion, with the potential -A h, h = 3 s^2 - 2 s^3, s = v_N/range from 0 to
   // 1, and A the energy of the candidate: at most 1.5 A/range, 0 at both ends of the range.
+  double adhered(double vN) const {        // h
+    const double s = std::max(0., std::min(1., vN / range));
+    return s * s * (3 - 2 * s);
+  }
   void adhere(double vN0, double vN1, double A, double &t, double &stiff) const;
 
   // phi (13) and its derivative at |v|/eps. At eps sqrt is 0.71 and tanh 0.76. The printed phi3

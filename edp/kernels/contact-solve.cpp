@@ -298,8 +298,9 @@ void Problem::place() {   // x = x_w - B C B^T tau
 }
 
 void Problem::evaluate(const Vector *at) {
-  // t, D and t - tau at x; negative diagonal terms of D count as 0 without adhesion. `at`, if not null, has the
-  // velocity at which friction is linearised, slips values for each point; nan: not linearised.
+  // t, D and t - tau at x; negative diagonal terms of D count as 0 without adhesion. `at`, if not
+  // null, has the velocity at which friction is linearised, slips values for each point; nan: not
+  // linearised.
   const int k = B.gapRows;
   t = Vector::Zero(x.size());
   slopes = Vector::Zero(k * x.size());

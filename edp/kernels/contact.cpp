@@ -54,6 +54,15 @@ bool Contact::touches() const {
   return ns() > 0 && std::max(gaps.q0.numbers().maxCoeff(), script.q1.numbers().maxCoeff()) > 0;
 }
 
+double Contact::energy(const double *q) const {
+  double penalties = 0, adhesion = 0;
+  for (long s = 0; s < ns(); s++) if (q[s] > 0) {
+    penalties += law.penaltyForce(q[s] - law.range, script.k[s]) * (q[s] - law.range);
+    if (law.range > 0) adhesion += law.adhered(q[s]) * law.adhesion * script.area[s];
+  }
+  return penalties / (law.exponent + 1) - adhesion;
+}
+
 double Contact::dampingWork() const {
   double work = 0, t, stiff;
   for (long s = 0; s < ns(); s++) {
@@ -201,7 +210,7 @@ void Contact::restore() {
 
 Candidate Contact::point(long s) const {
   return {gaps.q0[s], script.k[s], script.muStatic[s], script.muDynamic[s],
-          script.sticks[s] == 1, script.weight[s], script.adhesion[s]};
+          script.sticks[s] == 1, script.weight[s], law.adhesion * script.area[s]};
 }
 
 void Contact::takeUnknowns() {

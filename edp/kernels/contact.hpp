@@ -12,10 +12,10 @@ class Factor;
 namespace contact {
 
 // Arrays of the scripts, of the last evaluation: q at the end of the step, gap and slip, forces t
-// of the candidates and B^T t on all unknowns; k, coefficients of friction, weight and energy
-// of adhesion of a Candidate; status, 1: stick.
+// of the candidates and B^T t on all unknowns; k, coefficients of friction and weight of a
+// Candidate; areas of all [m, m2]; status, 1: stick.
 struct Arrays {
-  Kept<double> q1, gapSlip, candidateForces, force, k, muStatic, muDynamic, weight, adhesion;
+  Kept<double> q1, gapSlip, candidateForces, force, k, muStatic, muDynamic, weight, area;
   Kept<long> sticks;
 };
 
@@ -54,6 +54,7 @@ class Contact : public Term {
   // Whether a candidate penetrates at the start or at the end of the step.
   bool touches() const;
 
+  double energy(const double *q) const;   // the potential at penetrations (ns) [J/m; J]
   // Energy [J/m; J] that the damping of the penalty takes in the step: sum of its force times the
   // increment of the penetration.
   double dampingWork() const;

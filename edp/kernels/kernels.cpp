@@ -297,7 +297,11 @@ static void addContactLaw() {
     touching.problem.sticksBelow = sticksBelow;
     touching.problem.mostStatusChanges = int(mostStatusChanges);
   });
-  add("kernelAdhesionRange", +[](double range) { touching.law.range = gaps.reach = range; });
+  add("kernelAdhesion", +[](double energy, double range) {   // [J/m2], [m]
+    touching.law.adhesion = energy;
+    touching.law.range = gaps.reach = range;
+  });
+  add("kernelContactEnergy", +[](Reals q) { return touching.energy(q); });
   add("kernelFriction", +[](Reals code) {
     touching.law.friction = std::make_shared<expressions::Expression>(copied<double>(code));
   });
@@ -333,9 +337,9 @@ static void addStep() {
   // Kernels of contact.hpp, step.hpp and explicit.hpp. The first two are called once.
   add("kernelContactArrays", +[](Reals q1, Reals gapSlip, Reals candidateForces, Reals force,
                                 Reals k, Reals muStatic, Reals muDynamic, Reals weight,
-                                Reals adhesion, Ints sticks) {
+                                Reals area, Ints sticks) {
     touching.script = {{&q1}, {&gapSlip}, {&candidateForces}, {&force}, {&k}, {&muStatic},
-                       {&muDynamic}, {&weight}, {&adhesion}, {&sticks}};
+                       {&muDynamic}, {&weight}, {&area}, {&sticks}};
   });
   add("kernelStepArrays", +[](Reals d, Reals v, Reals frameMotion, Reals seconds, Ints counts,
                              Sparse translations) {
