@@ -11,7 +11,7 @@ import pytest
 import ffimpact as ff
 from ffimpact.__main__ import main
 from ffimpact.output import vtu
-from ffimpact.view import FIELDS
+from ffimpact.view import states_of
 from tests.support.api import RUBBER, drop
 
 BALL = {"radius": 0.05, "material": RUBBER}
@@ -75,7 +75,7 @@ def test_the_picture_follows_slider_and_field(result, tmp_path, browser):
     move(browser, "field", "speed")
     assert (seen(browser) != middle).any(axis=2).mean() > 0.01
     choices = "return [...document.querySelectorAll('#field option')].map((one) => one.value)"
-    assert browser.execute_script(choices) == list(FIELDS)
+    assert browser.execute_script(choices) == list(states_of(result, revolved=True).fields)
     browser.find_element("id", "play").click()
     wait(browser, f"return document.body.dataset.state !== '{last // 2}'")
 
