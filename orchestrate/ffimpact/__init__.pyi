@@ -76,6 +76,10 @@ from .input.shapes import (
     Torus as Torus,
     Tube as Tube,
 )
+from .recording import (
+    Bounces as Bounces,
+    bounces as bounces,
+)
 from .result import (
     Progress as Progress,
     Result as Result,

@@ -31,12 +31,14 @@ OWN_MAIN = {
     "compare": "ffimpact.report.compare",
     "movie": "ffimpact.report.movie",
     "dma": "ffimpact.spectrum",
+    "bounces": "ffimpact.recording",
 }
 HELP = {
     "sweep": "run a scene for every combination of some entries: a table and a figure",
     "compare": "several runs in one figure, with a table",
     "movie": "a film of a scene",
     "dma": "Maxwell branches from a measured spectrum: the entries of a material",
+    "bounces": "restitution from the sound of a bouncing ball",
 }
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 # Matches each accepted value that argparse lists in its message.
