@@ -30,7 +30,7 @@ print(f"first yield at {100 * first:.1f} cm/s")
 def impact(speed):
     """The ball just above the plane."""
     ball = ff.Ball(radius=radius, position=radius, velocity=-speed, material=steel)
-    # the dent of a fast ball vibrates near the plane: its run goes on until it has left
+    # a fast ball vibrates near the plane; end_time follows it until it has left
     return ff.Scene(title="yielding ball", dimension="axisymmetric", bodies=[ball],
                     obstacles=[ff.Plane()], accuracy=0.02, end_time=1e-4 if speed > 5 else 0)  # fmt: skip
 
@@ -90,7 +90,7 @@ plt.show()
 # Comparison
 # ----------
 # The hardness, the largest force over the area of the dent, is about three times the yield stress
-# at the mean strain of a dent, 0.2 times its radius over that of the ball (Tabor 1951).
+# at the representative strain 0.2 a/R, a the radius of the dent, R of the ball (Tabor 1951).
 by_jackson = np.interp(np.log(speeds[3:5] / first), np.log(over), jackson)
 flow = 300e6 + 0.5e9 * 0.2 * dent.radius / radius
 hardness = struck["peak_force"] / (np.pi * dent.radius**2) / flow

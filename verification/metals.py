@@ -27,8 +27,7 @@ def _sizes(size: float) -> dict:
 
 def pulled_bar(folder: Path, steps: int, **yields) -> Outcome:
     """A cylinder of revolution, 20 mm long and 10 mm thick, pulled slowly to 1.2 times its length in
-    `steps` steps; yields: the entries of the metal. The middle of each step is at
-    pulled_stretch(history)."""
+    `steps` steps; yields: the entries of the metal. The stretch is 1.1 - 0.1 cos(pi t/T)."""
     T = 0.01
     hold = [{"where": "bottom", "fix": "normal"},
             {"where": "top", "fix": "normal", "motion": [0, f"0.1*0.02*(1-cos(pi*t/{T}))"]}]
@@ -59,7 +58,7 @@ INNER, OUTER, FRONT_AT = 0.1, 0.2, 0.14    # radii of the shell, and to which it
 def shell(folder: Path, elements: int) -> Iterator[Row]:
     """A perfectly plastic spherical shell under a pressure that rises slowly to p = 2 sigma_y
     [ln(c/a) + (1 - c^3/b^3)/3] and falls to 0 (Hill 1950): the displacement of both surfaces, and
-    of the outer one after it."""
+    of the outer one after it. Viscosity damps the vibration."""
     a, b, c, first = INNER, OUTER, FRONT_AT, 20e6
     p = 2 * first * (math.log(c / a) + (1 - (c / b) ** 3) / 3)
     T, size = 0.005, (b - a) / elements

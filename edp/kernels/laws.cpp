@@ -210,8 +210,8 @@ struct Ogden : Conserving<Ogden> {
   }
 };
 
-// What plasticity.hpp leaves of a metal, its volume: W = lambda/2 (ln J)^2, lambda the bulk modulus
-// (material.idp).
+// The volumetric energy of a metal, W = lambda/2 (ln J)^2; lambda holds the share of the bulk
+// modulus that acts at the points (material.idp). plasticity.hpp has the deviatoric stress.
 struct Metal : Conserving<Metal> {
   static Logarithm rest(const Material &m) { return {m.lambda, 0}; }
   Symmetric stress(const Material &m, const Symmetric &C) const { return rest(m).stress(C); }
@@ -221,7 +221,7 @@ struct Metal : Conserving<Metal> {
   void addModuli(const Material &m, const Symmetric &C, Moduli &D) const {
     rest(m).addModuli(C, D);
   }
-  double ellipticity(const Material &, const Symmetric &, bool) const { return 1; }   // no measure
+  double ellipticity(const Material &, const Symmetric &, bool) const { return 1; }   // not watched
 };
 
 const Law *find(const std::string &name, const std::vector<double> &numbers) {

@@ -41,15 +41,15 @@ struct Trial {
   void yield(const laws::Material &m, double alpha, double dt) {
     to = laws::returned(*m.yield, mu, mises(), alpha, dt);
   }
-  double share() const { return size > 0 ? to.stress / mises() : 1; }   // of dev e that is elastic
-  double energy() const { return mu * std::pow(share() * size, 2); }
+  double elasticShare() const { return size > 0 ? to.stress / mises() : 1; }   // of dev e
+  double energy() const { return mu * std::pow(elasticShare() * size, 2); }
   Symmetric spatial(const Vector<3> &diagonal) const {   // B diag B^T
     return tensors::symmetric(B * diagonal.asDiagonal() * B.transpose());
   }
-  Vector<3> kirchhoff() const { return 2 * mu * share() * deviator; }
+  Vector<3> kirchhoff() const { return 2 * mu * elasticShare() * deviator; }
   Symmetric stress() const { return spatial(kirchhoff().cwiseQuotient(l)); }
   Symmetric state() const {
-    return spatial((-2 * (1 - share()) * deviator).array().exp().matrix());
+    return spatial((-2 * (1 - elasticShare()) * deviator).array().exp().matrix());
   }
   void addModuli(laws::Moduli &D) const;
 };
@@ -61,8 +61,8 @@ void Trial::addModuli(laws::Moduli &D) const {
     n = size > 0 ? Vector<3>(deviator / size) : Vector<3>::Zero();
   Tensor slope, difference;                // ds_i/dl_j; of different i, j
   for (int i = 0; i < 3; i++) for (int j = 0; j < 3; j++) {
-    const double byStrain = 2 * mu * (share() * ((i == j) - 1. / 3)
-                                      + (to.slope - share()) * n[i] * n[j]);
+    const double byStrain = 2 * mu * (elasticShare() * ((i == j) - 1. / 3)
+                                      + (to.slope - elasticShare()) * n[i] * n[j]);
     slope(i, j) = byStrain / (2 * l[i] * l[j]) - (i == j ? s[i] / l[i] : 0);
   }
   for (int i = 0; i < 3; i++) for (int j = 0; j < 3; j++)
@@ -78,17 +78,17 @@ void Trial::addModuli(laws::Moduli &D) const {
   }
 }
 
-// Time in which the plastic strain of a stress of the step develops; static steps have no rates.
+// Time [s] over which the return to a stress acts; infinite in static steps, without rates.
 static double timeOf(const Step &step) {
   return step.isStatic() ? tensors::infinity
     : step.stressInstant == stepEnd ? step.dt : step.dt / 2;
 }
 // A step from C0 to C1: the elastic state at its start, the return at its end, and the energy
 // [J/m3] that it dissipates.
-struct StepOf {
+struct PlasticStep {
   Trial start, end;
   double lost;
-  StepOf(const laws::Material &m, const Step &step, const Symmetric &A, double alpha,
+  PlasticStep(const laws::Material &m, const Step &step, const Symmetric &A, double alpha,
          const Symmetric &C0, const Symmetric &C1) : start(m, A, C0), end(m, A, C1) {
     end.yield(m, alpha, step.isStatic() ? tensors::infinity : step.dt);
     lost = end.to.d * (std::max(start.mises(), m.yield->stress(alpha)) + end.to.stress) / 2;
@@ -108,15 +108,15 @@ void Plasticity::addStress(const Step &step, Deformed &e) {
     const Symmetric A0 = A(atStart, q), H = 0.5 * (e.C1[p] - e.C0[p]);
     const double before = *alpha.startAt(q);
     const bool mean = step.stressInstant == stepMean;
-    Trial there(m, A0, mean ? 0.5 * (e.C0[p] + e.C1[p]) : e.Cs[p]);
-    there.yield(m, before, timeOf(step));
-    const Symmetric S = there.stress();
+    Trial trial(m, A0, mean ? 0.5 * (e.C0[p] + e.C1[p]) : e.Cs[p]);
+    trial.yield(m, before, timeOf(step));
+    const Symmetric S = trial.stress();
     e.S[p] += S;
     const double HH = tensors::contract(H, H);
     // below it the correction is smaller than the round-off of the energies
     if (!mean || HH < 1e-18) continue;
-    const StepOf whole(m, step, A0, before, e.C0[p], e.C1[p]);
-    e.S[p] += (whole.work() - tensors::contract(S, H)) / HH * H;
+    const PlasticStep fullStep(m, step, A0, before, e.C0[p], e.C1[p]);
+    e.S[p] += (fullStep.work() - tensors::contract(S, H)) / HH * H;
   }
 }
 
@@ -131,9 +131,9 @@ void Plasticity::addModuli(const Step &step, size_t, int q, const Symmetric &C,
   const bool rest = ofTangent.empty();
   const double *own = rest ? nullptr : &ofTangent[7 * size_t(q)];
   const Symmetric A0 = rest ? tensors::inverse(C) : Symmetric(Eigen::Map<const Symmetric>(own));
-  Trial there(material(q), A0, C);
-  if (!rest) there.yield(material(q), own[6], timeOf(step));
-  there.addModuli(D);
+  Trial trial(material(q), A0, C);
+  if (!rest) trial.yield(material(q), own[6], timeOf(step));
+  trial.addModuli(D);
 }
 
 void Plasticity::addEnergy(Time time, const Deformed &e, double *W) const {
@@ -149,11 +149,11 @@ void Plasticity::advance(const Step &step, const Deformed &e) {
     if (!yields(q)) continue;
     const double before = *alpha.startAt(q);
     const Symmetric A0 = A(atStart, q);
-    const StepOf whole(material(q), step, A0, before, e.C0[p], e.C1[p]);
-    *alpha.trialAt(q) = before + whole.end.to.d;
+    const PlasticStep fullStep(material(q), step, A0, before, e.C0[p], e.C1[p]);
+    *alpha.trialAt(q) = before + fullStep.end.to.d;
     // static steps are before the start of a run
-    *lost.trialAt(q) = *lost.startAt(q) + (step.isStatic() ? 0 : whole.lost);
-    Eigen::Map<Symmetric>(inverse.trialAt(q)) = whole.end.to.d > 0 ? whole.end.state() : A0;
+    *lost.trialAt(q) = *lost.startAt(q) + (step.isStatic() ? 0 : fullStep.lost);
+    Eigen::Map<Symmetric>(inverse.trialAt(q)) = fullStep.end.to.d > 0 ? fullStep.end.state() : A0;
   }
 }
 

@@ -1,6 +1,6 @@
 // plasticity.hpp: the deviatoric stress of metals, finite-strain J2 plasticity by logarithmic
 // strain. Its state is A = Cp^-1, the inverse of the plastic part of C, with det A = 1, and the
-// equivalent plastic strain alpha. The law "metal" (laws.cpp) is the rest, of volume. Exports
+// equivalent plastic strain alpha. The volumetric stress is the law "metal" (laws.cpp). Exports
 // Plasticity.
 #pragma once
 #include "stress-terms.hpp"
@@ -9,9 +9,10 @@ namespace bodies {
 
 // With A = G G^T and the eigenvalues l and unit eigenvectors V of G^T C G, the elastic strains are
 // e = ln(l)/2, the principal Kirchhoff stresses 2 mu dev e, and S = B diag(2 mu dev e/l) B^T with
-// B = G V. The stored energy is mu |dev e|^2. The return along dev e is exact: A1 = B diag(exp(-2
-// p)) B^T with the plastic strains p (Simo 1992). In an energy-momentum step S is that of the
-// return from (C0 + C1)/2 in half the time, with a correction along C1 - C0 so that
+// B = G V. The stored energy is mu |dev e|^2. The return is along dev e, A1 = B diag(exp(-2 p)) B^T
+// with the plastic strains p, exact for proportional strain (Simo 1992). An energy-momentum step
+// takes the stress of the return from (C0 + C1)/2 in the time dt/2, plus a correction along C1 - C0
+// so that
 //   S : (C1 - C0)/2 = W1 - W0 + D,
 // D = (alpha1 - alpha0)(max(q0, sigma_y(alpha0)) + q1)/2 >= 0, q the stresses of von Mises at the
 // ends of the step (Gonzalez 2000; Noels, Stainier, Ponthot 2006). At constant C this is what W

@@ -102,7 +102,8 @@ def bounces(
     if there is no such file.
     """
     _check(mass, radius, contact_time, gravity, air)
-    sound, notes = None, []
+    sound: Sound | None = None
+    notes: list[str] = []
     if isinstance(recording, str | Path):
         path = Path(recording)
         if path.suffix.lower() == ".csv":
@@ -191,15 +192,15 @@ def _restitutions(
     usual = float(np.median(np.log(table["restitution"])))
     off = np.abs(np.log(table["restitution"]) - usual)
     # an unheard bounce makes one ratio too large and the next too small
-    for k in np.flatnonzero(off > max(EVEN, 6 * float(np.median(off)))):
-        ratio = float(table["restitution"][k])
+    for row in np.flatnonzero(off > max(EVEN, 6 * float(np.median(off)))).tolist():
+        ratio = float(table["restitution"][row])
         what = (
             "a bounce was not heard behind it"
             if math.log(ratio) > usual
             else ("a bounce was not heard before it, or a sound was taken for one")
         )
-        notes.append(f"at {table['time'][k]:.4g} s: restitution {ratio:.3g} is left out: {what}")
-        table.loc[k, ["restitution", "error"]] = math.nan
+        notes.append(f"at {table['time'][row]:.4g} s: restitution {ratio:.3g} is left out: {what}")
+        table.loc[row, ["restitution", "error"]] = math.nan
     if table["restitution"].notna().sum() == 0:
         raise BadInput("times: no two flights follow each other (accepted: at least two)")
     table.attrs["units"] = {
@@ -306,7 +307,7 @@ def _read_times(path: Path) -> Array:
         raise Unreadable(f"{path} cannot be read: {brief(str(error))}") from None
     if "time" not in table:
         raise BadInput(f"{path}: has no column time (accepted: the times of the bounces in s)")
-    times = pd.to_numeric(table["time"], errors="coerce").to_numpy(float)
+    times: Array = pd.to_numeric(table["time"], errors="coerce").to_numpy(float)
     if not np.isfinite(times).all():
         row = int(np.flatnonzero(~np.isfinite(times))[0]) + 1
         raise BadInput(f"{path}: row {row} of time is no number")

@@ -24,6 +24,8 @@ STEEL = {"young": 210e9, "nu": 0.3, "density": 7800.0}
     ({"yield_stress": 1e8, "hardening": -1}, "hardening: -1"),
     ({"yield_stress": 1e8, "voce": [1e8]}, "voce: "),
     ({"yield_stress": 1e8, "perzyna": [10, 0]}, "perzyna"),
+    ({"yield_stress": 1e8, "perzyna": [4, 1e4]}, "perzyna.2: 10000 is out of range"),
+    ({"yield_stress": 1e8, "johnson_cook": [10, 0.1]}, "johnson_cook.1: 10 is out of range"),
     ({"yield_stress": 1e8, "perzyna": [10, 2], "johnson_cook": [0.1, 1]}, "johnson_cook: beside perzyna"),
     ({"yield_stress": 1e8, "branches": [[1e8, 1e-5]]}, "branches: beside law = metal"),
     ({"yield_stress": 1e8, "loss": 0.1}, "loss: beside law = metal"),

@@ -26,6 +26,7 @@ SCENES = {
     "viscosity or relaxation needs": ({"body": [DISC | {"loss": 0.1, "loss_model": "kelvin-voigt"}]}, {"integrator": MIDDLE}),
     "nu = 0.5 (J = 1) needs": ({"body": [DISC | {"nu": 0.5}]}, {"integrator": ("energy-momentum",), "degree": (2,), "volume": ("projected", "auto"),
                                                               "body.1.law": ("neohookean", "mooney-rivlin", "ogden", "energy", "incompressible")}),
+    "law = 'metal' needs": ({"body": [DISC | {"law": "metal", "yield_stress": 1e5}]}, {"degree": (2,), "until": ("impact",)}),
     "volume = 'projected' needs": ({"volume": "projected"}, {"degree": (2,)}),
     "start = 'equilibrium' needs": ({"start": "equilibrium", "gravity": 9.81, "body": [DISC | {"velocity": [0, 0], "position": [0, 0.05]}]}, {"integrator": IMPLICIT}),
     "given_shape = 'inflated' needs": ({"body": [DISC, RING | {name: DISC[name] for name in ("law", "young", "nu", "density")}

@@ -1,4 +1,4 @@
-"""Metals: the entries of their yield stress, and what they must be (docs/explanation/materials.md).
+"""Metals: the entries of their yield stress, and their checks (docs/explanation/materials.md).
 Units are SI.
 """
 
@@ -65,7 +65,7 @@ class OfMetal(Entries):
     """
 
     yield_stress: Annotated[
-        float | None, real(0, 1e-6, 1e18, "Pa"), "metal: stress at which it yields, true stress"
+        float | None, real(0, 1e-6, 1e18, "Pa"), "metal: stress at which it yields"
     ] = None
     yield_curve: Annotated[
         list[list[float]] | None,
@@ -75,7 +75,7 @@ class OfMetal(Entries):
     hardening: Annotated[
         float | None,
         real(0, 0, 1e18, "Pa"),
-        "metal: added to its yield stress for a plastic strain of 1",
+        "metal: slope of its yield stress over plastic strain",
     ] = None
     voce: Annotated[
         list[float] | None,
@@ -85,12 +85,12 @@ class OfMetal(Entries):
     perzyna: Annotated[
         list[float] | None,
         Vector(1e-9, 1e18, 2),
-        "metal: [rate0, n] multiplies the yield stress by 1 + (rate/rate0)^(1/n), rate0 in 1/s",
+        "metal: [rate0, n] multiplies the yield stress by 1 + (rate/rate0)^(1/n), rate0 in 1/s, n to 100",
     ] = None
     johnson_cook: Annotated[
         list[float] | None,
         Vector(1e-9, 1e18, 2),
-        "metal: [C, rate0] multiplies it by 1 + C ln(rate/rate0) above rate0 in 1/s",
+        "metal: [C, rate0] multiplies the yield stress by 1 + C ln(rate/rate0) above rate0 in 1/s",
     ] = None
 
     @property
@@ -102,20 +102,29 @@ class OfMetal(Entries):
         if not curve:
             return []
         Q, b = self.voce or (0.0, 0.0)
-        rate0, n = self.perzyna or (1.0, 0.0)
+        rate0, n = self.perzyna or (1.0, 0.0)  # n = 0 and C = 0: no influence of the rate
         C, rate0 = self.johnson_cook or (0.0, rate0)
         return [self.hardening or 0.0, Q, b, n, C, rate0, *np.ravel(curve).tolist()]
 
     def refusals_of_metal(self, young: float) -> Iterator[tuple[str, str]]:
         """Yields what is wrong with the yield stress beside Young's modulus [Pa]."""
-        both = [name for name in ("yield_stress", "yield_curve") if name in self]
-        if not both:
-            yield "yield_stress", ": is missing, of law = metal (accepted: it, or yield_curve)"
-        elif len(both) == 2:
+        present = [name for name in ("yield_stress", "yield_curve") if name in self]
+        if not present:
+            yield (
+                "yield_stress",
+                ": is missing, of law = metal (accepted: yield_stress, or yield_curve)",
+            )
+        elif len(present) == 2:
             yield "yield_curve", ": beside yield_stress (accepted: one of the two)"
-        first = self.yield_numbers[7] if both else 0.0
-        if first >= young:
-            yield both[0], f": {first:g} Pa is not below young, {young:g} Pa (accepted: less)"
+        initial = self.yield_numbers[7] if present else 0.0
+        if initial >= young:
+            yield present[0], f": {initial:g} Pa is not below young, {young:g} Pa (accepted: less)"
+        for entry, at, low, high in (("perzyna", 1, 0.1, 100.0), ("johnson_cook", 0, 0.0, 1.0)):
+            if (rate := getattr(self, entry)) and not low <= rate[at] <= high:
+                yield (
+                    f"{entry}.{at + 1}",
+                    f": {rate[at]:g} is out of range (accepted: {low:g} to {high:g})",
+                )
         if "perzyna" in self and "johnson_cook" in self:
             yield "johnson_cook", ": beside perzyna (accepted: one of the two)"
 

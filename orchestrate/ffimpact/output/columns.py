@@ -124,15 +124,14 @@ HISTORY = (
     _whole("newton_iterations", "", "iterations of the step, of an explicit one its parts; in the "
         "summary of all steps"),
     _whole("min_ellipticity", "1", "smallest eigenvalue of the acoustic tensor over mu: below 0 "
-        "the answer depends on the mesh"),
+        "the answer depends on the mesh; metals are not watched and count as 1"),
     _whole("reverse_fraction", "1", "share of the normal load that slides against the direction of "
         "the first slip", needs="directed"),
     _whole("penalty_damping_work", "J/m", "energy that the damping of the penalty has taken so "
         "far", needs="penalty_damped"),
     _both("viscous_work", "J/m", "energy that the bodies' viscosity and relaxation have taken so "
         "far", needs="damped"),
-    _both("plastic_work", "J/m", "energy that plastic strain has taken so far, that of hardening "
-        "included", needs="metals"),
+    _both("plastic_work", "J/m", "plastic work since the start: heat, and energy stored by hardening", needs="metals"),
     _whole("max_plastic_strain", "1", "largest equivalent plastic strain", needs="metals"),
     _both("hydrostatic_pressure", "Pa", "pressure in the body, -tr/3 of Cauchy's stress as in the "
         "fields: its mean over the deformed volume", needs="projected"),
@@ -229,7 +228,8 @@ SUMMARY = (
     _part("kinetic_final", "J/m", "kinetic energy at the end"),
     _part("elastic_final", "J/m", "elastic energy at the end"),
     _both("vibration_energy", "J/m", "kinetic and elastic energy less translation_energy, "
-        "rotation_energy and that of the equilibrium with gases, at the end"),
+        "rotation_energy and that of the equilibrium with gases, at the end; stresses that plastic "
+        "strain leaves in a body are part of it"),
     _whole("translation_energy", "J/m", "of the centres of mass of bodies that nothing holds, at "
         "the end"),
     _whole("rotation_energy", "J/m", "of these L^2/(2 I) at the end, I of the deformed body"),

@@ -17,15 +17,15 @@ if TYPE_CHECKING:
 __all__ = ["Dent", "dent"]
 
 Array = NDArray[np.float64]
-EDGE = 0.01  # share of the depth at which a dent ends
-YIELDED = 1e-3  # share of the largest plastic strain above which a node takes no part in the fit
+EDGE = 0.01  # share of the depth at the radius of a dent
+ELASTIC = 1e-3  # share of the largest plastic strain above which a node takes no part in the fit
 
 
 @dataclass(frozen=True)
 class Dent:
-    """`depth` [m]: the largest displacement of the outline inwards, beside the rigid motion of what
-    has not yielded; `radius` [m]: the distance from the middle of the dent at which this
-    displacement has fallen to a hundredth of it.
+    """`depth` [m]: the largest displacement of the outline inwards, after the rigid motion of the
+    nodes that have not yielded is subtracted; `radius` [m]: the distance from the middle of the dent
+    at which the displacement has fallen to a hundredth of the depth.
     """
 
     depth: float
@@ -49,7 +49,9 @@ def dent(state: State, body: int, mirrored: Sequence[str]) -> Dent:
     inwards = -np.sum(_relative(rest, moved, yielded) * normals, axis=1)
     inwards[~outline] = 0.0
     depth = float(inwards.max())
-    deep = inwards > depth / 2
+    apart = np.linalg.norm(rest - rest[inwards.argmax()], axis=1)
+    shallow = outline & (inwards < depth / 2)
+    deep = (inwards > depth / 2) & (apart < 2 * apart[shallow].min(initial=np.inf))
     middle = np.average(rest[deep], axis=0, weights=inwards[deep])
     distance = np.linalg.norm(rest - middle, axis=1)[outline]
     order = np.argsort(distance)
@@ -68,10 +70,10 @@ def _relative(rest: Array, moved: Array, yielded: Array) -> Array:
     """
     from scipy.spatial.transform import Rotation  # takes long to load
 
-    firm = yielded <= YIELDED * yielded.max()
-    firm = firm if firm.any() else np.ones(len(rest), bool)
-    from_centre, now = rest - rest[firm].mean(axis=0), moved - moved[firm].mean(axis=0)
-    rotation, _ = Rotation.align_vectors(now[firm], from_centre[firm])
+    elastic = yielded <= ELASTIC * yielded.max()
+    elastic = elastic if elastic.any() else np.ones(len(rest), bool)
+    from_centre, now = rest - rest[elastic].mean(axis=0), moved - moved[elastic].mean(axis=0)
+    rotation, _ = Rotation.align_vectors(now[elastic], from_centre[elastic])
     relative: Array = rotation.inv().apply(now) - from_centre
     return relative
 

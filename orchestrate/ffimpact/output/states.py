@@ -165,6 +165,11 @@ class Fields(Sequence[State]):
             raise BadInput(f"dent: '{body}' is no body (accepted: 1 to {last.body.max()})")
         if not last.plastic_strain[last.cells[last.body == body]].any():
             raise BadInput(f"dent: body {body} has not yielded (accepted: a body that has)")
+        strain = last.plastic_strain[np.unique(last.cells[last.body == body])]
+        if np.mean(strain > 1e-3 * strain.max()) > 0.9:
+            raise BadInput(
+                f"dent: body {body} has yielded nearly everywhere (accepted: a dent in a body that is elastic elsewhere)"
+            )
         return dent(last, body, ("x",) if self.of_revolution else self.symmetric_along)
 
 

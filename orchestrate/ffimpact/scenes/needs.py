@@ -79,6 +79,14 @@ NEEDS = (
             "law": tuple(law for law in LAW_WORDS if law not in ("svk", "metal")),
         },
     ),
+    # Elements of degree 1 lock in plastic flow. Stresses that stay in a dented metal are no vibration,
+    # which the test for rest and flights without vibration would take them for.
+    Need(
+        "law = 'metal' needs",
+        True,
+        lambda body: any(material.law == "metal" for material in body.materials),
+        {"degree": (2,), "until": ("impact",)},
+    ),
     # An element of degree 1 has one volume.
     Need(
         "volume = 'projected' needs",
