@@ -231,3 +231,13 @@ def test_only_mirrored_layers_let_half_a_disc_do():
     flat = {"kind": "half-plane", "point": [0, 0], "normal": [0, 1]}
     assert copies(scene({"radius": 0.02}).ready()) == copies(scene({"where": flat}).ready()) == 2
     assert copies(scene({"where": LOW}).ready()) == copies(scene({"where": flat}, angle=10.0).ready()) == 1
+
+
+def test_a_side_on_the_plane_of_symmetry_is_no_arc():
+    """A layer so small beside the elements that one side is its whole diameter."""
+    built = made({"radius": 0.03, "young": 1e6}, {"radius": 0.015, "young": 3e6}, size=0.05, contact_mesh_size=0.05)
+    points, sides = built.mesh.points, built.mesh.sides
+    on_axis = np.abs(points[sides][:, :, 0]).max(axis=1) == 0
+    lengths = np.linalg.norm(np.diff(points[sides[on_axis]], axis=1)[:, 0], axis=1)
+    assert lengths.max() == pytest.approx(0.03)
+    assert (built.arrays["mesh.arc_of"][on_axis] == -1).all()
