@@ -30,7 +30,7 @@ def test_a_plan_foretells_the_run(tmp_path, monkeypatch, name, values):
     assert foretold.timed_steps < made["steps"] and low < 1 < high
     assert low * foretold.steps < made["steps"] < high * foretold.steps
     assert low / 2 * foretold.seconds < made["cpu_seconds"] < 2 * high * foretold.seconds
-    assert 0.75 * made["peak_memory"] < foretold.memory <= 1.01 * made["peak_memory"]
+    assert 0.75 * made["peak_memory"] < foretold.memory <= 1.05 * made["peak_memory"]
     assert re.search(rf"of at most {foretold.step:.3g} s", str(foretold))
 
 
