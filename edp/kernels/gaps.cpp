@@ -18,10 +18,10 @@ void Gaps::makeFixed() {
 
 Vector Gaps::now(const Vector &at, double t, double distance) {
   if (fixed) return move(at).head(ns()) + rest.numbers() + t * rates.numbers().head(ns());
-  if (obstacles.candidates() > 0) obstacles.start(at.data(), t, distance + reach);
+  if (obstacles.candidates() > 0) obstacles.start(at.data(), t, distance + adhesionRange);
   if (pairs) {
     const Vector x = nodal(at) + nodalPosition;
-    pairs->search(x.data(), 2 * (distance + reach));
+    pairs->search(x.data(), 2 * (distance + adhesionRange));
     pairs->start(x.data(), x.size());
   }
   return evaluate(Vector::Zero(at.size()), 0);
@@ -39,7 +39,7 @@ void Gaps::search(const Step &step, const Vector &d) {
 
 void Gaps::goOn(const Vector &at, double t, double h) {
   if (fixed) return startFixed(h);
-  if (obstacles.candidates() > 0) obstacles.start(at.data(), t, searchDistance + reach);
+  if (obstacles.candidates() > 0) obstacles.start(at.data(), t, searchDistance + adhesionRange);
   if (!pairs) return;
   const Vector x = nodal(at) + nodalPosition;
   pairs->start(x.data(), x.size());
@@ -77,13 +77,13 @@ Vector Gaps::pull(const Vector &t) const {
 
 Vector Gaps::evaluate(const Vector &d, double dt) {
   // Rows, motion and offset of the step by d in dt. Returns the penetrations at its start.
-  // With adhesion penetrations count from the gap `reach` on.
+  // With adhesion penetrations count from the gap `adhesionRange` on.
   Vector start = Vector::Constant(ns(), -tensors::infinity), end = start;
   motion = Vector::Zero(obstacles.axes * ns());
   if (pairs) pairs->gaps(nodal(d).data(), start.data(), end.data(), ofPairs);
   if (obstacles.candidates() > 0) obstacles.rows(d.data(), dt, start, end, motion, ofObstacles);
   takeRows();
-  start.array() += reach;
+  start.array() += adhesionRange;
   offset = motion.head(gapRows * ns());
   offset.head(ns()) += start;
   return start;

@@ -28,7 +28,7 @@ class Gaps {
   // Script arrays: displacements and penetrations at the start of the step; velocity of the frame
   // at the unknowns [m/s]; if fixed, q at u = 0 and time 0 [m], and motion in 1 s [m].
   Kept<double> u, q0, frameMotion, rest, rates;
-  double reach = 0;                        // gap at which adhesion begins [m]
+  double adhesionRange = 0;                // gap at which adhesion begins [m]
   double searchDistance = 0;               // largest motion of a point that the search allows [m]
   Vector motion;                           // [m] (axes ns)
   // B by rows: row r has the entries first[r] to first[r + 1] - 1.

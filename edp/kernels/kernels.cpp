@@ -299,7 +299,7 @@ static void addContactLaw() {
   });
   add("kernelAdhesion", +[](double energy, double range) {   // [J/m2], [m]
     touching.law.adhesion = energy;
-    touching.law.range = gaps.reach = range;
+    touching.law.range = gaps.adhesionRange = range;
   });
   add("kernelContactEnergy", +[](Reals q) { return touching.energy(q); });
   add("kernelFriction", +[](Reals code) {

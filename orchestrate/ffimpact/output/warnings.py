@@ -938,11 +938,11 @@ def _adhesion(e: Evidence) -> Iterator[Sentence]:
     """The cohesive zone at the edge of a contact, E* w/sigma^2 long, sigma the largest traction. On
     coarser elements points part one by one, each with a force of its own.
     """
-    w, reach = e.facts.get("adhesion", 0.0), e.facts.get("adhesion_range", 0.0)
+    w, attracted = e.facts.get("adhesion", 0.0), e.facts.get("adhesion_range", 0.0)
     soft = [body["young"] / (1 - body["nu"] ** 2) for body in e.bodies if not body["rigid"]]
     if not (w and soft):
         return
-    zone, size = min(soft) * w / (1.5 * w / reach) ** 2, e.facts["smallest_element"]
+    zone, size = min(soft) * w / (1.5 * w / attracted) ** 2, e.facts["smallest_element"]
     if size > zone / IN_ZONE:
         yield warn(
             f"adhesion: surfaces part in a zone of {rounded(zone)} m, in which elements of {rounded(size)} m "
