@@ -352,14 +352,17 @@ OTHER_MIXTURE = {"curved": {"ball-sphere": 10, "ellipsoid-bowl": 8, "ellipsoid-c
                  "incompressible": {"block-circle": 14, "disc-normal": 8, "ball-axisymmetric": 8},
                  "unlike": {"disc-slab": 16, "ball-cylinder": 14},
                  "strips": {"disc-strip": 12, "ball-plate": 10, "disc-free-strip": 8}}
-# The same of bodies with layers, and with a loss that does not depend on frequency.
+# The same of bodies with layers, with a loss that does not depend on frequency, and of metals.
 LAYER_MIXTURE = {"layered": {"layered-disc": 12, "layered-ball": 10, "layered-pad": 8},
-                 "lossy": {"lossy-disc": 12, "lossy-ball": 10, "lossy-pad": 8}}
+                 "lossy": {"lossy-disc": 12, "lossy-ball": 10, "lossy-pad": 8},
+                 "metals": {"metal-disc": 12, "metal-ball": 10, "metal-pad": 8}}
 FAMILIES = OTHER_MIXTURE | LAYER_MIXTURE
 OTHER_ACCURACIES = (0.02, 0.05, 0.1)
 FASTEST_OTHER = 0.08  # upper bound of the speed over sqrt(E/density)
 NEARLY = (0.49, 0.495, 0.499)  # Poisson's ratios
 UNLIKE = (0.0333, 0.1, 0.3, 3.0, 10.0, 30.0)  # ratios of Young's moduli
+YIELDS, HARDENINGS = (1e-3, 3e-3, 1e-2), (0.0, 0.01, 0.05)  # over Young's modulus
+SLOWER = 0.2  # speeds of metals over those of others
 LOSSES = (0.03, 0.1, 0.3, 0.6)  # loss factors that do not depend on frequency
 
 
@@ -519,9 +522,29 @@ def _lossy_pad(chance: random.Random, speed: float, c: float, material: Point) -
             "body.1.velocity": [speed * chance.choice([0.0, 0.5]), -speed]} | _friction(chance)
 
 
+def _metal(chance: random.Random, material: Point) -> Point:
+    """The entries of a metal."""
+    young = material["young"]
+    return {"law": "metal", "yield_stress": young * chance.choice(YIELDS), "hardening": young * chance.choice(HARDENINGS)}
+
+
+def _metal_disc(chance: random.Random, speed: float, c: float, material: Point) -> Point:
+    return _metal(chance, material) | {"body.1.velocity": [SLOWER * speed * chance.choice([0.0, 0.5]), -SLOWER * speed]} | _friction(chance)
+
+
+def _metal_ball(chance: random.Random, speed: float, c: float, material: Point) -> Point:
+    return _metal(chance, material) | {"body.1.velocity": -SLOWER * speed} | _friction(chance)
+
+
+def _metal_pad(chance: random.Random, speed: float, c: float, material: Point) -> Point:
+    return {f"body.2.{name}": value for name, value in _metal(chance, material).items()} | {
+        "body.1.velocity": [SLOWER * speed * chance.choice([0.0, 0.5]), -SLOWER * speed]} | _friction(chance)
+
+
 OTHER_SHAPES = {"ball-sphere": _ball_sphere, "ellipsoid-bowl": _ellipsoid_bowl, "ellipsoid-cylinder": _ellipsoid_cylinder,
                 "shell-wall": _shell, "gas-shell": _gas_shell, "ring-circle": _ring, "block-circle": _block_circle,
                 "disc-normal": _rubber, "ball-axisymmetric": _rubber, "disc-slab": _slab, "ball-cylinder": _ball_cylinder,
                 "disc-strip": _strip, "ball-plate": _plate, "disc-free-strip": _strip,
                 "layered-disc": _layered_disc, "layered-ball": _layered_ball, "layered-pad": _layered_pad,
-                "lossy-disc": _lossy_disc, "lossy-ball": _lossy_ball, "lossy-pad": _lossy_pad}
+                "lossy-disc": _lossy_disc, "lossy-ball": _lossy_ball, "lossy-pad": _lossy_pad,
+                "metal-disc": _metal_disc, "metal-ball": _metal_ball, "metal-pad": _metal_pad}

@@ -75,7 +75,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--others", action="store_true",
                         help="curved, hollow, nearly incompressible, unlike, and strips: stated errors hold there too")
     parser.add_argument("--layers", action="store_true",
-                        help="bodies with layers, and with a loss that does not depend on frequency: stated errors hold there too")
+                        help="bodies with layers, with a loss that does not depend on frequency, and metals: stated errors hold there too")
     parser.add_argument("--limit", metavar="S", type=float, default=LIMIT, help=f"longest time of a scene (default: {LIMIT:g} s); "
                         "scenes that take longer are left out")
     parser.add_argument("--minutes", metavar="M", type=float, default=math.inf, help="no scene begins later than that; the same command "
