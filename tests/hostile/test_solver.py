@@ -17,7 +17,7 @@ def test_each_goes_on_from_its_own_checkpoint(monkeypatch, tmp_path, lost):
     out, real = tmp_path / "out", freefem.Process.end
     straight = go("disc-normal", tmp_path / "straight", checkpoint_every="5", accuracy="0.003")
 
-    def killed(process, progress=None):
+    def killed(process, progress=None, every=0.0):
         while not all((tmp_path / "out.part" / name).exists() for name in ("checkpoint", "coarser/checkpoint")):
             assert process.child.poll() is None, "it ended before it could be killed"
         raise KeyboardInterrupt

@@ -126,7 +126,7 @@ def test_a_killed_run_goes_on(mine, monkeypatch):
     original, path = mine
     problem, real = scene.load(str(path)).override({"checkpoint_every": 5}), freefem.Process.end
 
-    def killed(process, progress=None):
+    def killed(process, progress=None, every=0.0):
         while not (out.with_name("killed.part") / "checkpoint").exists() and process.child.poll() is None:
             pass
         process.child.kill()

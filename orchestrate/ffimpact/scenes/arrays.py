@@ -201,14 +201,13 @@ def mesh_arrays(
         mine = np.flatnonzero(body_of == arc.body)
         corners = together.points[together.sides[mine]]
         if isinstance(together, SolidMesh):
-            on = arc.has_faces(corners)
+            on = arc.has_faces(corners) & (together.labels[mine] != DEPTH)
         else:
             on = on_circle(
                 corners, arc.centre[:2], arc.radius, WIDEST if arc.body in of_files else math.pi
             )
         # a side across a small circle has its ends on it
-        on &= ~np.isin(together.labels[mine], (AXIS, DEPTH))
-        arc_of[mine[on]] = k
+        arc_of[mine[on & (together.labels[mine] != AXIS)]] = k
     return {
         "mesh.points": together.points,
         "mesh.cells": cells,
