@@ -19,6 +19,15 @@ from .failure import (
     TooLong as TooLong,
     Unreadable as Unreadable,
 )
+from .fitting.experiments import (
+    Experiment as Experiment,
+)
+from .fitting.fit import (
+    fit as fit,
+)
+from .fitting.fitted import (
+    Fit as Fit,
+)
 from .input.bodies import (
     Body as Body,
 )

@@ -32,6 +32,7 @@ OWN_MAIN = {
     "movie": "ffimpact.report.movie",
     "dma": "ffimpact.spectrum",
     "bounces": "ffimpact.recording",
+    "fit": "ffimpact.fitting.command",
 }
 HELP = {
     "sweep": "run a scene for every combination of some entries: a table and a figure",
@@ -39,6 +40,7 @@ HELP = {
     "movie": "a film of a scene",
     "dma": "Maxwell branches from a measured spectrum: the entries of a material",
     "bounces": "restitution from the sound of a bouncing ball",
+    "fit": "a material from measured bounces, forces and tracks, with intervals",
 }
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 # Matches each accepted value that argparse lists in its message.

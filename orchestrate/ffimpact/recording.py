@@ -20,6 +20,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from . import flight
 from .failure import BadInput, NotInstalled, Unreadable, brief
 
 if TYPE_CHECKING:
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
 __all__ = ["Bounces", "Sound", "bounces", "heard", "main", "read_sound"]
 
 Array = NDArray[np.float64]
-GRAVITY, AIR, DRAG = 9.81, 1.2, 0.5  # [m/s2], density of air [kg/m3], drag coefficient of a ball
 WINDOW = 5e-4  # length of the windows of the loudness [s]
 LOWEST = 300.0  # below this frequency [Hz] a recording is not used: wind, steps, hum
 LOUD = 8.0  # a bounce over the noise, in amplitude
@@ -87,8 +87,8 @@ def bounces(
     mass: float | None = None,
     radius: float | None = None,
     contact_time: float = 0.0,
-    gravity: float = GRAVITY,
-    air: float = AIR,
+    gravity: float = flight.GRAVITY,
+    air: float = flight.AIR,
 ) -> Bounces:
     """Returns the bounces of a ball that falls and bounces by itself.
 
@@ -120,7 +120,7 @@ def bounces(
         )
     drag = 0.0
     if mass is not None and radius is not None:
-        drag = air * DRAG * math.pi * radius**2 / (2 * mass)
+        drag = flight.drag_of(mass, radius, air)
     table, more = _restitutions(times, resolution, contact_time, gravity, drag)
     return Bounces(
         times, resolution, table, (*(sound.notes if sound else ()), *notes, *more), sound
@@ -143,27 +143,6 @@ def _check(
 # ---- flights
 
 
-def _flight(duration: float, gravity: float, drag: float) -> tuple[float, float]:
-    """The speeds [m/s] at the start and at the end of a flight that begins and ends at one height;
-    drag [1/m]: deceleration over the square of the speed.
-    """
-    if drag * gravity * duration**2 < 1e-12:
-        return gravity * duration / 2, gravity * duration / 2
-    from scipy.optimize import brentq  # takes long to load
-
-    limit = math.sqrt(gravity / drag)  # terminal speed
-
-    def lands(start: float) -> float:
-        return start / math.sqrt(1 + (start / limit) ** 2)
-
-    def lasts(start: float) -> float:
-        up, down = math.atan(start / limit), math.atanh(lands(start) / limit)
-        return limit / gravity * (up + down) - duration
-
-    start = float(brentq(lasts, 0.0, gravity * duration * math.cosh(gravity * duration / limit)))
-    return start, lands(start)
-
-
 def _restitutions(
     times: Array, resolution: float, contact_time: float, gravity: float, drag: float
 ) -> tuple[pd.DataFrame, list[str]]:
@@ -174,7 +153,7 @@ def _restitutions(
         raise BadInput(
             f"contact_time: {contact_time:g} s is longer than an interval between bounces"
         )
-    speeds = [_flight(float(flight), gravity, drag) for flight in flights]
+    speeds = [flight.speeds(float(lasts), gravity, drag) for lasts in flights]
     rows, notes = [], []
     for k in range(1, len(intervals)):
         before, after = speeds[k - 1][1], speeds[k][0]

@@ -1,0 +1,1 @@
+"""Materials from measurements: experiments, their predictions by runs, and the fit."""

@@ -1,0 +1,263 @@
+"""Experiments: changes of a scene with what was measured. Units are SI.
+
+Experiment(speed=2.2, restitution=(0.895, 0.002), contact_time=(4.1e-4, 1e-5))
+Experiment(height=0.8, rebound_height={"values": [0.637, 0.640, 0.636]})
+Experiment({"body.1.mass": 0.5}, normal_force={"file": "force.csv", "error": 2.0})
+"""
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from ..failure import BadInput, Unreadable, brief, unknown
+from ..input.parameter import plain
+
+__all__ = ["LIKE_BEFORE", "Array", "Curve", "Experiment", "Number", "crossing"]
+
+Array = NDArray[np.float64]
+SAMPLES = 40  # largest number of points of a curve that a fit uses
+ONSET = 0.05  # a force begins where it first exceeds this share of its largest value,
+ABOVE_NOISE = 4.0  # or this many times its error
+UNSURE = 0.1  # share of the time between two samples by which a beginning is uncertain
+NUMBER = ("value", "values", "error", "common")  # accepted in the table of a number,
+CURVE = ("file", "table", "error", "common", "start")  # and of a curve
+STARTS = ("onset", "clock")
+LIKE_BEFORE = (
+    2.5  # speeds, heights and so on that are this many times as large as others are questioned
+)
+SHARES = ("restitution", "interval_ratio")  # numbers between 0 and 1
+
+
+@dataclass(frozen=True)
+class Number:
+    """A measured number: `value` with its standard error; `common` is the standard error that all
+    numbers of this name share, such as that of a scale.
+    """
+
+    name: str
+    value: float
+    error: float
+    common: float = 0.0
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A measured curve: column `name` of the history, `values` (n,) at `times` (n,) [s], with the
+    standard error of a value. `common` is the relative standard error of the scale of the values.
+
+    With an `onset`, a share of the largest value, time zero is where the values first exceed it, in
+    the run likewise; `shift` [s] is the standard error of this. Without, times are those of the run.
+    """
+
+    name: str
+    times: Array
+    values: Array
+    error: float
+    common: float = 0.0
+    onset: float = 0.0
+    shift: float = 0.0
+
+
+class Experiment:
+    """A change of the scene and what was measured then.
+
+    entries: entries of the scene by dotted names. speed [m/s] of the first body, or height [m] from
+    which it fell. Each measured number has the name that it has in a result, or is interval_ratio or
+    rebound_height; each curve that of a column of the history. A number is a pair (value, standard
+    error), or a table with value and error, or with the `values` of repeats, whose median and spread
+    are taken; `common` is an error that all numbers of a name share. A curve is a table with a `file`
+    (CSV with the columns t [s] and that of its name) and `error`; its `common` is relative.
+
+    Raises BadInput or Unreadable.
+    """
+
+    def __init__(
+        self,
+        entries: Mapping[str, Any] | None = None,
+        *,
+        speed: float | None = None,
+        height: float | None = None,
+        name: str = "",
+        **measured: Any,
+    ):
+        if not isinstance(entries or {}, Mapping):
+            raise BadInput(f"experiment: '{brief(entries)}' is no table of entries of the scene")
+        if speed is not None and height is not None:
+            raise BadInput("experiment: speed beside height (accepted: one of them)")
+        for word, value in (("speed", speed), ("height", height)):
+            if value is not None and not 0 < _number(f"experiment: {word}", value) < math.inf:
+                raise BadInput(f"experiment: {word}: {brief(value)} (accepted: above 0)")
+        if not measured:
+            raise BadInput(
+                "experiment: nothing is measured (accepted: restitution=(0.9, 0.01) ...)"
+            )
+        self.entries: dict[str, Any] = plain(dict(entries or {}))
+        self.speed, self.height, self.name = speed, height, name
+        self.numbers: list[Number] = []
+        self.curves: list[Curve] = []
+        self.tables: dict[str, pd.DataFrame] = {}  # of the curves, as they were measured
+        for word, what in measured.items():
+            if isinstance(what, Mapping) and {"file", "table"} & set(what):
+                where, self.tables[word] = _read(word, what)
+                self.curves.append(_curve(word, what, where, self.tables[word]))
+            else:
+                self.numbers.append(_measured(word, what))
+
+    def expecting(self, values: Array) -> Experiment:
+        """The same experiment with expected values (m,) in place of measured ones."""
+        other, n = copy.copy(self), len(self.numbers)
+        other.numbers = [replace(number, value=float(v)) for number, v in zip(self.numbers, values)]
+        other.curves = []
+        for curve in self.curves:
+            other.curves.append(replace(curve, values=values[n : n + len(curve.times)]))
+            n += len(curve.times)
+        return other
+
+    def __repr__(self) -> str:
+        words = [f"{name} = {value}" for name, value in self.entries.items()]
+        words += [f"speed = {self.speed:g} m/s"] if self.speed else []
+        words += [f"height = {self.height:g} m"] if self.height else []
+        return self.name or ", ".join(words) or "as the scene"
+
+    @property
+    def values(self) -> Array:
+        """All that was measured, (m,): the numbers, then the curves."""
+        return np.concatenate(
+            [[number.value for number in self.numbers], *(c.values for c in self.curves)]
+        )
+
+
+def _number(where: str, value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float | np.number):
+        raise BadInput(f"{where}: '{brief(value)}' is no number")
+    return float(value)
+
+
+def _measured(name: str, what: Any) -> Number:
+    """A number as it is given: a pair, or a table."""
+    if isinstance(what, tuple | list) and len(what) == 2:
+        what = {"value": what[0], "error": what[1]}
+    if not isinstance(what, Mapping):
+        raise BadInput(f"{name}: '{brief(what)}' (accepted: value and standard error, or a table)")
+    for word in what:
+        if word not in NUMBER:
+            raise BadInput(f"{name}: {unknown(word, NUMBER, ', ')}")
+    if ("value" in what) == ("values" in what):
+        raise BadInput(f"{name}: {brief(dict(what))} (accepted: value with error, or values)")
+    common = _number(f"{name}.common", what.get("common", 0.0))
+    if "values" in what:
+        value, error = _of_repeats(name, what["values"])
+        error = math.hypot(error, _number(f"{name}.error", what.get("error", 0.0)))
+    elif "error" not in what:
+        raise BadInput(f"{name}: has no error (accepted: error, the standard error of the value)")
+    else:
+        value = math.nan if what["value"] is None else _number(f"{name}.value", what["value"])
+        error = _number(f"{name}.error", what["error"])
+        if what["value"] is not None and not math.isfinite(value):
+            raise BadInput(f"{name}: {value} is no measured value (accepted: a finite number)")
+    if not 0 < error < math.inf or not 0 <= common < math.inf:
+        raise BadInput(
+            f"{name}: error {error:g}, common {common:g} (accepted: error above 0, common from 0 on)"
+        )
+    if name in SHARES and not math.isnan(value) and not 0 < value <= 1:
+        raise BadInput(f"{name}: {value:g} (accepted: above 0, up to 1)")
+    return Number(name, value, error, common)
+
+
+def _of_repeats(name: str, values: Any) -> tuple[float, float]:
+    """Median of repeats and its standard error. Repeats scatter asymmetrically, since roughness
+    makes spin of speed (Montaine and others 2011), so no mean is taken.
+    """
+    repeats = np.asarray(values, dtype=float) if np.ndim(values) == 1 else np.empty(0)
+    if len(repeats) < 3 or not np.isfinite(repeats).all():
+        raise BadInput(f"{name}: values = {brief(values)} (accepted: three finite numbers or more)")
+    median = float(np.median(repeats))
+    spread = 1.4826 * float(np.median(np.abs(repeats - median)))
+    if spread == 0:
+        spread = float(np.std(repeats, ddof=1))
+    return median, 1.2533 * spread / math.sqrt(len(repeats))
+
+
+def _curve(name: str, what: Mapping[str, Any], where: str, table: pd.DataFrame) -> Curve:
+    for word in what:
+        if word not in CURVE:
+            raise BadInput(f"{name}: {unknown(word, CURVE, ', ')}")
+    if "error" not in what:
+        raise BadInput(f"{name}: has no error (accepted: error, the standard error of a value)")
+    error, common = (_number(f"{name}.{word}", what.get(word, 0.0)) for word in ("error", "common"))
+    if not 0 < error < math.inf or not 0 <= common < 1:
+        raise BadInput(
+            f"{name}: error {error:g}, common {common:g} (accepted: error above 0, common 0 to 1)"
+        )
+    start = what.get("start", "onset" if "force" in name else "clock")
+    if start not in STARTS:
+        raise BadInput(f"{name}.start: {unknown(start, STARTS)}")
+    times, values = table["t"].to_numpy(float), table[name].to_numpy(float)
+    for column, numbers in (("t", times), (name, values)):
+        if not np.isfinite(numbers).all():
+            row = int(np.flatnonzero(~np.isfinite(numbers))[0]) + 1
+            raise BadInput(f"{where}: row {row} of {column} is no number")
+    if len(times) < 4 or (np.diff(times) <= 0).any():
+        raise BadInput(
+            f"{where}: {len(times)} times (accepted: 4 or more, each later than the one before)"
+        )
+    onset, shift = 0.0, 0.0
+    if start == "onset":
+        largest = float(values.max())
+        if not largest > 2 * ABOVE_NOISE * error:
+            raise BadInput(
+                f"{where}: {name} reaches {largest:g}, its error is {error:g} (accepted: a curve above its noise)"
+            )
+        onset = max(ONSET, ABOVE_NOISE * error / largest)
+        begins, above = (crossing(times, values, share * largest) for share in (onset, 2 * onset))
+        shift = float(
+            error * (above - begins) / (onset * largest) + UNSURE * np.median(np.diff(times))
+        )
+        times = times - begins
+    return _thinned(Curve(name, times, values, error, common, onset, shift))
+
+
+def crossing(times: Array, values: Array, level: float) -> float:
+    """The time at which values first exceed a level, between two of the times."""
+    k = int(np.argmax(values > level))
+    if k == 0:
+        return float(times[0])
+    share = (level - values[k - 1]) / (values[k] - values[k - 1])
+    return float(times[k - 1] + share * (times[k] - times[k - 1]))
+
+
+def _thinned(curve: Curve) -> Curve:
+    """A curve at SAMPLES times or fewer; before the onset nothing is used."""
+    used = curve.times >= 0
+    times, values = curve.times[used], curve.values[used]
+    if len(times) > SAMPLES:
+        even = np.linspace(times[0], times[-1], SAMPLES)
+        times, values = even, np.interp(even, times, values)
+    return Curve(curve.name, times, values, curve.error, curve.common, curve.onset, curve.shift)
+
+
+def _read(name: str, what: Mapping[str, Any]) -> tuple[str, pd.DataFrame]:
+    """The table of a curve, and how messages name it."""
+    if "table" in what:
+        where, table = name, pd.DataFrame(what["table"])
+    else:
+        path = Path(str(what["file"]))
+        where = str(path)
+        try:
+            table = pd.read_csv(path)
+        except (OSError, ValueError) as error:
+            raise Unreadable(
+                f"{path} cannot be read: {brief(str(error))} (accepted: a CSV file)"
+            ) from None
+    if missing := [column for column in ("t", name) if column not in table]:
+        raise BadInput(f"{where}: has no column {', '.join(missing)} (accepted: t [s] and {name})")
+    return where, table[["t", name]].apply(pd.to_numeric, errors="coerce")

@@ -1,0 +1,120 @@
+"""Materials from measurements: fit() seeks the values of free entries of a scene with which its runs
+agree with experiments. Units are SI.
+
+    drops = [ff.Experiment(speed=2.2, restitution=(0.895, 0.002), contact_time=(4.1e-4, 1e-5))]
+    fit = ff.fit(scene, {"body.1.young": (1e7, 1e9), "body.1.loss": (0.01, 0.5)}, drops)
+    fit.table, fit.measurements, fit.scene
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import time
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .. import flight
+from ..failure import BadInput, brief, unknown
+from ..freefem import freefem
+from ..places import RESULTS
+from ..progress import muted
+from ..scene import Scene
+from .emulator import Scales
+from .experiments import Array, Experiment
+from .fitted import Fit, confirmed, questions
+from .predictions import Runs, checked_free
+from .search import search
+
+__all__ = ["fit"]
+
+
+def fit(
+    scene: Scene | str | Path,
+    free: Mapping[str, Sequence[float]],
+    experiments: Sequence[Experiment] | Experiment,
+    entries: Mapping[str, Any] | None = None,
+    *,
+    priors: Mapping[str, Sequence[float]] | None = None,
+    robust: bool = False,
+    air: float = flight.AIR,
+    confirm: bool = True,
+    workers: int | None = None,
+    out: str | Path | None = None,
+    progress: bool | None = None,
+) -> Fit:
+    """Returns the values of the `free` entries, each between two bounds, with which the runs of a scene
+    agree with the `experiments`.
+
+    Runs at the nodes of a grid between the bounds are interpolated; the grid is narrowed around what
+    is likely. Errors of measurements, of elements and steps and of the interpolation enter the
+    likelihood. priors: for an entry its value and standard error as known beforehand. robust: large
+    deviations count linearly. air: its density [kg/m3], for the drag in rebound_height,
+    interval_ratio and height. confirm: finer runs at the end. Runs are kept in the folder `out`: an
+    interrupted fit goes on, with the same numbers. Raises the exceptions of run().
+    """
+    started = time.monotonic()
+    loaded = scene if isinstance(scene, Scene) else Scene.load(scene)
+    loaded = (loaded.ready(loaded.name) if isinstance(scene, Scene) else loaded).override(
+        dict(entries or {})
+    )
+    every = [experiments] if isinstance(experiments, Experiment) else list(experiments)
+    scales = Scales(checked_free(loaded, free))
+    _check(every, scales, priors)
+    content = json.dumps([loaded.content, scales.names], sort_keys=True, default=str)
+    folder = (
+        Path(out)
+        if out
+        else RESULTS / f"{loaded.name}-fit-{hashlib.sha256(content.encode()).hexdigest()[:8]}"
+    )
+    with muted(progress is False):
+        centre = scales.entries(np.full(len(scales.names), 0.5))
+        runs = Runs(loaded, every, folder, centre, cores=workers or freefem.CORES, air=air)
+        outcome = search(runs, scales, _priors(scales, priors), robust)
+        settings = {"free": {name: list(pair) for name, pair in scales.bounds.items()}}
+        settings |= {"priors": {name: list(pair) for name, pair in (priors or {}).items()}}
+        made = Fit(scales, runs, outcome, settings | {"robust": robust, "air": air})
+        made.notes += questions(made, every)
+        if confirm:
+            made.notes += confirmed(made)
+    made.seconds, made.runs = time.monotonic() - started, runs.made
+    return made
+
+
+def _check(experiments: list[Experiment], scales: Scales, priors: Mapping[str, Any] | None) -> None:
+    if not experiments or not all(isinstance(e, Experiment) for e in experiments):
+        raise BadInput("experiments: nothing was measured (accepted: a list of Experiment)")
+    for e in experiments:
+        for number in e.numbers:
+            if math.isnan(number.value):
+                raise BadInput(f"{number.name}: has no value (accepted: the measured value)")
+        if both := set(e.entries) & set(scales.names):
+            raise BadInput(
+                f"experiment: {both.pop()} is free (accepted: set by the experiments, or free)"
+            )
+    values = sum(len(e.values) for e in experiments)
+    if values + len(priors or {}) < len(scales.names):
+        raise BadInput(
+            f"free: {len(scales.names)} entries by {values} measured values (accepted: as many values)"
+        )
+
+
+def _priors(scales: Scales, priors: Mapping[str, Sequence[float]] | None) -> Array:
+    """Coordinate and standard error (k, 2) of what is known beforehand."""
+    table = np.column_stack([np.zeros(len(scales.names)), np.full(len(scales.names), np.inf)])
+    for name, pair in (priors or {}).items():
+        if name not in scales.names:
+            raise BadInput(f"priors: {unknown(name, scales.names, ', ')}")
+        if np.ndim(pair) != 1 or len(pair) != 2 or not pair[1] > 0:
+            raise BadInput(f"priors: {name}: '{brief(pair)}' (accepted: value and standard error)")
+        at = scales.coordinates(
+            scales.entries(np.full(len(scales.names), 0.5)) | {name: float(pair[0])}
+        )
+        k = scales.names.index(name)
+        beside = scales.values(at + 1e-4 * np.eye(len(at))[k])[k]
+        table[k] = at[k], float(pair[1]) / ((beside - float(pair[0])) / 1e-4)
+    return table

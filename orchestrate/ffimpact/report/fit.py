@@ -1,0 +1,73 @@
+"""The figure of a fit: profiles of the free entries, and what was measured beside the predictions."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from .figures import BLUE, GREY, ORANGE, styled
+
+if TYPE_CHECKING:
+    from ..fitting.fitted import Fit
+
+__all__ = ["draw"]
+
+COVERED = 3.84  # rise of chi2 at the ends of an interval of 95 %
+HIGHEST = 10.0  # drawn rise
+POINTS = 60  # measured values drawn singly
+
+
+def draw(fit: Fit) -> Figure:
+    """Draws the rise of chi2 over each entry, and how far each measured value is from its prediction,
+    in standard errors.
+    """
+    with styled():
+        count = len(fit.table)
+        figure = plt.figure(figsize=(3.2 * max(count, 2), 5.6), layout="constrained")
+        grid = figure.add_gridspec(2, count)
+        for k, name in enumerate(fit.table.index):
+            _profile(figure.add_subplot(grid[0, k]), fit, str(name))
+        _deviations(figure.add_subplot(grid[1, :]), fit)
+    return figure
+
+
+def _profile(ax: Axes, fit: Fit, name: str) -> None:
+    profile, row = fit.profiles[name], fit.table.loc[name]
+    ax.plot(profile["value"], profile["rise"], color=BLUE)
+    ax.axhline(COVERED, color=GREY, linewidth=0.8)
+    for end in ("low", "high"):
+        if np.isfinite(row[end]):
+            ax.axvline(row[end], color=ORANGE, linewidth=0.8)
+    near = profile["rise"] < HIGHEST
+    low, high = profile["value"][near].min(), profile["value"][near].max()
+    if low > 0 and high / low > 3:
+        ax.set_xscale("log")
+    ax.set(
+        ylim=(0, HIGHEST),
+        xlim=(low, high),
+        ylabel=r"rise of $\chi^2$" if name == fit.table.index[0] else "",
+    )
+    unit = "" if row["unit"] in ("-", "1") else f" in {row['unit']}"
+    ax.set_xlabel(f"{name}{unit}")
+    if row["known"] != "yes":
+        ax.set_title("not known by these data", fontsize="small")
+
+
+def _deviations(ax: Axes, fit: Fit) -> None:
+    table = fit.measurements
+    numbers = list(dict.fromkeys(table["number"]))
+    for name in numbers:
+        own = table[table["number"] == name]
+        ax.plot(
+            own.index + 1, own["off"], "o", markersize=4 if len(table) > POINTS else 6, label=name
+        )
+    ax.axhspan(-2, 2, color=GREY, alpha=0.2, linewidth=0)
+    ax.axhline(0, color=GREY, linewidth=0.8)
+    ax.set(xlabel="measured value", ylabel="measured less predicted,\nin standard errors")
+    ax.xaxis.set_major_locator(MaxNLocator(integer=True))
+    ax.legend(fontsize="small")

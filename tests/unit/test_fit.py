@@ -1,0 +1,199 @@
+"""Fits without runs: measurements as they are given, interpolation, and intervals of known problems."""
+
+
+import numpy as np
+import pytest
+
+import ffimpact as ff
+from ffimpact import flight
+from ffimpact.failure import BadInput, Unreadable
+from ffimpact.fitting.command import read
+from ffimpact.fitting.emulator import Box, Emulator, Scales
+from ffimpact.fitting.experiments import Experiment
+from ffimpact.fitting.likelihood import COVERED, Likelihood
+from tests.support.fits import FREE, NONE, Formula, found_for
+
+# ---- measurements
+
+
+def test_repeats_give_their_median_and_its_error():
+    """The median of a thousand values of a normal distribution has 1.2533 times the error of the mean."""
+    repeats = 0.9 + 0.01 * np.random.default_rng(3).standard_normal(1000)
+    number = Experiment(restitution={"values": repeats.tolist()}).numbers[0]
+    assert number.value == pytest.approx(0.9, abs=1e-3)
+    assert number.error == pytest.approx(1.2533 * 0.01 / np.sqrt(1000), rel=0.1)
+
+
+def test_a_force_begins_where_it_rises(tmp_path):
+    """A recording that begins before the contact is the same curve."""
+    times = np.linspace(0, 1e-3, 200)
+    force = 100 * np.sin(np.pi * np.clip(times - 2e-4, 0, 5e-4) / 5e-4)
+    for name, first in (("late", 0.0), ("early", 0.4)):
+        np.savetxt(tmp_path / f"{name}.csv", np.column_stack([times + first, force]), header="t,normal_force", comments="", delimiter=",")
+    late, early = (Experiment(normal_force={"file": tmp_path / f"{name}.csv", "error": 0.5}).curves[0] for name in ("late", "early"))
+    assert late.onset == 0.05 and len(late.times) == 40 and late.times[0] < 5e-6
+    assert np.interp(2.5e-4, late.times, late.values) == pytest.approx(100, rel=0.02)
+    assert np.allclose(late.times, early.times, atol=1e-9) and np.allclose(late.values, early.values, rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("what", "words"),
+    [
+        ({}, "nothing is measured"),
+        ({"restitution": 0.9}, "value and standard error"),
+        ({"restitution": (1.2, 0.1)}, "restitution: 1.2"),
+        ({"restitution": (float("nan"), 0.1)}, "restitution: nan"),
+        ({"restitution": (0.9, 0)}, "error 0"),
+        ({"restitution": {"value": 0.9}}, "has no error"),
+        ({"restitution": {"values": [0.9, 0.8]}}, "three finite numbers"),
+        ({"restitution": {"values": [0.9, 0.8, float("nan")]}}, "three finite numbers"),
+        ({"restitution": {"value": 0.9, "eror": 0.1}}, "did you mean error"),
+        ({"speed": 2, "height": 1, "restitution": (0.9, 0.1)}, "speed beside height"),
+        ({"speed": -2, "restitution": (0.9, 0.1)}, "speed: -2"),
+        ({"speed": "fast", "restitution": (0.9, 0.1)}, "speed: 'fast'"),
+        ({"normal_force": {"table": {"t": [0, 1, 2], "normal_force": [0, 1, 0]}, "error": 0.1}}, "3 times"),
+        ({"normal_force": {"table": {"t": [0, 1, 1, 2], "normal_force": [0, 1, 2, 0]}, "error": 0.1}}, "4 times"),
+        ({"normal_force": {"table": {"t": [0, 1, 2, 3], "force": [0, 1, 2, 0]}, "error": 0.1}}, "no column normal_force"),
+        ({"normal_force": {"table": {"t": [0, 1, 2, 3], "normal_force": [0, 1, "x", 0]}, "error": 0.1}}, "row 3"),
+        ({"normal_force": {"table": {"t": [0, 1, 2, 3], "normal_force": [0, 1, 2, 0]}, "error": 9}}, "above its noise"),
+        ({"normal_force": {"table": {"t": [0, 1, 2, 3], "normal_force": [0, 1, 2, 0]}}}, "has no error"),
+    ],
+)
+def test_what_is_no_measurement_is_refused_in_words(what, words):
+    with pytest.raises(BadInput, match=words):
+        Experiment(**what)
+
+
+def test_a_file_that_is_missing():
+    with pytest.raises(Unreadable, match=r"nowhere\.csv cannot be read"):
+        Experiment(normal_force={"file": "nowhere.csv", "error": 1.0})
+
+
+FIT = """scene = "two-discs"
+[free]
+"body.1.young" = [1e6, 1e8]
+[[experiment]]
+restitution = [0.9, 0.01]
+"""
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "words"),
+    [
+        ('scene = "two-discs"', "", "scene: is missing"),
+        ('scene = "two-discs"', 'scene = "nowhere"', "nowhere"),
+        ("[free]", "fre = 1\n[free]", "did you mean free"),
+        ("[[experiment]]\nrestitution = [0.9, 0.01]\n", "", "nothing was measured"),
+        ("[0.9, 0.01]", "[0.9]", "experiment.1: restitution"),
+        ("[free]", "robust = 1\n[free]", "robust: '1'"),
+        ("[free]", "air = -1\n[free]", "air: '-1'"),
+    ],
+)
+def test_files_of_fits_name_what_is_wrong(tmp_path, before, after, words):
+    path = tmp_path / "it's a fit.toml"
+    path.write_text(FIT)
+    assert len(read(path)["experiments"]) == 1
+    path.write_text(FIT.replace(before, after))
+    with pytest.raises(BadInput, match=words):
+        read(path)
+
+
+@pytest.mark.parametrize(
+    ("free", "words"),
+    [
+        ({}, "nothing is free"),
+        ({"body.1.young": 1e6}, "lowest and highest"),
+        ({"body.1.young": (1e8, 1e6)}, "the lower first"),
+        ({"body.1.young": ("a", "b")}, "two numbers"),
+        ({"body.1.youngg": (1e6, 1e8)}, "did you mean young"),
+        ({"body.1.nu": (0.3, 0.7)}, "body.1.nu: 0.7"),
+        ({"body.1.young": (1e6, 1e8), "body.1.nu": (0.1, 0.4)}, "2 entries by 1 measured"),
+    ],
+)
+def test_free_entries_that_are_refused(free, words, tmp_path):
+    with pytest.raises(BadInput, match=words):
+        ff.fit("two-discs", free, Experiment(restitution=(0.9, 0.01)), out=tmp_path / "fit")
+    assert not list(tmp_path.iterdir())
+
+
+def test_heights_and_speeds_with_drag_are_inverse():
+    """A ball that rises and falls again: dv/dt = -g -+ k v^2, integrated by parts."""
+    drag = flight.drag_of(0.0415, 0.021)
+    assert flight.speed_of_fall(flight.rise(4.0, 9.81, drag), 9.81, drag) == pytest.approx(flight.landing(4.0, 9.81, drag))
+    assert flight.speeds(flight.duration(4.0, 9.81, drag), 9.81, drag)[0] == pytest.approx(4.0)
+    assert flight.start_of(flight.landing(4.0, 9.81, drag), 9.81, drag) == pytest.approx(4.0)
+    assert flight.rise(4.0, 9.81, 0) == pytest.approx(16 / 19.62)
+
+
+# ---- interpolation
+
+
+def test_coordinates_and_values_are_inverse():
+    scales = Scales({"young": (1e6, 1e8), "nu": (0.3, 0.49)})
+    at = np.array([0.25, 0.5])
+    assert scales.entries(at) == pytest.approx({"young": 1e6 * 100**0.25, "nu": 0.395})
+    assert scales.coordinates(scales.entries(at)) == pytest.approx(at, abs=1e-6)
+
+
+@pytest.mark.parametrize("low, high", [(0.0, 1.0), (0.31, 0.33), (0.97, 1.2), (-0.1, 0.01), (0.4999, 0.5001)])
+def test_a_box_holds_its_range(low, high):
+    box = Box.around(np.array([low]), np.array([high]))
+    assert box.low[0] <= max(low, 0) + 1e-9 and box.high[0] >= min(high, 1) - 1e-9
+    assert 0 <= box.low[0] and box.high[0] <= 1 and (box.high - box.low)[0] <= max(4.1 * (min(high, 1) - max(low, 0)), 4 * 2.0**-12)
+    assert set(box.nodes()[:, 0]) <= set(box.denser().nodes()[:, 0])
+
+
+def smooth(at):
+    return np.column_stack([np.exp(np.sin(3 * at[:, 0]) + at[:, 1] ** 2), 2 + at[:, 0] * np.cos(4 * at[:, 1])])
+
+
+def test_interpolation_converges_and_knows_its_error():
+    """With half the spacing the error falls more than fourfold; its estimate is not below the error."""
+    points, errors = np.random.default_rng(1).random((200, 2)), []
+    for box in (Box.whole(2), Box.whole(2).denser()):
+        nodes = box.nodes()
+        emulator = Emulator(nodes, smooth(nodes), box, lambda answers: answers)
+        errors.append(np.sqrt(np.mean((emulator(points) - smooth(points)) ** 2, axis=0)))
+        assert (np.sqrt(np.diag(emulator.covariance)) > errors[-1]).all()
+    assert (errors[1] < errors[0] / 4).all()
+
+
+# ---- likelihood
+
+
+def test_a_linear_problem_has_its_exact_interval():
+    """Two values of one entry x: x = 0.45 +- 0.02 and 0.5 +- 0.01: the weighted mean, 1.96 errors."""
+    likelihood = Likelihood(np.array([0.45, 0.5]), np.diag([0.02**2, 0.01**2]), lambda at: np.hstack([at, at]), NONE)
+    box = Box.whole(1)
+    best, least = likelihood.best(box)
+    profile = likelihood.profile(0, best, least, box)
+    error = 1 / np.sqrt(1 / 0.02**2 + 1 / 0.01**2)
+    assert best[0] == pytest.approx(0.49, abs=1e-6) and least == pytest.approx(5.0, rel=1e-6)
+    assert (profile.high - best[0], best[0] - profile.low) == pytest.approx(2 * [np.sqrt(COVERED) * error], rel=1e-3)
+
+
+def test_what_the_data_do_not_tell_has_no_interval():
+    """A product of two entries is known, neither of them is."""
+    likelihood = Likelihood(np.array([0.25]), np.array([[1e-6]]), lambda at: at[:, :1] * at[:, 1:], np.tile(NONE, (2, 1)))
+    box = Box.whole(2)
+    best, least = likelihood.best(box)
+    profile = likelihood.profile(0, best, least, box)
+    assert least < 1e-8 and best.prod() == pytest.approx(0.25, abs=1e-3)
+    assert profile.high is None and profile.low == pytest.approx(0.25, abs=0.01)
+
+
+def test_the_search_narrows_around_the_truth():
+    formula = Formula((1, 2, 3, 4), {"E": 7e6, "l": 0.11}, np.random.default_rng(2))
+    scales, outcome = found_for(formula)
+    assert outcome.interpolation < 0.3 and (outcome.box.high - outcome.box.low < 0.3).all()
+    for k, (name, profile) in enumerate(zip(FREE, outcome.profiles)):
+        low, high = (scales.values(np.full(2, end))[k] for end in (profile.low, profile.high))
+        assert low < {"E": 7e6, "l": 0.11}[name] < high and high / low < 1.2
+
+
+def test_without_contact_times_the_modulus_is_not_known():
+    _, outcome = found_for(Formula((1, 2, 3, 4), {"E": 7e6, "l": 0.11}, np.random.default_rng(2), ("restitution",)))
+    assert outcome.profiles[0].low is None and outcome.profiles[0].high is None
+    assert outcome.profiles[1].low is not None and outcome.profiles[1].high is not None
+
+
