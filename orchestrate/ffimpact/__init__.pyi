@@ -28,6 +28,11 @@ from .fitting.fit import (
 from .fitting.fitted import (
     Fit as Fit,
 )
+from .fitting.literature import (
+    materials as materials,
+    shore as shore,
+    typical as typical,
+)
 from .input.bodies import (
     Body as Body,
 )

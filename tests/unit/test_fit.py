@@ -47,7 +47,7 @@ def test_a_force_begins_where_it_rises(tmp_path):
         ({"restitution": {"value": 0.9}}, "has no error"),
         ({"restitution": {"values": [0.9, 0.8]}}, "three finite numbers"),
         ({"restitution": {"values": [0.9, 0.8, float("nan")]}}, "three finite numbers"),
-        ({"restitution": {"value": 0.9, "eror": 0.1}}, "did you mean error"),
+        ({"restitution": {"value": 0.9, "erro": 0.1}}, "did you mean error"),
         ({"speed": 2, "height": 1, "restitution": (0.9, 0.1)}, "speed beside height"),
         ({"speed": -2, "restitution": (0.9, 0.1)}, "speed: -2"),
         ({"speed": "fast", "restitution": (0.9, 0.1)}, "speed: 'fast'"),
@@ -123,6 +123,23 @@ def test_heights_and_speeds_with_drag_are_inverse():
     assert flight.speeds(flight.duration(4.0, 9.81, drag), 9.81, drag)[0] == pytest.approx(4.0)
     assert flight.start_of(flight.landing(4.0, 9.81, drag), 9.81, drag) == pytest.approx(4.0)
     assert flight.rise(4.0, 9.81, 0) == pytest.approx(16 / 19.62)
+
+
+def test_ranges_of_materials_and_hardness():
+    """Gent (1958): 60 Shore A is 3.6 MPa; the other relation 5.9; the sources are named."""
+    table = ff.materials()
+    assert table.loc["steel", "young_low"] == 190e9 and table["sources"].notna().all()
+    for name in ("young", "nu", "density", "loss", "yield_stress"):
+        assert not (table[f"{name}_low"] > table[f"{name}_high"]).any()
+    young, error = ff.shore(60)
+    assert 0.5 * young < young - error < 3.605e6 < 5.884e6 < young + error < 1.5 * young
+    assert ff.shore(30)[1] < 0.12 * ff.shore(30)[0] and ff.shore(80, "D")[0] > 1e8
+    value, spread = ff.typical("natural rubber", "young")
+    assert value == pytest.approx((1.7e6 * 17e6) ** 0.5) and spread == pytest.approx(7.65e6)
+    for call, words in ((lambda: ff.shore(5), "20 to 95"), (lambda: ff.shore(50, "00"), "accepted: A, D"), (lambda: ff.shore("60"), "no number"),
+                        (lambda: ff.typical("rubbre", "young"), "rubber"), (lambda: ff.typical("oak", "nu"), "no nu of oak")):
+        with pytest.raises(BadInput, match=words):
+            call()
 
 
 # ---- interpolation

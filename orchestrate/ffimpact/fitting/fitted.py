@@ -306,6 +306,12 @@ def questions(made: Fit, experiments: list[Experiment]) -> list[str]:
                 notes.append(
                     f"{number.name}: {other.value:.4g} and {number.value:.4g} in two experiments that are alike contradict each other"
                 )
+    for k, (value, error) in enumerate(made.outcome.likelihood.priors):
+        if abs(made.outcome.best[k] - value) > 3 * error:
+            name = made.scales.names[k]
+            notes.append(
+                f"{name}: {made.best[name]:.4g} is far from what was known beforehand: is it another material?"
+            )
     table = made.measurements
     if (table.model_error > table.error).mean() > 0.5:
         notes.append(
