@@ -7,55 +7,15 @@
 #include "failure.hpp"
 
 extern "C" {
-void ssymv_(const char *, const int *, const float *, const float *, const int *, const float *,
-            const int *, const float *, float *, const int *);
-void dsymv_(const char *, const int *, const double *, const double *, const int *,
-            const double *, const int *, const double *, double *, const int *);
 void dgetrf_(const int *, const int *, double *, const int *, int *, int *);
 void dgetrs_(const char *, const int *, const int *, const double *, const int *, const int *,
              double *, const int *, int *);
-void dpotrf_(const char *, const int *, double *, const int *, int *);
-void dpotri_(const char *, const int *, double *, const int *, int *);
-void spotrf_(const char *, const int *, float *, const int *, int *);
-void spotri_(const char *, const int *, float *, const int *, int *);
 }
 
 namespace contact {
 
-template <class Numbers, class Real>
-bool invert(int n, Numbers &A,
-            void (*factor)(const char *, const int *, Real *, const int *, int *),
-            void (*inverse)(const char *, const int *, Real *, const int *, int *)) {
-  // Replaces the symmetric n x n matrix A by its inverse, with LAPACK's potrf and potri. Returns
-  // false if A is not positive definite.
-  int info;
-  factor("L", &n, A.data(), &n, &info);
-  if (info != 0) return false;
-  inverse("L", &n, A.data(), &n, &info);
-  for (int j = 0; j < n; j++)
-    for (int i = j + 1; i < n; i++) A[(size_t)n * i + j] = A[(size_t)n * j + i];
-  return true;
-}
-
 static double largest(const Vector &a) {
   return a.size() == 0 ? 0 : a.lpNorm<Eigen::Infinity>();
-}
-
-void multiply(const Vector &A, const Vector &x, Vector &y) {
-  const double alpha = 1, beta = 0;
-  const int n = x.size(), step = 1;
-  if (isDiagonal(A, n)) { y = A.cwiseProduct(x);  return; }
-  y.resize(n);
-  if (n > 0) dsymv_("L", &n, &alpha, A.data(), &n, x.data(), &step, &beta, y.data(), &step);
-}
-
-// The same in single precision.
-static void multiply(const Eigen::VectorXf &A, const Vector &x, Vector &y) {
-  const float alpha = 1, beta = 0;
-  const int n = x.size(), step = 1;
-  Eigen::VectorXf from = x.cast<float>(), to(n);
-  if (n > 0) ssymv_("L", &n, &alpha, A.data(), &n, from.data(), &step, &beta, to.data(), &step);
-  y = to.cast<double>();
 }
 
 void Rows::begin(int unknowns, int rowsOfBlock) {
@@ -146,13 +106,12 @@ void Rows::makePattern() {
   pattern = std::make_shared<const Pattern>(std::move(made));
 }
 
-void Newton::stiffen(const Vector &C, Vector &S) {
-  const int size = std::lround(std::sqrt((double)C.size()));
-  S.resize(0);
+void Newton::stiffen(const Blocks<double> &C, Blocks<double> &S) {
+  S = {};
   rounded = C.cast<float>();
-  if (size > mostDense && invert(size, rounded, spotrf_, spotri_)) return;
+  if ((C.isDiagonal() || C.size() > mostDense) && rounded.invert()) return;
   S = C;
-  invert(size, S, dpotrf_, dpotri_);
+  S.invert();
   rounded = S.cast<float>();
 }
 
@@ -160,40 +119,41 @@ bool Newton::fits(const Rows &B) const {
   return made && n == B.n && D.size() == B.blocks() * B.gapRows * B.gapRows;
 }
 
-void Newton::make(Rows &B, const Vector &slopes, const Vector &S) {
+void Newton::make(Rows &B, const Vector &slopes, const Blocks<double> &S) {
   D = slopes;
   n = B.n;
-  dense = n <= mostDense && !isDiagonal(S, n);
+  dense = n <= mostDense && !rounded.isDiagonal();
   made = true;
   if (dense) return factorDense(B, S);
   B.makePattern();
-  if (!numeric || pattern != B.pattern || iterations > mostIterations) factorSparse(B, S);
+  if (!numeric || pattern != B.pattern || iterations > mostIterations) factorSparse(B);
 }
 
-void Newton::solve(const Rows &B, const Vector &f, const Vector &S, double goal, Vector &y) {
+void Newton::solve(const Rows &B, const Vector &f, double goal, Vector &y) {
   const int rightSides = 1;
   int info;
-  if (!dense) return conjugate(B, f, S, goal, y);
+  if (!dense) return conjugate(B, f, goal, y);
   y = f;
   if (n > 0)
     dgetrs_("N", &n, &rightSides, LU.data(), &n, pivots.data(), y.data(), &n, &info);
 }
 
-void Newton::factorDense(const Rows &B, const Vector &S) {   // LU of S + K
+void Newton::factorDense(const Rows &B, const Blocks<double> &S) {   // LU of S + K
   int info;                                    // > 0 if singular; the solution is then nan
-  LU = S;
+  LU.resize((size_t)n * n);
+  for (int j = 0; j < n; j++) for (int i = 0; i < n; i++) LU[(size_t)n * j + i] = S.at(i, j);
   pivots.resize(n);
   B.stiffness(D, [this](int, int i, int j, double K) { LU[(size_t)n * j + i] += K; });
   if (n > 0) dgetrf_(&n, &n, LU.data(), &n, pivots.data(), &info);
 }
 
-void Newton::factorSparse(const Rows &B, const Vector &S) {   // P and its LU
+void Newton::factorSparse(const Rows &B) {   // P and its LU
   void *made = nullptr;
   pattern = B.pattern;
   const Indices &start = pattern->start, &row = pattern->row;
   P.resize(start[n]);
   for (int j = 0; j < n; j++) for (int e = start[j]; e < start[j + 1]; e++)
-    P[e] = isDiagonal(S, n) ? (row[e] == j) * S[j] : rounded[(size_t)n * j + row[e]];
+    P[e] = rounded.at(row[e], j);
   B.stiffness(D, [&](int t, int, int, double K) { P[pattern->place[t]] += K; });
   const int status = umfpack_di_numeric(start.data(), row.data(), P.data(),
                                         pattern->symbolic.get(), &made, nullptr, nullptr);
@@ -202,7 +162,7 @@ void Newton::factorSparse(const Rows &B, const Vector &S) {   // P and its LU
   numeric.reset(made, [](void *s) { umfpack_di_free_numeric(&s); });
 }
 
-void Newton::conjugate(const Rows &B, const Vector &f, const Vector &S, double goal, Vector &y) {
+void Newton::conjugate(const Rows &B, const Vector &f, double goal, Vector &y) {
   // Generalised conjugate residuals (Eisenstat, Elman, Schultz 1983); the iterates are those of
   // GMRES. Ends at a residual of norm `goal`, after 200 iterations at the latest.
   double control[UMFPACK_CONTROL];
@@ -212,14 +172,13 @@ void Newton::conjugate(const Rows &B, const Vector &f, const Vector &S, double g
   std::vector<Vector> increments, images;
   y = Vector::Zero(n);
   for (iterations = 0; iterations < 200 && residual.norm() > goal; iterations++) {
-    Vector increment(n), image;
+    Vector increment(n);
     const int status = umfpack_di_solve(UMFPACK_A, pattern->start.data(), pattern->row.data(),
                                         P.data(), increment.data(), residual.data(),
                                         numeric.get(), control, nullptr);
     check(status == UMFPACK_OK || status == UMFPACK_WARNING_singular_matrix,
           "the solution of the contact");
-    if (isDiagonal(S, n)) multiply(S, increment, image);
-    else multiply(rounded, increment, image);
+    Vector image = rounded.times(increment);
     B.times(increment, move);
     B.slope(D, move, change);
     B.transposeTimes(change, more);
@@ -236,11 +195,6 @@ void Newton::conjugate(const Rows &B, const Vector &f, const Vector &S, double g
     increments.push_back(scale * increment);
     images.push_back(scale * image);
   }
-}
-
-void Problem::comply(const Vector &compliance) {
-  C = compliance;
-  stiff = false;
 }
 
 Status Problem::solve(long mostContactMatrices, long &contactMatrices) {
@@ -279,17 +233,15 @@ Status Problem::solve(long mostContactMatrices, long &contactMatrices) {
 }
 
 void Problem::stiffen() {   // S = C^-1
-  if (stiff || C.size() == 0) return;
+  if (stiff) return;
   stiff = true;
-  if (isDiagonal(C, B.n)) S = C.cwiseInverse();
-  else newton.stiffen(C, S);
+  newton.stiffen(C, S);
 }
 
 void Problem::displace(const Vector &f, Vector &increment) const {   // increment = B C B^T f
-  Vector g, y;
+  Vector g;
   B.transposeTimes(f, g);
-  multiply(C, g, y);
-  B.times(y, increment);
+  B.times(C.times(g), increment);
 }
 
 void Problem::place() {   // x = x_w - B C B^T tau
@@ -359,19 +311,18 @@ bool Problem::correctForces() {
   // The same increments as correct(), without friction, by a Cholesky factorisation for the loaded
   // points a, D > 0: (D^-1 + G)_aa step_a = (D^-1 (t - tau) - G r)_a, G = B C B^T; r = t - tau at
   // the other points, where step = r. Returns false for a diagonal C, many points, or if it fails.
-  if (isDiagonal(C, B.n) || law.range > 0) return false;
+  if (C.isDiagonal() || law.range > 0) return false;
   Indices loaded;
   step = unbalance;
   for (int b = 0; b < B.blocks(); b++) if (slopes[b] > 0) { loaded.push_back(b);  step[b] = 0; }
   const int m = loaded.size();
   if (m > mostLoaded) return false;
   displace(step, move);
-  const Eigen::Map<const Eigen::MatrixXd> compliance(C.data(), B.n, B.n);
   Eigen::MatrixXd yielded = Eigen::MatrixXd::Zero(B.n, m), A(m, m);   // C B_a^T
   Vector right(m);
   for (int j = 0; j < m; j++)
     for (int b = loaded[j], e = B.first[b]; e < B.first[b + 1]; e++)
-      yielded.col(j) += B.value[e] * compliance.col(B.column[e]);
+      C.addColumn(B.column[e], B.value[e], &yielded(0, j));
   for (int i = 0; i < m; i++) {
     const int b = loaded[i];
     A.row(i).setZero();
@@ -394,7 +345,7 @@ void Problem::correct(double share) {
   // step = t - tau - D B y, of gap and slip move = -B C B^T step.
   Vector f, y, change;
   B.transposeTimes(unbalance, f);
-  newton.solve(B, f, S, std::max(share * f.norm(), 1e-2 * forceTolerance), y);
+  newton.solve(B, f, std::max(share * f.norm(), 1e-2 * forceTolerance), y);
   B.times(y, move);
   B.slope(newton.D, move, change);
   step = unbalance - change;

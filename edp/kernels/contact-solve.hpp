@@ -2,23 +2,17 @@
 // for the active set: the forces tau of the active candidates with
 //   tau = t(x),  x = x_w - B C B^T tau,
 // t the laws (10)-(13), x gap and tangential slip, x_w those of the trial state without contact, B
-// the gap Jacobian, C the compliance of the active unknowns [m/N]. In explicit steps C is diagonal,
-// n values. Geometric contact stiffness c T^T T is treated as further points with the row T of B
+// the gap Jacobian, C the compliance of the active unknowns [m/N], diagonal in explicit steps.
+// Geometric contact stiffness c T^T T is treated as further points with the row T of B
 // and the force c x. Exports Problem.
 #pragma once
 #include <memory>
 #include <vector>
+#include "blocks.hpp"
 #include "contact-law.hpp"
 #include "status.hpp"
 
 namespace contact {
-
-using Indices = std::vector<int>;
-using Vector = Eigen::VectorXd;
-
-inline bool isDiagonal(const Vector &A, int n) { return n > 1 && A.size() == n; }
-// y = A x with a symmetric A, full or diagonal.
-void multiply(const Vector &A, const Vector &x, Vector &y);
 
 // The gap Jacobian B on n unknowns: a block of gapRows rows for each active candidate, then a block
 // for each term of geometric contact stiffness, of which only the first row is used.
@@ -54,35 +48,35 @@ struct Rows {
 // The Newton matrix S + K on the unknowns, S = C^-1, K = B^T D B sparse, D = dt/dx, and its solver:
 // dense LU for up to mostDense unknowns, else conjugate residuals with the preconditioner P, a
 // sparse LU of S + K restricted to the pattern of K. Other entries of S are small beside K. For a
-// diagonal S, P is the matrix itself. The iterations read a full S in single precision.
+// diagonal S, P is the matrix itself. The iterations read S in single precision.
 class Newton {
  public:
   int mostDense = 200, mostIterations = 5;       // P is renewed if the last solve took more
   bool made = false;
   Vector D;                                      // of the matrix, gapRows x gapRows for each point
   void forget() { made = false;  numeric.reset(); }
-  // S = C^-1, full. For iterations it is only made in single precision, and S stays empty, if
-  // that finds C positive definite.
-  void stiffen(const Vector &C, Vector &S);
+  // S = C^-1. For iterations it is only made in single precision, and S stays empty, if that finds
+  // C positive definite.
+  void stiffen(const Blocks<double> &C, Blocks<double> &S);
   bool fits(const Rows &B) const;
 
   // The matrix for D = slopes. An older P is kept while it converges quickly.
-  void make(Rows &B, const Vector &slopes, const Vector &S);
+  void make(Rows &B, const Vector &slopes, const Blocks<double> &S);
   // Solves (S + K) y = f, iteratively to a residual of norm `goal` [N].
-  void solve(const Rows &B, const Vector &f, const Vector &S, double goal, Vector &y);
+  void solve(const Rows &B, const Vector &f, double goal, Vector &y);
 
  private:
   int n = 0, iterations = 0;                     // unknowns; iterations of the last solve
   bool dense = false;
-  Eigen::VectorXf rounded;                      // S
+  Blocks<float> rounded;                         // S
   Vector LU, P;
   Indices pivots;
   std::shared_ptr<const Rows::Pattern> pattern;  // of P
   std::shared_ptr<void> numeric;                 // UMFPACK's LU of P
 
-  void factorDense(const Rows &B, const Vector &S);
-  void factorSparse(const Rows &B, const Vector &S);
-  void conjugate(const Rows &B, const Vector &f, const Vector &S, double goal, Vector &y);
+  void factorDense(const Rows &B, const Blocks<double> &S);
+  void factorSparse(const Rows &B);
+  void conjugate(const Rows &B, const Vector &f, double goal, Vector &y);
 };
 
 // The contact problem on the active set, solved in every Newton step. With D = dt/dx its Newton
@@ -102,7 +96,8 @@ class Problem {
   int matrices = 0, lineSearchFrom = 20;           // matrices of this solve; before the line search
   int mostLoaded = 400;                          // points that correctForces() accepts
 
-  void comply(const Vector &compliance);   // C: n x n values, or n if C is diagonal
+  Blocks<double> C;                              // of the unknowns of B
+  void comply(Blocks<double> compliance) { C = std::move(compliance);  stiff = false; }
 
   // Newton's method for tau. With friction it uses the linearised law (linearise()) and keeps the
   // matrix near convergence and for the start of the next solve; after `lineSearchFrom` matrices,
@@ -113,7 +108,8 @@ class Problem {
  private:
   bool stiff = false;                            // S is that of the present C
   // slopes: D; unbalance: t - tau; step, move: Newton increments of tau and x; sigma: linearise()
-  Vector C, S, x, t, slopes, unbalance, step, move, sigma;
+  Blocks<double> S;
+  Vector x, t, slopes, unbalance, step, move, sigma;
   void stiffen();
   void displace(const Vector &f, Vector &increment) const;
   void place();

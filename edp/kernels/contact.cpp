@@ -80,16 +80,15 @@ void Contact::clearActiveSet() {
 }
 
 void Contact::reset() {
-  computed = 0;
-  if (gaps.fixed || diagonal.size() > 0) {
-    index.assign(ndof, -1);
-    unknowns.clear();
-  }
-  if (diagonal.size() == 0) {
-    if (gaps.fixed && !candidates.empty()) takeUnknowns();
-    orderedLast = unknowns;
-  }
+  if (diagonal.size() > 0) unknowns.clear();
+  orderedLast = unknowns;
+  forgetCompliance();
   clearActiveSet();
+}
+
+void Contact::forgetCompliance() {
+  problem.comply({});
+  index.assign(ndof, -1);
 }
 
 void Contact::beginStep() {
@@ -98,6 +97,7 @@ void Contact::beginStep() {
   statusChanges.assign(ns(), 0);
   contactMatrices = 0;
   solvedSet = -1;
+  clearActiveSet();
 }
 
 void Contact::update(const Vector &q, double distance) {
@@ -112,7 +112,6 @@ void Contact::update(const Vector &q, double distance) {
     candidates.push_back(int(s));
   }
   takeUnknowns();
-  if (computed != unknowns.size()) extendCompliance();
   fillRows();
 }
 
@@ -135,9 +134,7 @@ Vector Contact::onUnknowns(const Vector &values) const {
 }
 
 Vector Contact::comply(const Vector &f) const {
-  Vector u;
-  multiply(C, f, u);
-  return u;
+  return problem.C.times(f);
 }
 
 Status Contact::solve(const Vector &freeGapSlip, const Vector &freeDisplacement,
@@ -195,17 +192,12 @@ void Contact::remember(const Vector &tau) {
 void Contact::archive(Archive &archive) {
   gaps.obstacles.archive(archive);
   archive(sticksStart);
-  archive(candidates);  archive(unknowns);  archive(orderedLast);  archive(lastForces);
+  archive(unknowns);  archive(orderedLast);  archive(lastForces);
 }
 
 void Contact::restore() {
-  active.assign(ns(), 0);
-  for (int s : candidates) active[s] = 1;
-  index.assign(ndof, -1);
-  for (size_t j = 0; j < unknowns.size(); j++) index[unknowns[j]] = int(j);
-  computed = 0;
-  extendCompliance();
-  if (gaps.fixed && !candidates.empty()) fillRows();
+  forgetCompliance();
+  if (!unknowns.empty()) renewCompliance();
 }
 
 Candidate Contact::point(long s) const {
@@ -213,34 +205,61 @@ Candidate Contact::point(long s) const {
           script.sticks[s] == 1, script.weight[s], law.adhesion * script.area[s]};
 }
 
-void Contact::takeUnknowns() {
-  // Adds the unknowns on which the active rows and the geometric terms act.
-  if (index.size() != size_t(ndof)) index.assign(ndof, -1);
+Indices Contact::needed() const {
+  // The unknowns on which the active rows and the geometric terms act.
+  Indices all;
+  std::vector<char> taken(ndof, 0);
   const auto take = [&](int j, double v) {
-    if (v == 0 || index[j] >= 0) return;
-    index[j] = int(unknowns.size());
-    unknowns.push_back(j);
+    if (v == 0 || taken[j]) return;
+    taken[j] = 1;
+    all.push_back(j);
   };
   for (int s : candidates) for (long r = s; r < gapRows() * ns(); r += ns())
     for (int e = gaps.first[r]; e < gaps.first[r + 1]; e++)
       take(gaps.column[e], free[gaps.column[e]] * gaps.value[e]);
   for (size_t e = 0; e < geometric.unknown.size(); e++)
     take(geometric.unknown[e], geometric.value[e]);
+  return all;
 }
 
-void Contact::extendCompliance() {
-  // Adds the rows and columns of new unknowns to C.
-  const size_t n = unknowns.size(), before = computed;
-  if (diagonal.size() > 0) C = diagonal(unknowns);
-  else {
-    const Vector old = C;
-    C.resize(n * n);
-    for (size_t j = 0; j < before; j++)
-      C.segment(j * n, before) = old.segment(j * before, before);
-    if (n > 0) factor.compliance(unknowns, before, C.data());
+void Contact::takeUnknowns() {
+  // Adds the unknowns that the active set needs. Those of earlier sets are forgotten, with their
+  // compliance, when they outnumber the needed ones.
+  const Indices all = needed(), before = unknowns;
+  const bool forgets = before.size() > 2 * all.size();
+  std::vector<char> missing(ndof, 0);
+  for (int j : all) missing[j] = 1;
+  unknowns.clear();
+  for (int j : before) if (!forgets || missing[j]) { unknowns.push_back(j);  missing[j] = 0; }
+  for (int j : all) if (missing[j]) unknowns.push_back(j);
+  mostUnknowns = std::max(mostUnknowns, unknowns.size());
+  if (unknowns != before || problem.C.size() == 0) renewCompliance();
+}
+
+void Contact::renewCompliance() {
+  // C of the unknowns. Numbers of those that C has already are kept; they come first in each block.
+  Blocks<double> next(diagonal.size() > 0 ? Blocks<double>(Vector(diagonal(unknowns)))
+                      : Blocks<double>(partsOf(unknowns)));
+  for (int b = 0; b < next.count() && diagonal.size() == 0; b++) {
+    const size_t m = next.sizeOf(b);
+    double *numbers = next.numbersOf(b);
+    Indices own, known;
+    for (size_t i = 0; i < m; i++) own.push_back(unknowns[next.membersOf(b)[i]]);
+    for (int j : own) if (index[j] >= 0) known.push_back(index[j]);
+    for (size_t j = 0; j < known.size(); j++)
+      for (size_t i = 0; i < known.size(); i++)
+        numbers[j * m + i] = problem.C.at(known[i], known[j]);
+    factor.compliance(own, known.size(), numbers);
   }
-  computed = n;
-  problem.comply(C);
+  problem.comply(std::move(next));
+  index.assign(ndof, -1);
+  for (size_t j = 0; j < unknowns.size(); j++) index[unknowns[j]] = int(j);
+}
+
+Indices Contact::partsOf(const Indices &some) const {
+  Indices parts;
+  for (int j : some) parts.push_back(factor.partOf(j));
+  return parts;
 }
 
 void Contact::fillRows() {

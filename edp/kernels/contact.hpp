@@ -28,7 +28,8 @@ class Contact : public Term {
   Law &law = problem.law;
   Vector diagonal;                               // A^-1 of explicit steps, diagonal; else empty
   Indices candidates;                            // of the active set
-  Indices unknowns;                              // of the active set; if B changes, of all so far
+  Indices unknowns;                              // of the active set, and some of earlier sets
+  size_t mostUnknowns = 0;                       // the largest number of them
   Indices orderedLast;                           // unknowns that A orders last
   Vector lastForces;                             // candidateForces of the last solve
   std::vector<long> statusChanges;               // (ns) between stick and slip in the step
@@ -60,10 +61,9 @@ class Contact : public Term {
   double dampingWork() const;
   double obstacleWork() const;   // of the moving obstacles on the bodies in the step [J/m; J]
 
-  // Removes all candidates from the active set. C remains.
+  // Removes all candidates from the active set. Its unknowns and C remain.
   void clearActiveSet();
-  // Empties the active set and C, for a new A. orderedLast becomes the unknowns of the active
-  // candidates or, if B changes, all that were in an active set.
+  // Empties the active set and C, for a new A, and sets orderedLast.
   void reset();
   void beginStep();
   // Adds the candidates with q > -distance [m] to the active set; renews its rows and C.
@@ -87,8 +87,7 @@ class Contact : public Term {
   void startFrom(const Vector &motion);   // statuses of the next step under this motion
   void remember(const Vector &tau);   // `lastForces` of the active rows
 
-  // The active set from its candidates and unknowns.
-  void restore();
+  void restore();   // C of an archived state
 
  private:
   Factor &factor;
@@ -98,14 +97,15 @@ class Contact : public Term {
   std::vector<long> sticksStart;                 // (ns) statuses at the start of the step
   bool rowsChanged = true;                       // since the active rows were filled
   std::vector<char> active;                      // (ns) 1: in the active set
-  Indices index;                                 // (ndof) position in `unknowns`, or -1
-  size_t computed = 0;                           // number of unknowns in C
+  Indices index;                                 // (ndof) position in `unknowns` and C, or -1
   long setsMade = 0, solvedSet = -1;             // active sets so far; the last one solved
-  Vector C;                                      // full, or the diagonal
 
   Candidate point(long s) const;
+  Indices needed() const;
   void takeUnknowns();
-  void extendCompliance();
+  void forgetCompliance();
+  void renewCompliance();
+  Indices partsOf(const Indices &some) const;
   void fillRows();
 };
 

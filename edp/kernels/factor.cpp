@@ -143,6 +143,7 @@ void Factor::pattern(const bodies::Elements &B) {
   const std::vector<Entry> entries = entriesOf(B);
   storeColumns(entries);
   storeNeighbours(entries);
+  findParts();
   if (L) cholmod_free_factor(&L, &common);
   cholmod_factor *analysis = cholmod_analyze(&A, &common);   // AMD, or METIS if AMD is poor
   check(analysis, "the order of the matrix");
@@ -157,9 +158,8 @@ void Factor::numbers(const bodies::Elements &B) {
 }
 
 bool Factor::factorise(const std::vector<int> &w) {
-  if (!L || w != last) order(w);
-  inverse.clear();
-  tail.assign(last.size() * last.size(), 0.);
+  order(w);
+  setTails();
   if (!L->is_super) {
     cholmod_factorize(&A, L, &common);
     check(common.status == CHOLMOD_OK || common.status == CHOLMOD_NOT_POSDEF,
@@ -172,7 +172,13 @@ bool Factor::factorise(const std::vector<int> &w) {
     if (single) std::vector<double>().swap(doubles);
     else if (!makeBlocks<double>()) return false;
   }
-  for (size_t j = 0; j < last.size(); j++) if (!(tail[j * last.size() + j] > 0)) return false;
+  return isPositive();
+}
+
+bool Factor::isPositive() const {          // whether S is
+  for (const Tail &tail : tails)
+    for (size_t j = 0; j < size_t(tail.size); j++)
+      if (!(tail.L[j * tail.size + j] > 0)) return false;
   return true;
 }
 
@@ -203,29 +209,40 @@ void Factor::respond(const std::vector<int> &u, const double *b, double *x) {
 }
 
 void Factor::compliance(const std::vector<int> &u, size_t computed, double *C) {
-  const int m = int(last.size());
-  const size_t k = u.size();
-  int info = 0;
-  std::vector<int> at(n, -1);
-  for (int j = 0; j < m; j++) at[last[j]] = j;
-  size_t inside = 0;
-  while (inside < k && at[u[inside]] >= 0) inside++;
-  if (inverse.empty() && inside > computed) {
-    inverse = tail;                      // dpotri turns the lower triangle of L into that of S^-1
-    dpotri_("L", &m, inverse.data(), &m, &info);
+  const size_t k = u.size(), first = n - last.size();
+  std::vector<int> wanted;                 // columns to be solved for
+  bool inside = true;                      // all unknowns so far are in w
+  for (size_t j = 0; j < k; j++) {
+    inside = inside && size_t(place[u[j]]) >= first;
+    if (j >= computed && !inside) wanted.push_back(int(j));
   }
-  for (size_t j = computed; j < inside; j++)
-    for (size_t i = 0; i <= j; i++)
-      C[j * k + i] = C[i * k + j] =
-        inverse[size_t(std::min(at[u[i]], at[u[j]])) * m + std::max(at[u[i]], at[u[j]])];
   if (L->is_super) mark(u);
-  for (size_t j = std::max(computed, inside); j < k; j += lanes) {
-    const size_t end = std::min(j + lanes, k);
-    columns(u, j, end);
-    for (size_t b = j; b < end; b++)
-      for (size_t i = 0; i <= b; i++)
-        C[b * k + i] = C[i * k + b] = increments[i * lanes + b - j];
+  for (size_t w = 0; w < wanted.size(); w += lanes) {
+    const std::vector<int> some(wanted.begin() + w,
+                                wanted.begin() + std::min(w + lanes, wanted.size()));
+    columns(u, some);
+    for (size_t c = 0; c < some.size(); c++) for (int j = some[c], i = 0; i <= j; i++)
+      C[j * k + i] = C[i * k + j] = increments[i * lanes + c];
   }
+  for (size_t j = computed; j < k; j++) if (size_t(place[u[j]]) >= first) {
+    Tail &tail = tails[tailOf[place[u[j]] - first]];
+    const std::vector<double> &inverse = inverseOf(tail);
+    const size_t begin = first + tail.first, at = place[u[j]] - begin;
+    for (size_t i = 0; i <= j; i++) if (size_t(place[u[i]]) >= first) {
+      const size_t other = place[u[i]] - begin;
+      C[j * k + i] = C[i * k + j] =
+        inverse[std::min(at, other) * tail.size + std::max(at, other)];
+    }
+  }
+}
+
+const std::vector<double> &Factor::inverseOf(Tail &tail) {
+  if (tail.inverse.empty()) {
+    int info = 0;
+    tail.inverse = tail.L;                 // dpotri turns the lower triangle of L into that of S^-1
+    dpotri_("L", &tail.size, tail.inverse.data(), &tail.size, &info);
+  }
+  return tail.inverse;
 }
 
 std::vector<Factor::Triplet> Factor::entries() const {
@@ -290,14 +307,37 @@ void Factor::storeNeighbours(const std::vector<Entry> &entries) {
   }
 }
 
+void Factor::findParts() {
+  // Numbers the connected parts of A.
+  int parts = 0;
+  std::vector<int> waiting;
+  part.assign(n, -1);
+  for (int j = 0; j < n; j++) if (part[j] < 0) {
+    waiting = {j};
+    part[j] = parts++;
+    while (!waiting.empty()) {
+      const int k = waiting.back();
+      waiting.pop_back();
+      for (int e = firstOf[k]; e < firstOf[k + 1]; e++) if (part[beside[e].unknown] < 0) {
+        part[beside[e].unknown] = part[j];
+        waiting.push_back(beside[e].unknown);
+      }
+    }
+  }
+}
+
 void Factor::order(const std::vector<int> &w) {
-  // Sets the order of the unknowns, CHOLMOD's with w at the end, and the pattern of L.
+  // Sets the order of the unknowns, CHOLMOD's with w at the end, by parts, and the pattern of L.
+  std::vector<int> byParts = w;
+  std::stable_sort(byParts.begin(), byParts.end(),
+                   [this](int i, int j) { return part[i] < part[j]; });
+  if (L && byParts == last) return;
   std::vector<char> isLast(n, 0);
   std::vector<int> permutation;
-  last = w;
+  last = byParts;
   for (int j : w) isLast[j] = 1;
   for (int j : ordered) if (!isLast[j]) permutation.push_back(j);
-  permutation.insert(permutation.end(), w.begin(), w.end());
+  permutation.insert(permutation.end(), last.begin(), last.end());
   if (L) cholmod_free_factor(&L, &common);
   common.nmethods = 1;
   common.method[0].ordering = CHOLMOD_GIVEN;
@@ -309,6 +349,17 @@ void Factor::order(const std::vector<int> &w) {
   blockOf.resize(n);
   for (int s = 0; L->is_super && s < int(L->nsuper); s++)
     std::fill_n(&blockOf[block<double>(s).first], block<double>(s).width, s);
+}
+
+void Factor::setTails() {                  // empty ones, for the order of the unknowns
+  tails.clear();
+  tailOf.clear();
+  for (size_t j = 0; j < last.size(); j++) {
+    if (j == 0 || part[last[j]] != part[last[j - 1]]) tails.push_back({int(j), 0, {}, {}});
+    tails.back().size++;
+    tailOf.push_back(int(tails.size()) - 1);
+  }
+  for (Tail &tail : tails) tail.L.assign(size_t(tail.size) * tail.size, 0.);
 }
 
 template<class Number> inline Factor::Block<Number> Factor::block(int s) {
@@ -386,20 +437,20 @@ template<class Number> inline int Factor::subtract(const Block<Number> &D, int f
   return to;
 }
 
-void Factor::columns(const std::vector<int> &u, size_t from, size_t to) {
-  // increments[i lanes + b - from] = (A^-1)_(u_i, u_b), b = from ... to - 1 (at most `lanes`).
+void Factor::columns(const std::vector<int> &u, const std::vector<int> &wanted) {
+  // increments[i lanes + c] = (A^-1)_(u_i, u_b), b = wanted[c], of at most `lanes` columns.
   increments.assign(u.size() * lanes, 0.);
   if (!L->is_super) {
-    for (size_t b = from; b < to; b++) {
+    for (size_t c = 0; c < wanted.size(); c++) {
       const double unit = 1;
       z.resize(n);
-      respond({u[b]}, &unit, z.data());
-      for (size_t i = 0; i < u.size(); i++) increments[i * lanes + b - from] = z[u[i]];
+      respond({u[wanted[c]]}, &unit, z.data());
+      for (size_t i = 0; i < u.size(); i++) increments[i * lanes + c] = z[u[i]];
     }
     return;
   }
   y.assign(n * lanes, 0.);
-  for (size_t b = from; b < to; b++) y[place[u[b]] * lanes + b - from] = 1;
+  for (size_t c = 0; c < wanted.size(); c++) y[place[u[wanted[c]]] * lanes + c] = 1;
   if (single) substitute<float, Doubles>(y, &marked);
   else substitute<double, Doubles>(y, &marked);
   for (size_t i = 0; i < u.size(); i++)
@@ -471,28 +522,35 @@ template<class Number, class Value> inline void Factor::backward(const Block<Num
   std::copy(z, z + B.width, y + B.first);
 }
 
+void Factor::putTail(int row, int column, double value) {
+  // Entry of L_ww at positions in `last`; between parts it is 0, also where a block has it.
+  if (tailOf[row] != tailOf[column]) return;
+  Tail &tail = tails[tailOf[column]];
+  tail.L[size_t(column - tail.first) * tail.size + row - tail.first] = value;
+}
+
 template<class Number> void Factor::takeBlocks() {
-  // Copies L_ww into `tail` from the blocks of L.
-  const int m = int(last.size()), first = n - m;
+  // Copies L_ww into the tails from the blocks of L.
+  const int first = n - int(last.size());
   for (int s = int(L->nsuper) - 1; s >= 0; s--) {
     const Block<Number> B = block<Number>(s);
     if (B.first + B.width <= first) break;
     for (int j = std::max(0, first - B.first); j < B.width; j++)
       for (int k = j; k < B.height; k++)
-        tail[size_t(B.first + j - first) * m + B.rows[k] - first] =
-          B.value[size_t(j) * B.height + k];
+        putTail(B.rows[k] - first, B.first + j - first, B.value[size_t(j) * B.height + k]);
   }
 }
 
 void Factor::takeColumns() {
-  // Copies L_ww into `tail` from CHOLMOD's columns. Those of L D L^T, with D on the diagonal, are
-  // scaled by sqrt(D), which is nan if D < 0.
-  const int m = int(last.size()), first = n - m, *p = (int *)L->p, *count = (int *)L->nz,
+  // Copies L_ww into the tails from CHOLMOD's columns. Those of L D L^T, with D on the diagonal,
+  // are scaled by sqrt(D), which is nan if D < 0.
+  const int first = n - int(last.size()), *p = (int *)L->p, *count = (int *)L->nz,
     *rows = (int *)L->i;
   const double *x = (double *)L->x;
   for (int j = first; j < n; j++) {
-    double scale = L->is_ll ? 1 : std::sqrt(x[p[j]]), *column = &tail[size_t(j - first) * m];
-    for (int k = p[j]; k < p[j] + count[j]; k++) column[rows[k] - first] = x[k] * scale;
-    if (!L->is_ll) column[j - first] = scale;
+    const double scale = L->is_ll ? 1 : std::sqrt(x[p[j]]);
+    for (int k = p[j]; k < p[j] + count[j]; k++)
+      putTail(rows[k] - first, j - first, x[k] * scale);
+    if (!L->is_ll) putTail(j - first, j - first, scale);
   }
 }

@@ -39,9 +39,12 @@ public:
   // Solves A x = f, where f has the entries b at the unknowns u and is zero elsewhere.
   void respond(const std::vector<int> &u, const double *b, double *x);
 
-  // C = (A^-1)_uu by columns; the first `computed` rows and columns are already set. The leading
-  // unknowns of u that are all in w take S^-1; the others need solutions with A.
+  // C = (A^-1)_uu by columns, of unknowns u of one part; the first `computed` rows and columns are
+  // already set. Pairs of unknowns in w take S^-1; the others need solutions with A.
   void compliance(const std::vector<int> &u, size_t computed, double *C);
+
+  // Part of A of an unknown: A couples only unknowns of the same part, mostly a body.
+  int partOf(int j) const { return part[j]; }
 
   struct Triplet { int row, column;  double value; };
   // The entries of both triangles of A.
@@ -61,11 +64,15 @@ private:
   // blocks of Elements; beside: entries of both triangles, those of unknown j from firstOf[j] on
   std::vector<int> column, row, firstOf;
   std::vector<Beside> beside;
-  // CHOLMOD's order; w; position of an unknown in L; block of columns of a position
-  std::vector<int> ordered, last, place, blockOf;
+  // CHOLMOD's order; w by parts; position of an unknown in L; block of columns of a position; part
+  std::vector<int> ordered, last, place, blockOf, part;
   std::vector<size_t> from;
-  // tail: lower triangle of L_ww by columns; inverse: that of S^-1, empty until it is needed
-  std::vector<double> value, tail, inverse;
+  // Of w in one part, which begin at `first` in `last`: lower triangle of L_ww by columns; that of
+  // S^-1, empty until it is needed.
+  struct Tail { int first, size;  std::vector<double> L, inverse; };
+  std::vector<Tail> tails;
+  std::vector<int> tailOf;                 // (unknowns of `last`) its tail
+  std::vector<double> value;
   std::vector<double> doubles, y, z, right, increments;
   std::vector<float> singles;              // L by blocks, in `doubles` or `singles`
   std::vector<char> marked;                // (blocks) needed for the solutions of columns()
@@ -75,7 +82,10 @@ private:
   static std::vector<Entry> entriesOf(const bodies::Elements &B);
   void storeColumns(const std::vector<Entry> &entries);
   void storeNeighbours(const std::vector<Entry> &entries);
+  void findParts();
   void order(const std::vector<int> &w);
+  void setTails();
+  bool isPositive() const;
 
   // Consecutive columns of L with the same rows (supernode), stored by columns. The first `width`
   // of the `height` rows are those of the diagonal block.
@@ -91,7 +101,8 @@ private:
   template<class Number> int subtract(const Block<Number> &D, int from, const std::vector<int> &at,
                                       std::vector<Number> &update, const Block<Number> &B);
 
-  void columns(const std::vector<int> &u, size_t from, size_t to);
+  const std::vector<double> &inverseOf(Tail &tail);
+  void columns(const std::vector<int> &u, const std::vector<int> &wanted);
   void mark(const std::vector<int> &u);
 
   template<class Number, class Value> void substitute(std::vector<double> &y,
@@ -99,6 +110,7 @@ private:
   template<class Value> Value *heights(int height);
   template<class Number, class Value> void forward(const Block<Number> &B, Value *y);
   template<class Number, class Value> void backward(const Block<Number> &B, Value *y);
+  void putTail(int row, int column, double value);
   template<class Number> void takeBlocks();
   void takeColumns();
 };

@@ -386,6 +386,8 @@ static void addStep() {
     return long(substep.take(Kept<double>{&increment}.numbers(),
                              Kept<double>{&halfStepVelocity}.numbers(), h));
   });
+  // the largest number of unknowns in the contact problem of an implicit step
+  add("kernelContactUnknowns", +[]() { return long(touching.mostUnknowns); });
   add("kernelDampingWork", +[]() { return touching.dampingWork(); });
 }
 

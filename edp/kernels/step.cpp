@@ -74,7 +74,6 @@ void ImplicitStep::begin(const StepParameters &parameters) {
   motion = parameters;
   motion.carries = projected();
   contact.beginStep();
-  if (!contact.gaps.fixed) contact.clearActiveSet();
   d = script.d.numbers();
   script.seconds.numbers().setZero();
   script.counts.numbers().setZero();
