@@ -133,7 +133,7 @@ def test_ranges_of_materials_and_hardness():
         assert not (table[f"{name}_low"] > table[f"{name}_high"]).any()
     young, error = ff.shore(60)
     assert 0.5 * young < young - error < 3.605e6 < 5.884e6 < young + error < 1.5 * young
-    assert ff.shore(30)[1] < 0.12 * ff.shore(30)[0] and ff.shore(80, "D")[0] > 1e8
+    assert ff.shore(30)[1] == pytest.approx(0.14 * ff.shore(30)[0], rel=0.05) and ff.shore(80, "D")[0] > 1e8
     value, spread = ff.typical("natural rubber", "young")
     assert value == pytest.approx((1.7e6 * 17e6) ** 0.5) and spread == pytest.approx(7.65e6)
     for call, words in ((lambda: ff.shore(5), "20 to 95"), (lambda: ff.shore(50, "00"), "accepted: A, D"), (lambda: ff.shore("60"), "no number"),
