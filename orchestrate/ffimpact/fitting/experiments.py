@@ -31,6 +31,7 @@ UNSURE = 0.1  # share of the time between two samples by which a beginning is un
 NUMBER = ("value", "values", "error", "common")  # accepted in the table of a number,
 CURVE = ("file", "table", "error", "common", "start")  # and of a curve
 STARTS = ("onset", "clock")
+PULSES = ("normal_force", "normal_load")  # curves of one impact, which begin with it
 LIKE_BEFORE = (
     2.5  # speeds, heights and so on that are this many times as large as others are questioned
 )
@@ -198,7 +199,7 @@ def _curve(name: str, what: Mapping[str, Any], where: str, table: pd.DataFrame) 
         raise BadInput(
             f"{name}: error {error:g}, common {common:g} (accepted: error above 0, common 0 to 1)"
         )
-    start = what.get("start", "onset" if "force" in name else "clock")
+    start = what.get("start", "onset" if name.startswith(PULSES) else "clock")
     if start not in STARTS:
         raise BadInput(f"{name}.start: {unknown(start, STARTS)}")
     times, values = table["t"].to_numpy(float), table[name].to_numpy(float)

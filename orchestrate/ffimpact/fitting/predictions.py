@@ -158,6 +158,8 @@ class Runs:
         velocity = self.scene.content["body"][0].get("velocity")
         if velocity is None:
             return {"body.1.speed": speed}
+        if isinstance(velocity, int | float):  # along the axis
+            return {"body.1.velocity": math.copysign(speed, velocity)}
         size = math.hypot(*velocity)
         if size == 0:
             raise BadInput(

@@ -19,6 +19,7 @@ __all__ = ["draw"]
 
 COVERED = 3.84  # rise of chi2 at the ends of an interval of 95 %
 HIGHEST = 10.0  # drawn rise
+DECADE = 20.0  # ratio of the ends of an axis from which on it is logarithmic
 POINTS = 60  # measured values drawn singly
 
 
@@ -45,8 +46,10 @@ def _profile(ax: Axes, fit: Fit, name: str) -> None:
             ax.axvline(row[end], color=ORANGE, linewidth=0.8)
     near = profile["rise"] < HIGHEST
     low, high = profile["value"][near].min(), profile["value"][near].max()
-    if low > 0 and high / low > 3:
+    if low > 0 and high / low > DECADE:
         ax.set_xscale("log")
+    else:
+        ax.xaxis.set_major_locator(MaxNLocator(4))
     ax.set(
         ylim=(0, HIGHEST),
         xlim=(low, high),
