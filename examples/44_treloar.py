@@ -51,12 +51,12 @@ def pulled(material):
                     end_time=duration, dt=duration / 100)  # fmt: skip
 
 
-light, bulk = 10, 5e9
+light = 10
 laws = {
-    "neo-Hookean": (ff.NeoHookean(young=1e6, nu=0.4999, density=light), {"body.1.young": (3e5, 3e6)}),
-    "Gent": (ff.Gent(mu=3e5, jm=90, k=bulk, density=light),
+    "neo-Hookean": (ff.Incompressible(young=1e6, density=light), {"body.1.young": (3e5, 3e6)}),
+    "Gent": (ff.Gent(mu=3e5, jm=90, density=light),
              {"body.1.parameters.mu": (1e5, 1e6), "body.1.parameters.jm": (65, 200)}),
-    "Yeoh": (ff.Yeoh(c10=1.7e5, c20=-1e3, c30=40, k=bulk, density=light),
+    "Yeoh": (ff.Yeoh(c10=1.7e5, c20=-1e3, c30=40, density=light),
              {"body.1.parameters.c10": (1e5, 3e5), "body.1.parameters.c20": (-4e3, 2e3),
               "body.1.parameters.c30": (10, 100)}),
 }  # fmt: skip

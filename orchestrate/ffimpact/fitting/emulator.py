@@ -20,7 +20,7 @@ LOGARITHMIC = 3.0  # bounds further apart than this ratio are taken logarithmica
 DIGITS = 7  # of the value of an entry
 DEEPEST = 12  # the finest spacing of nodes is 2^-12 of the bounds
 WIDTH = 4  # spacings of nodes across a box, at first
-WIDEST = {1: 16, 2: 8}  # by the number of entries; of more entries a box stays as it is
+WIDEST = {1: 16, 2: 8, 3: 8}  # by the number of entries; of more entries a box stays as it is
 CORNERS = 3  # from so many entries on the nodes in the corners of a box are left out:
 REACH = 0.75  # those further from its centre, summed over the entries, than this share of its width
 

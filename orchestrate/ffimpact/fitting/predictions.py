@@ -12,8 +12,9 @@ from .. import flight
 from ..failure import BadInput, Failure, brief, unknown
 from ..input.parameters import Table, Value
 from ..output.errors import errors
-from ..output.results import numbers, read_history, read_record
+from ..output.results import force_times, numbers, read_history, read_record
 from ..scene import Scene
+from ..scenes.entries import dependents
 from ..sweeps.study import place, study
 from .experiments import Array, Curve, Experiment, crossing
 
@@ -77,11 +78,18 @@ class Runs:
         self._need(first)
         if first.get("mass") and first.get("reach"):
             self.drag = flight.drag_of(first["mass"], first["reach"], air)
-        own = [{"fields": 0} | dict(e.entries) | self._velocity(e) for e in self.experiments]
-        rows = self._study([entries | dict(centre) for entries in own], estimate=True)
+        # what the scene sets, such as a step, stays set while the free entries change
+        self.own: list[dict[str, Value]] = [
+            dependents(scene.content, [*centre, *e.entries])
+            | {"fields": 0}
+            | dict(e.entries)
+            | self._velocity(e)
+            for e in self.experiments
+        ]
+        rows = self._study([entries | dict(centre) for entries in self.own], estimate=True)
         self.fixed: list[dict[str, Value]] = []
         self.stated: list[Array] = []
-        for experiment, entries, row in zip(self.experiments, own, rows):
+        for experiment, entries, row in zip(self.experiments, self.own, rows):
             self._need(row)
             where = place(self.folder, entries | dict(centre))
             self.fixed.append(entries | _meshes(where))
@@ -126,10 +134,7 @@ class Runs:
         relative errors that it states.
         """
         experiment = self.experiments[i]
-        entries = (
-            {"fields": 0} | dict(experiment.entries) | self._velocity(experiment) | dict(point)
-        )
-        entries |= {"accuracy": accuracy}
+        entries = self.own[i] | dict(point) | {"accuracy": accuracy}
         row = self._study([entries], estimate=True)[0]
         self._need(row)
         where = place(self.folder, entries)
@@ -209,11 +214,13 @@ def features(experiment: Experiment, row: Table, where: Path, gravity: float, dr
         np.array([_predicted(number.name, row, gravity, drag) for number in experiment.numbers])
     ]
     if experiment.curves:
-        history = read_history(where)
+        history, used = read_history(where), read_record(where).scene
+        mean_times = force_times(history, used.get("integrator"))
         for curve in experiment.curves:
             if curve.name not in history:
                 raise BadInput(f"experiment: {unknown(curve.name, sorted(history), ', ')}")
-            parts.append(_sampled(curve, history["t"], history[curve.name]))
+            times = mean_times if "force" in curve.name else history["t"]
+            parts.append(_sampled(curve, times, history[curve.name]))
     return np.concatenate(parts)
 
 

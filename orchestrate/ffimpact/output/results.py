@@ -35,6 +35,7 @@ __all__ = [
     "content",
     "digest",
     "files_of",
+    "force_times",
     "held_bodies",
     "mechanical_energy",
     "numbers",
@@ -314,6 +315,19 @@ def mechanical_energy(history: Mapping[str, np.ndarray]) -> np.ndarray:
     """Returns the sum of kinetic, elastic and contact energy (steps,) [J, in plane strain J/m]."""
     total: np.ndarray = history["kinetic"] + history["elastic"] + history["contact"]
     return total
+
+
+# Integrators whose forces are those at the end of a step.
+END_FORCES = ("bdf2", "backward-euler")
+
+
+def force_times(history: Mapping[str, np.ndarray], integrator: object) -> np.ndarray:
+    """Returns the times [s] of the forces of a history. Forces are means over a step and belong to
+    its middle, except for the integrators of END_FORCES.
+    """
+    at_end = integrator in END_FORCES
+    times: np.ndarray = history["t"] - (0 if at_end else history["dt"] / 2)
+    return times
 
 
 def suffixes(columns: Iterable[str]) -> list[str]:

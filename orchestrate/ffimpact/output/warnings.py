@@ -147,7 +147,7 @@ class Evidence:
         maximum; None without contact."""
         middle, step, force = self.forces
         loaded = np.flatnonzero(force > 0)
-        if not len(loaded):
+        if not len(loaded) or self.numbers["contact_start"] is None:
             return None
         part = slice(loaded[0], loaded[-1] + 1)
         open_ended = bool(self.facts["in_contact"])

@@ -18,7 +18,7 @@ from ..input.obstacles import Obstacle
 from ..input.parameters import Table
 from ..output import vtu
 from ..output.materials import layer_name
-from ..output.results import Contents, body_names, mechanical_energy, suffixes
+from ..output.results import Contents, body_names, force_times, mechanical_energy, suffixes
 from .figures import (
     BAND,
     BLACK,
@@ -40,7 +40,6 @@ from .figures import (
     end_of_contact,
     evenly,
     flight,
-    force_times,
     friction_force,
     is_half,
     is_oblique,
@@ -298,7 +297,7 @@ def forces(history: dict[str, np.ndarray], scene: Table) -> Figure:
     the components of the force on each of several bodies.
     """
     t, unit, bodies = (
-        force_times(history, scene),
+        1e3 * force_times(history, scene.get("integrator")),
         f"[kN{per_metre(scene)}]",
         columns_of(history, scene),
     )

@@ -25,6 +25,7 @@ from ..input import dimension
 from ..input.parameters import Table, Value
 from ..mesh import mesh
 from ..output import vtu
+from ..output.results import force_times
 from . import literature
 
 __all__ = [
@@ -52,7 +53,6 @@ __all__ = [
     "STYLE",
     "UNITS",
     "VISCOUS",
-    "force_times",
     "arranged",
     "as_written",
     "balance_error",
@@ -104,8 +104,6 @@ BLUE, ORANGE, GREEN, PURPLE, BLACK, GREY = (
     "#999999",
 )
 STICKS = "#bbbbbb"  # colour of stick; slip is orange, backward slip blue
-# Integrators whose forces are those at the end of a step.
-END_FORCES = ("bdf2", "backward-euler")
 # Font size of legends, of numbers in cells and of text below figures. STYLE has the size of other
 # text.
 SMALL = 7.5
@@ -234,15 +232,6 @@ def per_metre(scene: Table) -> str:
     return dimension.per_metre(scene.get("script", ""))
 
 
-def force_times(history: dict[str, np.ndarray], scene: Table) -> np.ndarray:
-    """Returns the times [ms] at which forces of a history are drawn. Forces are means over a step
-    and are drawn in its middle, except for the integrators of END_FORCES.
-    """
-    return 1e3 * (
-        history["t"] - (0 if scene.get("integrator") in END_FORCES else history["dt"] / 2)
-    )
-
-
 def contact_bounds(summary: Table) -> tuple[float, float] | None:
     """Returns the begin and the end of the contact [s], both interpolated within their steps.
     Returns None without contact or if the contact has not ended.
@@ -326,7 +315,7 @@ def friction_force(history: dict[str, np.ndarray], scene: Table) -> Figure:
     The broken lines are the friction coefficients times the normal force. If all points of a body
     slide in the same direction, the friction force lies on the line of the dynamic coefficient.
     """
-    t, per = force_times(history, scene), per_metre(scene)
+    t, per = 1e3 * force_times(history, scene.get("integrator")), per_metre(scene)
     normal, friction = 1e-3 * history["normal_force"], 1e-3 * history["friction_force"]
     window = _liveliest(history)
     figure, grid = plt.subplots(
@@ -375,7 +364,10 @@ def _enlarge(
     """Draws the right panels of figure 5 in the interval `window` of rows, which is marked in the
     left panels: the fraction of the load that slides, and the friction force [kN/m].
     """
-    t, friction = force_times(history, scene), 1e-3 * history["friction_force"]
+    t, friction = (
+        1e3 * force_times(history, scene.get("integrator")),
+        1e-3 * history["friction_force"],
+    )
     first, last = window
     inside, (share, zoom) = slice(first, last + 1), grid[:, 1]
     for axes in grid[:, 0]:

@@ -16,7 +16,7 @@ from ..input import parameters
 from ..input.models import listed
 from ..input.parameters import Table
 
-__all__ = ["files_renamed", "reset_dependents", "set_entry", "toml_value"]
+__all__ = ["dependents", "files_renamed", "reset_dependents", "set_entry", "toml_value"]
 
 # Entries that set the size of a body, beside `radius`.
 SHAPE = (
@@ -66,6 +66,19 @@ def set_entry(content: Table, name: str, value: Any) -> Table:
     else:
         container[key] = value
     return changed
+
+
+def dependents(content: Table, names: list[str]) -> dict[str, Any]:
+    """Returns the entries that reset_dependents() would reset, with their values, by dotted names."""
+    rest = copy.deepcopy(content)
+    reset_dependents(rest, names)
+    after = dict(_tables(rest))
+    return {
+        f"{path}.{key}".lstrip("."): value
+        for path, table in _tables(content)
+        for key, value in table.items()
+        if key in parameters.DEPENDS_ON and key not in after[path]
+    }
 
 
 def reset_dependents(content: Table, names: list[str]) -> tuple[str, ...]:
