@@ -11,8 +11,8 @@ PAGES = words.pages()
 
 
 def test_all_pages_together_have_few_words():
-    """The limit is 26,000 words."""
-    assert sum(len(path.read_text().split()) for path in PAGES) <= 26_000
+    """The limit is 27,000 words."""
+    assert sum(len(path.read_text().split()) for path in PAGES) <= 27_000
 
 
 @pytest.mark.parametrize("path", PAGES, ids=lambda path: f"{path.parent.name}/{path.name}")

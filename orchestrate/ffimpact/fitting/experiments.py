@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from ..failure import BadInput, Unreadable, brief, unknown
 from ..input.parameter import plain
+from ..recording import Bounces
 
 __all__ = ["LIKE_BEFORE", "Array", "Curve", "Experiment", "Number", "crossing"]
 
@@ -112,6 +113,20 @@ class Experiment:
                 self.curves.append(_curve(word, what, where, self.tables[word]))
             else:
                 self.numbers.append(_measured(word, what))
+
+    @classmethod
+    def of_bounces(cls, drop: Bounces) -> list[Experiment]:
+        """An experiment for each bounce that ff.bounces() has a restitution of. Its error is that of
+        the two intervals and the spread of the restitutions, which roughness and spin make.
+        """
+        heard = drop.table.dropna(subset=["restitution"])
+        spread = 1.4826 * float(
+            (heard["restitution"] - heard["restitution"].median()).abs().median()
+        )
+        return [
+            cls(speed=speed, restitution=(ratio, math.hypot(error, spread)))
+            for speed, ratio, error in zip(heard["speed"], heard["restitution"], heard["error"])
+        ]
 
     def expecting(self, values: Array) -> Experiment:
         """The same experiment with expected values (m,) in place of measured ones."""
