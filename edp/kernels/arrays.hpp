@@ -37,7 +37,14 @@ struct Triplets {
 
 // Rows of gaps as triplets: B(row, unknown) = normal, and for each tangent S_a(row, unknown) =
 // slip, first all S_1.
-struct JacobianRows { std::vector<int> row, unknown;  std::vector<double> normal, slip; };
+struct JacobianRows {
+  std::vector<int> row, unknown;
+  std::vector<double> normal, slip;
+  // Entry e of B (0), S_1 (1) or S_2 (2).
+  double component(int c, size_t e) const {
+    return c == 0 ? normal[e] : slip[(c - 1) * row.size() + e];
+  }
+};
 
 // Writes values to `numbers`, or reads them from there in the same order.
 struct Archive {

@@ -3,6 +3,13 @@
 #include "scene.hpp"
 #include "turning.hpp"
 
+template<class Function> static void fillWhere(Ints at, long n, Function holds) {
+  std::vector<long> found;
+  for (long i = 0; i < n; i++) if (holds(i)) found.push_back(i);
+  at.resize(long(found.size()));
+  std::copy(found.begin(), found.end(), (long *)at);
+}
+
 static void addGaps() {
   // Kernels of gaps.hpp and pairs.hpp. The first three are called at the start.
   add("kernelGaps", +[](bool fixed, long gapRows, double staticReach, Reals nodalPosition, Reals u,
@@ -30,12 +37,28 @@ static void addGaps() {
     if (meet) gaps.pairs = pairs::make(surface);
   });
   add("kernelGapsNow", +[](Reals u, double t, double distance, Reals q) {
-    Kept<double>{&q}.numbers() = gaps.now(Kept<double>{&u}.numbers(), t, distance);
+    Kept<double>{&q}.numbers() = gaps.ofAll(gaps.now(Kept<double>{&u}.numbers(), t, distance),
+                                            1, -tensors::infinity);
   });
   add("kernelGapMotion", +[](Reals w, double share, Reals moved) {
     // B w, and a share of the motion of the obstacles in the step
-    Kept<double>{&moved}.numbers() = gaps.move(Kept<double>{&w}.numbers());
-    Kept<double>{&moved}.numbers() += share * gaps.motion.head(moved.N());
+    Eigen::VectorXd ofNear = gaps.move(Kept<double>{&w}.numbers());
+    ofNear += share * gaps.motion.head(ofNear.size());
+    Kept<double>{&moved}.numbers() = gaps.ofAll(ofNear, gaps.gapRows, 0);
+  });
+  // positions of candidates that penetrate at the start or end of the step; of numbers other than 0
+  add("kernelTouching", +[](Reals q0, Reals q1, Ints at) {
+    fillWhere(at, q0.N(), [&](long i) { return q0[i] > 0 || q1[i] > 0; });
+  });
+  add("kernelNonzero", +[](Reals values, Ints at) {
+    fillWhere(at, values.N(), [&](long i) { return values[i] != 0; });
+  });
+  add("kernelSlipSizes", +[](Reals gapSlip, Reals size) {
+    // |slip| of all candidates [m], or |velocity| [m/s] if gapSlip contains velocities
+    const long n = size.N();
+    for (long i = 0; i < n; i++)
+      size[i] = gapSlip.N() == 2 * n ? std::abs(gapSlip[n + i])
+        : std::hypot(gapSlip[n + i], gapSlip[2 * n + i]);
   });
   add("kernelGapIncrement", +[](Reals d, double dt) {
     return gaps.increment(Kept<double>{&d}.numbers(), dt);
@@ -67,7 +90,13 @@ static void addRows() {
   add("kernelPairGaps", +[](Reals d, Reals q0, Reals q1, Ints row, Ints unknown, Reals normal,
                            Reals slip) {
     JacobianRows rows;
-    gaps.pairs->gaps(d, q0, q1, rows);
+    std::vector<int> numbers;
+    gaps.pairs->appendNear(numbers);
+    Eigen::VectorXd start = Kept<double>{&q0}.numbers()(numbers),
+      end = Kept<double>{&q1}.numbers()(numbers);
+    gaps.pairs->gaps(d, start.data(), end.data(), rows);
+    Kept<double>{&q0}.numbers()(numbers) = start;
+    Kept<double>{&q1}.numbers()(numbers) = end;
     fillRows(rows, row, unknown, normal, slip);
   });
   add("kernelSearch", +[](Reals d) { gaps.search(stepNow, Kept<double>{&d}.numbers()); });
@@ -77,12 +106,19 @@ static void addRows() {
   add("kernelObstacleRows", +[](Reals d, double dt, Reals q0, Reals q1, Reals motion, Ints row,
                                Ints unknown, Reals normal, Reals slip) {
     JacobianRows rows;
-    Eigen::VectorXd start = Kept<double>{&q0}.numbers(), end = start,
-      moved = Kept<double>{&motion}.numbers();
+    std::vector<int> numbers;
+    gaps.obstacles.appendNear(numbers);
+    const long n = long(numbers.size()), ns = q0.N(), axes = gaps.obstacles.axes;
+    Eigen::VectorXd start(n), end(n), moved(axes * n);
     gaps.obstacles.rows(d, dt, start, end, moved, rows);
-    Kept<double>{&q0}.numbers() = start;
-    Kept<double>{&q1}.numbers() = end;
-    Kept<double>{&motion}.numbers() = moved;
+    std::fill_n((double *)q0, gaps.obstacles.candidates(), -tensors::infinity);
+    std::fill_n((double *)q1, gaps.obstacles.candidates(), -tensors::infinity);
+    std::fill_n((double *)motion, motion.N(), 0.);
+    for (long k = 0; k < n; k++) {
+      q0[numbers[k]] = start[k];
+      q1[numbers[k]] = end[k];
+      for (long c = 0; c < axes; c++) motion[c * ns + numbers[k]] = moved[c * n + k];
+    }
     fillRows(rows, row, unknown, normal, slip);
   });
 }

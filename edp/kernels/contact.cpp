@@ -10,27 +10,46 @@ Status Contact::addForces(const Step &step, const Vector &d, Vector &residual) {
   law.dt = step.dt;
   law.lawInstant = step.stressInstant;
   follow(d, step.isStatic() ? 0 : step.dt);
-  script.gapSlip.numbers() = gaps.gapSlip(d);
-  script.q1.numbers() = script.gapSlip.numbers().head(ns());
-  script.candidateForces.numbers().setZero();
-  for (long s = 0; s < ns(); s++) if (gaps.q0[s] > 0 || script.q1[s] > 0) {
+  const long n = near();
+  gapSlip = gaps.gapSlip(d);
+  forces = Vector::Zero(gapSlip.size());
+  for (long l = 0; l < n; l++) if (gaps.start[l] > 0 || gapSlip[l] > 0) {
     double x[3];
     Forces f;
-    for (int c = 0; c < gapRows(); c++) x[c] = script.gapSlip[c * ns() + s];
-    law.at(point(s), x, nullptr, f);
-    for (int c = 0; c < gapRows(); c++) script.candidateForces[c * ns() + s] = f.t[c];
+    for (int c = 0; c < gapRows(); c++) x[c] = gapSlip[c * n + l];
+    law.at(point(l), x, nullptr, f);
+    for (int c = 0; c < gapRows(); c++) forces[c * n + l] = f.t[c];
   }
-  script.force.numbers() = gaps.pull(script.candidateForces.numbers());
+  publish();
+  script.force.numbers() = gaps.pull(forces);
   residual += script.force.numbers();
   if (gaps.pairs && touches())
     gaps.pairs->geometricTerms(script.candidateForces, free.data(), script.k, geometric);
   return succeeded;
 }
 
+void Contact::publish() {
+  const long n = near();
+  if (published != gaps.searches) {
+    script.q1.numbers().setConstant(-tensors::infinity);
+    script.gapSlip.numbers().setZero();
+    script.candidateForces.numbers().setZero();
+    published = gaps.searches;
+  }
+  for (long l = 0; l < n; l++) {
+    script.q1[gaps.near[l]] = gapSlip[l];
+    for (int c = 0; c < gapRows(); c++) {
+      const long row = c * ns() + gaps.near[l];
+      script.gapSlip[row] = gapSlip[c * n + l];
+      script.candidateForces[row] = forces[c * n + l];
+    }
+  }
+}
+
 double Contact::work(const Step &, const Vector &) const {
-  Vector change = script.gapSlip.numbers();
-  change.head(ns()) -= gaps.q0.numbers();
-  return script.candidateForces.numbers().dot(change);
+  Vector change = gapSlip;
+  change.head(near()) -= gaps.start;
+  return forces.dot(change);
 }
 
 void Contact::accept(const Step &step, const Vector &d) { startFrom(step.rate() * d); }
@@ -47,11 +66,34 @@ Vector Contact::freeForce() const {
 }
 
 double Contact::obstacleWork() const {
-  return gaps.motion.head(gapRows() * ns()).dot(script.candidateForces.numbers());
+  return gaps.motion.head(forces.size()).dot(forces);
+}
+
+void Contact::resultants(const Indices &numbers, const Indices &bodyOf,
+                         const Triplets &translations, double *resultant) const {
+  Indices motionOf(ndof, -1);              // column of an unknown: 3 body + component
+  for (size_t e = 0; e < translations.size; e++)
+    if (translations.value[e] != 0) motionOf[translations.row[e]] = translations.column[e];
+  std::fill_n(resultant, 6 * numbers.size(), 0.);
+  for (size_t k = 0; k < numbers.size(); k++, resultant += 6) {
+    const auto found = std::lower_bound(gaps.near.begin(), gaps.near.end(), numbers[k]);
+    if (found == gaps.near.end() || *found != numbers[k]) continue;
+    const long l = found - gaps.near.begin();
+    for (int e = gaps.first[l]; e < gaps.first[l + 1]; e++) {
+      const int motion = motionOf[gaps.column[e]];
+      if (motion < 0 || motion / 3 != bodyOf[k]) continue;
+      for (int c = 0; c < gapRows(); c++) {
+        const double force = gaps.value[gapRows() * e + c]
+          * script.candidateForces[c * ns() + numbers[k]];
+        resultant[3 + motion % 3] += force;
+        if (c == 0) resultant[motion % 3] += force;
+      }
+    }
+  }
 }
 
 bool Contact::touches() const {
-  return ns() > 0 && std::max(gaps.q0.numbers().maxCoeff(), script.q1.numbers().maxCoeff()) > 0;
+  return near() > 0 && std::max(gaps.start.maxCoeff(), gapSlip.head(near()).maxCoeff()) > 0;
 }
 
 double Contact::energy(const double *q) const {
@@ -74,7 +116,7 @@ double Contact::dampingWork() const {
 }
 
 void Contact::clearActiveSet() {
-  active.assign(ns(), 0);
+  active.assign(near(), 0);
   candidates.clear();
   setsMade++;
 }
@@ -101,29 +143,28 @@ void Contact::beginStep() {
 }
 
 void Contact::update(const Vector &q, double distance) {
-  if (active.size() != size_t(ns())) active.assign(ns(), 0);
-  const auto joins = [&](long s) { return !active[s] && q[s] > -distance; };
-  bool any = false;
-  for (long s = 0; s < ns(); s++) any = any || joins(s);
-  if (!any && !rowsChanged) return;
-  setsMade += any;
-  for (long s = 0; s < ns(); s++) if (joins(s)) {
-    active[s] = 1;
-    candidates.push_back(int(s));
+  const size_t before = candidates.size();
+  for (long l = 0; l < near(); l++) if (!active[l] && q[l] > -distance) {
+    active[l] = 1;
+    candidates.push_back(int(l));
   }
+  const bool grows = candidates.size() > before;
+  if (!grows && !rowsChanged) return;
+  setsMade += grows;
   takeUnknowns();
   fillRows();
 }
 
 bool Contact::penetrates(const Vector &q) const {
-  for (long s = 0; s < ns(); s++) if (!active[s] && q[s] > 0) return true;
+  for (long l = 0; l < near(); l++) if (!active[l] && q[l] > 0) return true;
   return false;
 }
 
-Vector Contact::ofActive(const Vector &rows) const {
+Vector Contact::ofActive(const Vector &ofAll) const {
   Vector values(gapRows() * candidates.size());
   int i = 0;
-  for (int c = 0; c < gapRows(); c++) for (int s : candidates) values[i++] = rows[c * ns() + s];
+  for (int c = 0; c < gapRows(); c++)
+    for (int l : candidates) values[i++] = ofAll[c * ns() + gaps.near[l]];
   return values;
 }
 
@@ -151,9 +192,9 @@ Status Contact::solve(const Vector &freeGapSlip, const Vector &freeDisplacement,
   p.tau = Vector::Zero(p.start.size());
   for (int i = 0; i < n; i++) {
     p.point.push_back(point(candidates[i]));
-    p.statusChanges.push_back(int(statusChanges[candidates[i]]));
+    p.statusChanges.push_back(int(statusChanges[gaps.near[candidates[i]]]));
     for (int c = 0; c < gapRows; c++) {
-      p.start[gapRows * i + c] = freeGapSlip[c * ns() + candidates[i]];
+      p.start[gapRows * i + c] = freeGapSlip[c * near() + candidates[i]];
       p.tau[gapRows * i + c] = tau[c * n + i];
     }
   }
@@ -161,8 +202,8 @@ Status Contact::solve(const Vector &freeGapSlip, const Vector &freeDisplacement,
   for (int i = 0; i < n; i++) {
     for (int c = 0; c < gapRows; c++) tau[c * n + i] = p.tau[gapRows * i + c];
     if (law.slips == 0) continue;
-    script.sticks[candidates[i]] = p.point[i].sticks;
-    statusChanges[candidates[i]] = p.statusChanges[i];
+    script.sticks[gaps.near[candidates[i]]] = p.point[i].sticks;
+    statusChanges[gaps.near[candidates[i]]] = p.statusChanges[i];
   }
   force = p.force;
   return succeeded;
@@ -171,10 +212,12 @@ Status Contact::solve(const Vector &freeGapSlip, const Vector &freeDisplacement,
 void Contact::chooseStatus(const Vector &motion, const Vector &forces) {
   const Vector moved = gaps.move(motion);
   statusChanges.assign(ns(), 0);
-  for (long s = 0; s < ns(); s++) if (!(forces[s] > 0)) {
-    const double speed = law.slips == 1 ? std::abs(moved[ns() + s])
-      : std::hypot(moved[ns() + s], moved[2 * ns() + s]);
-    script.sticks[s] = speed < law.slipVelocity;
+  const long n = near();
+  for (long s = 0; s < ns(); s++) if (!(forces[s] > 0)) script.sticks[s] = 1;
+  for (long l = 0; l < n; l++) if (!(forces[gaps.near[l]] > 0)) {
+    const double speed = law.slips == 1 ? std::abs(moved[n + l])
+      : std::hypot(moved[n + l], moved[2 * n + l]);
+    script.sticks[gaps.near[l]] = speed < law.slipVelocity;
   }
 }
 
@@ -186,7 +229,8 @@ void Contact::startFrom(const Vector &motion) {
 
 void Contact::remember(const Vector &tau) {
   const int n = int(candidates.size());
-  for (int i = 0; i < tau.size(); i++) lastForces[candidates[i % n] + i / n * ns()] = tau[i];
+  for (int i = 0; i < tau.size(); i++)
+    lastForces[gaps.near[candidates[i % n]] + i / n * ns()] = tau[i];
 }
 
 void Contact::archive(Archive &archive) {
@@ -200,8 +244,9 @@ void Contact::restore() {
   if (!unknowns.empty()) renewCompliance();
 }
 
-Candidate Contact::point(long s) const {
-  return {gaps.q0[s], script.k[s], script.muStatic[s], script.muDynamic[s],
+Candidate Contact::point(long l) const {
+  const int s = gaps.near[l];
+  return {gaps.start[l], script.k[s], script.muStatic[s], script.muDynamic[s],
           script.sticks[s] == 1, script.weight[s], law.adhesion * script.area[s]};
 }
 
@@ -214,9 +259,9 @@ Indices Contact::needed() const {
     taken[j] = 1;
     all.push_back(j);
   };
-  for (int s : candidates) for (long r = s; r < gapRows() * ns(); r += ns())
-    for (int e = gaps.first[r]; e < gaps.first[r + 1]; e++)
-      take(gaps.column[e], free[gaps.column[e]] * gaps.value[e]);
+  for (int l : candidates) for (int e = gaps.first[l]; e < gaps.first[l + 1]; e++)
+    for (int c = 0; c < gapRows(); c++)
+      take(gaps.column[e], free[gaps.column[e]] * gaps.value[gapRows() * e + c]);
   for (size_t e = 0; e < geometric.unknown.size(); e++)
     take(geometric.unknown[e], geometric.value[e]);
   return all;
@@ -266,11 +311,11 @@ void Contact::fillRows() {
   // B of the problem: the rows of the active candidates, then those of the geometric terms.
   Rows &B = problem.B;
   B.begin(int(unknowns.size()), gapRows());
-  for (int s : candidates) {
-    for (int c = 0; c < gapRows(); c++)
-      for (int r = s + c * ns(), e = gaps.first[r]; e < gaps.first[r + 1]; e++)
-        if (free[gaps.column[e]] * gaps.value[e] != 0)
-          B.entry(index[gaps.column[e]], c, gaps.value[e]);
+  for (int l : candidates) {
+    for (int c = 0; c < gapRows(); c++) for (int e = gaps.first[l]; e < gaps.first[l + 1]; e++) {
+      const double value = gaps.value[gapRows() * e + c];
+      if (free[gaps.column[e]] * value != 0) B.entry(index[gaps.column[e]], c, value);
+    }
     B.endBlock();
   }
   for (size_t t = 0, e = 0; t < geometric.stiffness.size(); t++) {

@@ -27,11 +27,12 @@ class Contact : public Term {
   Problem problem;
   Law &law = problem.law;
   Vector diagonal;                               // A^-1 of explicit steps, diagonal; else empty
-  Indices candidates;                            // of the active set
+  Vector gapSlip, forces;                        // (near) of the last evaluation
+  Indices candidates;                            // of the active set, positions in gaps.near
   Indices unknowns;                              // of the active set, and some of earlier sets
   size_t mostUnknowns = 0;                       // the largest number of them
   Indices orderedLast;                           // unknowns that A orders last
-  Vector lastForces;                             // candidateForces of the last solve
+  Vector lastForces;                             // (ns) candidateForces of the last solve
   std::vector<long> statusChanges;               // (ns) between stick and slip in the step
   long contactMatrices = 0, mostContactMatrices = 1000000000;
 
@@ -48,7 +49,9 @@ class Contact : public Term {
   void archive(Archive &archive) override;
 
   long ns() const { return gaps.ns(); }
+  long near() const { return gaps.count(); }
   int gapRows() const { return gaps.gapRows; }
+  void publish();   // gapSlip and forces in the script arrays
 
   void follow(const Vector &d, double dt);   // B and q0, if B changes
   Vector freeForce() const;   // the last force on the unknowns that are not held
@@ -61,22 +64,27 @@ class Contact : public Term {
   double dampingWork() const;
   double obstacleWork() const;   // of the moving obstacles on the bodies in the step [J/m; J]
 
+  // Columns of `resultant` (6, numbers): B^T t of these candidates on body `bodyOf` of the contact
+  // point, first of the normal forces, then of all. translations: of ImplicitStep.
+  void resultants(const Indices &numbers, const Indices &bodyOf, const Triplets &translations,
+                  double *resultant) const;
+
   // Removes all candidates from the active set. Its unknowns and C remain.
   void clearActiveSet();
   // Empties the active set and C, for a new A, and sets orderedLast.
   void reset();
   void beginStep();
-  // Adds the candidates with q > -distance [m] to the active set; renews its rows and C.
+  // Adds the candidates with q (near) > -distance [m] to the active set; renews its rows and C.
   void update(const Vector &q, double distance);
   // Whether a candidate outside the active set penetrates.
   bool penetrates(const Vector &q) const;
 
-  Vector ofActive(const Vector &rows) const;   // the active ones of values over all rows
+  Vector ofActive(const Vector &ofAll) const;   // those of the active set, of values over ns
   Vector onUnknowns(const Vector &values) const;   // values of the active unknowns, else 0
   Vector comply(const Vector &f) const;   // C f
 
-  // Solves the contact problem of the active set. Without contact forces gap and slip of all rows
-  // are freeGapSlip, and the active unknowns are displaced by freeDisplacement from the state in
+  // Solves the contact problem of the active set. Without contact forces gap and slip (near) are
+  // freeGapSlip, and the active unknowns are displaced by freeDisplacement from the state in
   // which the geometric terms exert no force. tau: forces of the active rows, in and out;
   // force = B^T tau. forceTolerance [N]: of the forces. Returns succeeded or diverged.
   Status solve(const Vector &freeGapSlip, const Vector &freeDisplacement, double forceTolerance,
@@ -96,11 +104,12 @@ class Contact : public Term {
   Geometric geometric;
   std::vector<long> sticksStart;                 // (ns) statuses at the start of the step
   bool rowsChanged = true;                       // since the active rows were filled
-  std::vector<char> active;                      // (ns) 1: in the active set
+  long published = -1;                           // the search whose candidates script arrays have
+  std::vector<char> active;                      // (near) 1: in the active set
   Indices index;                                 // (ndof) position in `unknowns` and C, or -1
   long setsMade = 0, solvedSet = -1;             // active sets so far; the last one solved
 
-  Candidate point(long s) const;
+  Candidate point(long l) const;
   Indices needed() const;
   void takeUnknowns();
   void forgetCompliance();

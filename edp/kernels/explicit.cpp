@@ -10,13 +10,12 @@ void ExplicitContact::begin(const Step &step, const Vector &d, const Vector &com
   contact.gaps.search(step, d);
   contact.beginStep();
   contact.reset();
-  if (contact.gaps.fixed) contact.update(contact.gaps.q0.numbers(), distance);
+  if (contact.gaps.fixed) contact.update(contact.gaps.start, distance);
 }
 
 Status ExplicitContact::take(Eigen::Map<Vector> increment, const Vector &halfStepVelocity,
                              double h) {
   const Vector free = increment;
-  const long ns = contact.ns();
   double change = 1;
   contact.law.dt = h;
   contact.law.lawInstant = contact::stepMean;
@@ -32,23 +31,23 @@ Status ExplicitContact::take(Eigen::Map<Vector> increment, const Vector &halfSte
       start += contact.gaps.move(back);
       contact.clearActiveSet();
     }
-    contact.script.q1.numbers() = start.head(ns);
+    contact.gapSlip = start;
     if (!contact.touches()) return takeWithoutContact(increment, free, start);
     if (!solve(start, halfStepVelocity, back)) return diverged;
     increment = free - back;
     contact.lastForces = contact.script.candidateForces.numbers();
     change = contact.gaps.fixed ? 0 : (before - increment).lpNorm<Eigen::Infinity>();
   }
-  contact.script.q1.numbers() = contact.script.gapSlip.numbers().head(ns);
   return succeeded;
 }
 
 Status ExplicitContact::takeWithoutContact(Eigen::Map<Vector> &increment, const Vector &free,
                                            const Vector &start) {
   increment = free;
-  contact.script.gapSlip.numbers() = start;
+  contact.gapSlip = start;
+  contact.forces = Vector::Zero(start.size());
+  contact.publish();
   contact.script.force.numbers().setZero();
-  contact.script.candidateForces.numbers().setZero();
   contact.lastForces.setZero();
   return succeeded;
 }
@@ -56,12 +55,12 @@ Status ExplicitContact::takeWithoutContact(Eigen::Map<Vector> &increment, const 
 bool ExplicitContact::solve(const Vector &start, const Vector &halfStepVelocity, Vector &back) {
   // Forces with the present B, from gap and slip `start` without them; back = A^-1 force. The
   // active set grows until no candidate outside it penetrates.
-  const long ns = contact.ns();
-  Vector q = start.head(ns);
+  const long near = contact.near();
+  Vector q = start.head(near);
   bool more = true;
-  contact.script.candidateForces.numbers().setZero();
+  contact.forces = Vector::Zero(start.size());
   contact.script.force.numbers().setZero();
-  contact.update(contact.gaps.q0.numbers(), 0);
+  contact.update(contact.gaps.start, 0);
   for (int pass = 0; pass < 20 && more; pass++) {
     Vector force;
     contact.update(q, 0);
@@ -72,12 +71,12 @@ bool ExplicitContact::solve(const Vector &start, const Vector &halfStepVelocity,
     if (contact.solve(start, still, 1e-8 * tau.norm(), tau, force) != succeeded) return false;
     const int n = int(contact.candidates.size());
     for (int i = 0; i < tau.size(); i++)
-      contact.script.candidateForces[contact.candidates[i % n] + i / n * ns] = tau[i];
+      contact.forces[contact.candidates[i % n] + i / n * near] = tau[i];
     contact.script.force.numbers() = contact.onUnknowns(force);
     back = contact.diagonal.cwiseProduct(contact.script.force.numbers());
-    const Vector end = start - contact.gaps.move(back);
-    contact.script.gapSlip.numbers() = end;
-    q = end.head(ns);
+    contact.gapSlip = start - contact.gaps.move(back);
+    contact.publish();
+    q = contact.gapSlip.head(near);
     more = contact.penetrates(q);
   }
   return !more;

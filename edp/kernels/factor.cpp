@@ -182,14 +182,19 @@ bool Factor::isPositive() const {          // whether S is
   return true;
 }
 
+cholmod_dense Factor::denseOf(const double *b) const {   // a column of n numbers
+  cholmod_dense column = cholmod_dense();
+  column.nrow = column.nzmax = column.d = n;
+  column.ncol = 1;
+  column.x = const_cast<double *>(b);
+  column.xtype = CHOLMOD_REAL;  column.dtype = CHOLMOD_DOUBLE;
+  return column;
+}
+
 void Factor::solve(const double *b, double *x) {
   const int *permutation = (int *)L->Perm;
   if (!L->is_super) {
-    cholmod_dense rightSide = cholmod_dense();
-    rightSide.nrow = rightSide.nzmax = rightSide.d = n;
-    rightSide.ncol = 1;
-    rightSide.x = const_cast<double *>(b);
-    rightSide.xtype = CHOLMOD_REAL;  rightSide.dtype = CHOLMOD_DOUBLE;
+    cholmod_dense rightSide = denseOf(b);
     check(cholmod_solve2(CHOLMOD_A, L, &rightSide, nullptr, &solution, nullptr, &work1, &work2,
                          &common),
           "the solution with the matrix");
@@ -441,11 +446,23 @@ void Factor::columns(const std::vector<int> &u, const std::vector<int> &wanted) 
   // increments[i lanes + c] = (A^-1)_(u_i, u_b), b = wanted[c], of at most `lanes` columns.
   increments.assign(u.size() * lanes, 0.);
   if (!L->is_super) {
+    // CHOLMOD solves on the paths of the elimination tree from u to the root
+    int count[2] = {0, int(u.size())};
+    cholmod_sparse some = cholmod_sparse();
+    some.nrow = n;  some.ncol = 1;  some.nzmax = u.size();
+    some.p = count;  some.i = const_cast<int *>(u.data());
+    some.itype = CHOLMOD_INT;  some.xtype = CHOLMOD_PATTERN;  some.dtype = CHOLMOD_DOUBLE;
+    some.packed = 1;
+    right.assign(n, 0.);
     for (size_t c = 0; c < wanted.size(); c++) {
-      const double unit = 1;
-      z.resize(n);
-      respond({u[wanted[c]]}, &unit, z.data());
-      for (size_t i = 0; i < u.size(); i++) increments[i * lanes + c] = z[u[i]];
+      right[u[wanted[c]]] = 1;
+      cholmod_dense rightSide = denseOf(right.data());
+      check(cholmod_solve2(CHOLMOD_A, L, &rightSide, &some, &solution, &solved, &work1, &work2,
+                           &common),
+            "the solution with the matrix");
+      for (size_t i = 0; i < u.size(); i++)
+        increments[i * lanes + c] = ((double *)solution->x)[u[i]];
+      right[u[wanted[c]]] = 0;
     }
     return;
   }

@@ -58,6 +58,7 @@ private:
   cholmod_common common;
   cholmod_sparse A = cholmod_sparse();
   cholmod_factor *L = nullptr;
+  cholmod_sparse *solved = nullptr;
   cholmod_dense *solution = nullptr, *work1 = nullptr, *work2 = nullptr;
   struct Beside { int unknown, entry; };
   // A: entries of the lower triangle, column j from column[j] on; from: position of an entry in the
@@ -82,6 +83,7 @@ private:
   static std::vector<Entry> entriesOf(const bodies::Elements &B);
   void storeColumns(const std::vector<Entry> &entries);
   void storeNeighbours(const std::vector<Entry> &entries);
+  cholmod_dense denseOf(const double *b) const;
   void findParts();
   void order(const std::vector<int> &w);
   void setTails();

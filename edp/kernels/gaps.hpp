@@ -1,10 +1,10 @@
-// gaps.hpp: gaps of all contact candidates in a step from u to u + d, and the gap Jacobian B.
-// Penetrations are q = -gap [m], positive inside. Arrays over ns candidates are stacked by
-// component, component c of candidate s at c ns + s: the gap and, with friction, the slips along
-// the tangents. In the step
+// gaps.hpp: gaps of the contact candidates in a step from u to u + d, and the gap Jacobian B.
+// Penetrations are q = -gap [m], positive inside. In the step
 //   gapSlip = B d + (q0, 0) + motion,
-// motion the part of the moving obstacles. The force on the bodies is -B^T t, also at held
-// unknowns. Exports Gaps.
+// motion the part of the moving obstacles: the gap and, with friction, the slips along the
+// tangents. The force on the bodies is -B^T t, also at held unknowns. Kernels treat the candidates
+// `near`; arrays over them are stacked by component. Script arrays have all ns candidates,
+// component c of candidate s at c ns + s. Exports Gaps.
 #pragma once
 #include "obstacles.hpp"
 #include "pairs.hpp"
@@ -21,7 +21,8 @@ class Gaps {
   // Positions of the nodes [m]; the matrix from the unknowns to the displacements of the nodes,
   // empty if they are the same.
   Vector nodalPosition;
-  Eigen::SparseMatrix<double, Eigen::RowMajor> spread;
+  typedef Eigen::SparseMatrix<double, Eigen::RowMajor> Spread;
+  Spread spread;
   bool fixed = false;                      // the gaps are affine in u: B never changes
   int gapRows = 1;                         // rows of B for a candidate
   double staticReach = 0;                  // smallest search distance of static steps [m]
@@ -30,17 +31,22 @@ class Gaps {
   Kept<double> u, q0, frameMotion, rest, rates;
   double adhesionRange = 0;                // gap at which adhesion begins [m]
   double searchDistance = 0;               // largest motion of a point that the search allows [m]
-  Vector motion;                           // [m] (axes ns)
-  // B by rows: row r has the entries first[r] to first[r + 1] - 1.
+  // Candidates found by the last search, in ascending order; number of searches so far.
+  Indices near;
+  long searches = 0;
+  Vector start, motion;                    // q at the start; motion [m] (axes near)
+  // B: candidate near[l] has the entries first[l] to first[l + 1] - 1, with gapRows values each.
   Indices first{0}, column;
   std::vector<double> value;
 
   long ns() const { return q0.size(); }
+  long count() const { return long(near.size()); }
+  // Values of all candidates, of so many components, from those that are near; `beyond` elsewhere.
+  Vector ofAll(const Vector &ofNear, int components, double beyond) const;
   void makeFixed();   // B, rest and rates, if fixed
 
-  // Penetrations at the displacements `at` and the time t. If B is not fixed, it becomes that at
-  // `at`, and gaps are found up to `distance` [m], between bodies up to twice as much; others are
-  // infinite.
+  // Penetrations (near) at the displacements `at` and the time t. If B is not fixed, it becomes
+  // that at `at`, and gaps are found up to `distance` [m], between bodies up to twice as much.
   Vector now(const Vector &at, double t, double distance);
 
   // Starts a step in which points move about as in d: searches for the candidates that may come
@@ -48,7 +54,7 @@ class Gaps {
   void search(const Step &step, const Vector &d);
   // Starts a substep of length h at the displacements `at` and the time t; the search stays valid.
   void goOn(const Vector &at, double t, double h);
-  // B and q0 of the step by d in dt; q0 is -infinity beyond the search distance.
+  // B and q0 of the step by d in dt.
   void follow(const Vector &d, double dt);
 
   // Upper bound [m] of the motion of a point by d in dt, relative to any obstacle and to the frame;
@@ -65,7 +71,10 @@ class Gaps {
   Vector offset;                           // gapSlip for d = 0
   JacobianRows ofPairs, ofObstacles;
   Vector nodal(const Vector &w) const { return spread.rows() > 0 ? Vector(spread * w) : w; }
-  Vector evaluate(const Vector &d, double dt);
+  long shown = -1;                         // the search whose candidates q0 has
+  void collect();
+  void show();
+  void evaluate(const Vector &d, double dt);
   void takeRows();
   void startFixed(double dt);
 };

@@ -388,6 +388,12 @@ static void addStep() {
   });
   // the largest number of unknowns in the contact problem of an implicit step
   add("kernelContactUnknowns", +[]() { return long(touching.mostUnknowns); });
+  add("kernelResultants", +[](Ints loaded, Ints body, Table resultant) {
+    // Columns of `resultant` (6, loaded): B^T t of the loaded candidates on the bodies of their
+    // contact points, first of the normal forces, then of all.
+    touching.resultants(copied<int>(loaded), copied<int>(body), step.translations,
+                        &resultant(0, 0));
+  });
   add("kernelDampingWork", +[]() { return touching.dampingWork(); });
 }
 

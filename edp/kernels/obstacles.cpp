@@ -96,17 +96,19 @@ void Obstacles::countCrossings() {
   }
 }
 
+void Obstacles::appendNear(std::vector<int> &numbers) const {
+  for (const Near &now : near) numbers.push_back(now.obstacle * points() + now.point);
+}
+
 void Obstacles::rows(const double *d, double dt, Vector &q0, Vector &q1, Vector &motion,
                      JacobianRows &B) {
-  const long ns = motion.size() / axes;
-  for (long s = 0; s < candidates(); s++) q0[s] = q1[s] = -tensors::infinity;
-  for (int c = 0; c < axes; c++) for (long s = 0; s < candidates(); s++) motion[c * ns + s] = 0;
+  const long m = motion.size() / axes;
   long entries = 0;
   for (const Near &now : near) for (int c = 0; c < axes; c++)
     entries += entriesOf(c * points() + now.point);
   B.row.resize(entries);  B.unknown.resize(entries);
   B.normal.resize(entries);  B.slip.resize((axes - 1) * entries);
-  long e = 0;
+  long e = 0, k = 0;
   std::vector<StepMotion> motionOf;
   for (const Obstacle &o : obstacle) motionOf.emplace_back(o, t, dt);
   for (const Near &now : near) {
@@ -114,9 +116,10 @@ void Obstacles::rows(const double *d, double dt, Vector &q0, Vector &q1, Vector 
     Point direction[3];
     double work[3], gap1;
     directions(now, motionOf[now.obstacle], displacement(d, now.point), direction, work, gap1);
-    q0[s] = -now.start.gap;
-    q1[s] = -gap1;                       // (7): v_N = -gap <= 0, t_N >= 0, v_N t_N = 0
-    for (int c = 0; c < axes; c++) motion[c * ns + s] = work[c];
+    q0[k] = -now.start.gap;
+    q1[k] = -gap1;                       // (7): v_N = -gap <= 0, t_N >= 0, v_N t_N = 0
+    for (int c = 0; c < axes; c++) motion[c * m + k] = work[c];
+    k++;
     for (int c = 0; c < axes; c++)
       for (Trace::InnerIterator it(trace, c * points() + now.point); it; ++it, e++) {
         B.row[e] = int(s);

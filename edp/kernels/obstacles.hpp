@@ -84,9 +84,11 @@ class Obstacles {
   void countCrossings();
   std::vector<long> crossed;
 
-  // Rows, penetrations q0, q1 at both ends and motion (axes ns) of the step by d in dt from the
-  // configuration of start(). Only of the candidates of obstacles; q = -infinity for those that
-  // are not near.
+  // Appends the numbers of the candidates that start() found.
+  void appendNear(std::vector<int> &numbers) const;
+
+  // Rows of the n candidates that start() found, their penetrations q0, q1 at both ends and motion
+  // (axes m, m >= n) in the step by d in dt from the configuration of start().
   void rows(const double *d, double dt, Vector &q0, Vector &q1, Vector &motion, JacobianRows &B);
 
   // Largest motion [m] of a point relative to any obstacle in the step by d.

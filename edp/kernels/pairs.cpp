@@ -80,9 +80,9 @@ public:
   }
 
   long start(const double *x, long unknowns) {
-    // Gaps at the start of a step, at the nodal positions x. In space, candidates with a gap
-    // above searchDistance are dropped, and facets farther than |gap| + 2 searchDistance. Returns
-    // the number of candidates.
+    // Gaps at the start of a step, at the nodal positions x. Candidates with a gap above
+    // searchDistance are dropped and, in space, facets farther than |gap| + 2 searchDistance.
+    // Returns the number of candidates.
     double size = 0;
     for (long j = 0; j < unknowns; j++) size = std::max(size, std::abs(x[j]));
     roundOff = 1e-13 * size;
@@ -93,7 +93,7 @@ public:
     std::vector<Patch<A>> kept;
     for (size_t k = 0; k < candidate.size(); k++) {
       const Projection place = project(patchAtStart, int(k));
-      if (A == 3 && place.gap > searchDistance) continue;   // the box search finds more
+      if (place.gap > searchDistance) continue;   // the box search finds more
       for (int e = first[k]; e < first[k + 1]; e++)
         if (A == 2 || closestPoints[e - first[k]].gapVector.norm()
             <= std::abs(place.gap) + 2 * searchDistance) {
@@ -111,8 +111,6 @@ public:
   }
 
   void gaps(const double *d, double *q0, double *q1, JacobianRows &rows) {
-    // For the increment d: penetrations q0, q1 [m] at the start and end of the step, and the rows
-    // of B and S. Candidates that cannot come into contact keep q0, q1 and get zero rows.
     const long n = long(candidate.size()), entries = 2 * A * surface.nodes * n;
     rows.row.resize(entries);  rows.unknown.resize(entries);  rows.normal.resize(entries);
     rows.slip.resize((A - 1) * entries);
@@ -125,9 +123,14 @@ public:
       const Projection atEnd = project(end, k);
       const double endGap = gapOf(k, atEnd);
       const bool seen = !excludedAtStart[k] && !now[k].excluded && !atEnd.excluded;
-      if (seen) { q0[candidate[k]] = -startGap[k];  q1[candidate[k]] = -endGap; }
+      if (seen) { q0[k] = -startGap[k];  q1[k] = -endGap; }
       row(k, n, seen, endGap - startGap[k], rows);
     }
+  }
+
+  long near() const { return long(candidate.size()); }
+  void appendNear(std::vector<int> &numbers) const {
+    numbers.insert(numbers.end(), candidate.begin(), candidate.end());
   }
 
   void geometricTerms(const double *t, const double *free, const double *limit,

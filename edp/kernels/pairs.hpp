@@ -19,7 +19,11 @@ struct AnyPairs {
   virtual ~AnyPairs() {}
   virtual long search(const double *x, double searchDistance) = 0;
   virtual long start(const double *x, long unknowns) = 0;
+  // For the increment d: penetrations q0, q1 [m] of the candidates of start() at both ends of the
+  // step, and their rows of B and S. Where there can be no contact q0, q1 stay, and rows are zero.
   virtual void gaps(const double *d, double *q0, double *q1, JacobianRows &rows) = 0;
+  virtual long near() const = 0;           // number of these candidates
+  virtual void appendNear(std::vector<int> &numbers) const = 0;   // appends their numbers
   // Geometric contact stiffness at vertices in the plane for the normal forces t of the
   // candidates, at most `limit`; free (unknowns): 0 if held.
   virtual void geometricTerms(const double *t, const double *free, const double *limit,

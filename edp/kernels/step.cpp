@@ -73,11 +73,11 @@ Status ImplicitStep::iterate() {
 void ImplicitStep::begin(const StepParameters &parameters) {
   motion = parameters;
   motion.carries = projected();
-  contact.beginStep();
   d = script.d.numbers();
   script.seconds.numbers().setZero();
   script.counts.numbers().setZero();
   search();
+  contact.beginStep();
   iterations = renewed = renewedAt = 0;
   consecutive = false;
   if (!projected())
@@ -197,20 +197,20 @@ void ImplicitStep::solveForContact(const Vector &w) {
   // Contact on A: d = w - A^-1 B^T t(q(d)), from the forces of the last evaluation. The
   // geometric contact stiffness c with rows T has no force at the last d.
   const Timed timed(seconds(contacts));
-  const long ns = contact.ns();
+  const long n = contact.near();
   const Vector gapSlip = contact.gaps.gapSlip(w);
-  Vector highest = contact.gaps.q0.numbers().cwiseMax(contact.script.q1.numbers()),
+  Vector highest = contact.gaps.start.cwiseMax(contact.gapSlip.head(n)),
     contactDisplacement = Vector::Zero(w.size());
-  if (highest.maxCoeff() <= 0) highest = gapSlip.head(ns);
+  if (!contact.touches()) highest = gapSlip.head(n);
   const bool mayEnd = work() < 1e3 * settings.tolerance * motion.energyScale;
   status = succeeded;
-  bool more = highest.maxCoeff() > 0;
+  bool more = n > 0 && highest.maxCoeff() > 0;
   for (int pass = 0; pass < 20 && more; pass++) {
     contact.update(highest, searchDistance);
     Vector force;
     if (!solveContact(w, gapSlip, mayEnd, force)) { status = diverged;  return; }
     factor.respond(contact.unknowns, force.data(), contactDisplacement.data());
-    highest = gapSlip.head(ns) - contact.gaps.move(contactDisplacement).head(ns);
+    highest = gapSlip.head(n) - contact.gaps.move(contactDisplacement).head(n);
     more = contact.penetrates(highest);
   }
   if (more) status = diverged;
