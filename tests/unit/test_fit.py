@@ -47,7 +47,7 @@ def test_a_force_begins_where_it_rises(tmp_path):
         ({"restitution": {"value": 0.9}}, "has no error"),
         ({"restitution": {"values": [0.9, 0.8]}}, "three finite numbers"),
         ({"restitution": {"values": [0.9, 0.8, float("nan")]}}, "three finite numbers"),
-        ({"restitution": {"value": 0.9, "erro": 0.1}}, "did you mean error"),
+        ({"restitution": {"value": 0.9, "errors": 0.1}}, "did you mean error"),
         ({"speed": 2, "height": 1, "restitution": (0.9, 0.1)}, "speed beside height"),
         ({"speed": -2, "restitution": (0.9, 0.1)}, "speed: -2"),
         ({"speed": "fast", "restitution": (0.9, 0.1)}, "speed: 'fast'"),
