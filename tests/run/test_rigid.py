@@ -247,6 +247,28 @@ def test_a_box_dropped_flat_in_space_rebounds_as_a_mass_on_a_spring(tmp_path):
     assert summary["contact_time"] == pytest.approx(math.pi * math.sqrt(1 / (1e10 * 0.06 * 0.02)), rel=0.03)
 
 
+SLIDING = BOX.replace("[0, -1, 0]", "[1, 0, 0]") + "position = [0, 0.015, 0]\n" + GROUND.replace("1e7", "1e8") + "friction_static = 0.5\n"
+
+
+@pytest.mark.parametrize("accuracy", [0.1, 0.02])
+def test_a_box_slides_as_far_as_friction_lets_it(tmp_path, accuracy):
+    """The distance is v^2/(2 mu g) until the speed is slip_velocity, below which friction fades.
+    The penalty is soft, so a step need not be short: a run has a few hundred steps."""
+    text = 'gravity = 9.81\nuntil = "rest"\n' + SLIDING + "penalty_damping = 0.002\n"
+    summary, history = run(tmp_path, text, accuracy=accuracy)
+    assert history.x.iloc[-1] - history.x.iloc[0] == pytest.approx(1 / (2 * 0.5 * 9.81), rel=2e-3)
+    assert summary["friction_work"] == pytest.approx(0.5, rel=2e-3)
+    assert summary["steps"] < 300 and summary["dofs"] == 12 and summary["energy_drift"] < 1e-9
+
+
+def test_a_rigid_body_that_bounces_on_the_penalty_does_not_chatter(tmp_path):
+    """Without damping it bounces in short flights. Chatter compares flights with waves, which a
+    rigid body does not have."""
+    tile = SLIDING.replace("width = 0.06\nheight = 0.03\ndepth = 0.02", "width = 0.1\nheight = 0.04\ndepth = 0.1").replace("0.015", "0.02")
+    summary, _ = run(tmp_path, "gravity = 9.81\nend_time = 0.4\n" + tile, accuracy=0.02)
+    assert summary["contact_intervals"] > 30 and not [words for words in summary["warnings"] if words.startswith("chatter")]
+
+
 def test_a_rigid_body_on_a_corner_has_a_coarse_mesh(tmp_path, monkeypatch):
     """A body that deforms at a corner has elements a thousandth as large as itself. The limit of
     unknowns counts those that are solved for."""
