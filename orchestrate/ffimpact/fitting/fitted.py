@@ -317,11 +317,11 @@ def questions(made: Fit, experiments: list[Experiment]) -> list[str]:
         notes.append(
             "errors of elements and steps exceed those of most measurements: a smaller accuracy narrows the intervals"
         )
-    for name, row in made.table.iterrows():
-        best = made.best[str(name)]
-        low, high = made.scales.bounds[str(name)]
-        if min(abs(best / low - 1), abs(best / high - 1)) < 1e-3 and row["known"] == "yes":
-            notes.append(f"{name}: the best value is at a bound, {best:.4g}: are the bounds right?")
+    for at, (name, row) in zip(made.outcome.best, made.table.iterrows()):
+        if min(at, 1 - at) < 1e-3 and row["known"] == "yes":
+            notes.append(
+                f"{name}: the best value is at a bound, {made.best[str(name)]:.4g}: are the bounds right?"
+            )
     return notes[:12]
 
 
