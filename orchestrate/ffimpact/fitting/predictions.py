@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
@@ -10,9 +11,11 @@ import numpy as np
 
 from .. import flight
 from ..failure import BadInput, Failure, brief, unknown
+from ..input.dimension import AXISYMMETRIC
 from ..input.parameters import Table, Value
 from ..output.errors import errors
 from ..output.results import force_times, numbers, read_history, read_record
+from ..output.states import Fields
 from ..scene import Scene
 from ..scenes.entries import dependents
 from ..sweeps.study import place, study
@@ -21,6 +24,7 @@ from .experiments import Array, Curve, Experiment, crossing
 __all__ = ["DERIVED", "Runs", "checked_free", "features", "named", "observed"]
 
 PULSE = np.linspace(0, 1, 41)  # times of a force over its duration
+DENT = re.compile(r"dent_(depth|radius)(?:_([0-9]+))?")  # of the body of this number
 MESHED = ("mesh_size", "contact_mesh_size")
 LIMIT = 600.0  # largest time of a run [s]
 # Errors relative to the restitution's of numbers that follow from it
@@ -81,7 +85,7 @@ class Runs:
         # what the scene sets, such as a step, stays set while the free entries change
         self.own: list[dict[str, Value]] = [
             dependents(scene.content, [*centre, *e.entries])
-            | {"fields": 0}
+            | {"fields": 2 if any(DENT.fullmatch(number.name) for number in e.numbers) else 0}
             | dict(e.entries)
             | self._velocity(e)
             for e in self.experiments
@@ -125,9 +129,11 @@ class Runs:
             [self.features_by_point[next(listed)[:2]] for _ in points] for _ in self.experiments
         ]
 
-    def _features(self, i: int, row: Table, entries: dict[str, Value]) -> Array:
+    def _features(self, i: int, row: Table, entries: dict[str, Value]) -> Array | None:
+        """The features of a run; None if it has no answer, such as a ball that stays."""
         where = place(self.folder, entries)
-        return features(self.experiments[i], row, where, self.gravity, self.drag)
+        own = features(self.experiments[i], row, where, self.gravity, self.drag)
+        return own if np.isfinite(own).all() else None
 
     def fine(self, i: int, point: Mapping[str, Value], accuracy: float) -> tuple[Array, Array]:
         """What a run with elements and steps of this accuracy predicts for an experiment, and the
@@ -210,9 +216,8 @@ def features(experiment: Experiment, row: Table, where: Path, gravity: float, dr
     """What is interpolated between runs: the numbers; for each force its duration and its values at
     PULSE of it, for other curves the values at the measured times. Raises BadInput for unknown names.
     """
-    parts = [
-        np.array([_predicted(number.name, row, gravity, drag) for number in experiment.numbers])
-    ]
+    names = [number.name for number in experiment.numbers]
+    parts = [np.array([_predicted(name, row, where, gravity, drag) for name in names])]
     if experiment.curves:
         history, used = read_history(where), read_record(where).scene
         mean_times = force_times(history, used.get("integrator"))
@@ -224,7 +229,12 @@ def features(experiment: Experiment, row: Table, where: Path, gravity: float, dr
     return np.concatenate(parts)
 
 
-def _predicted(name: str, row: Table, gravity: float, drag: float) -> float:
+def _predicted(name: str, row: Table, where: Path, gravity: float, drag: float) -> float:
+    if dented := DENT.fullmatch(name):
+        summary = read_record(where).summary
+        revolution = summary["provenance"]["script"] == AXISYMMETRIC.script
+        states = Fields(where, revolution, summary.get("symmetric_along", ()))
+        return float(getattr(states.dent(int(dented[2] or 1)), dented[1]))
     if name in DERIVED:
         try:
             return DERIVED[name](row, gravity, drag)
