@@ -74,10 +74,11 @@ class Experiment:
 
     entries: entries of the scene by dotted names. speed [m/s] of the first body, or height [m] from
     which it fell. Each measured number has the name that it has in a result, or is interval_ratio,
-    rebound_height, or dent_depth_2 or dent_radius_2 of body 2; each curve that of a column of the history. A number is a pair (value, standard
-    error), or a table with value and error, or with the `values` of repeats, whose median and spread
-    are taken; `common` is an error that all numbers of a name share. A curve is a table with a `file`
-    (CSV with the columns t [s] and that of its name) and `error`; its `common` is relative.
+    rebound_height, or dent_depth_2 or dent_radius_2 of body 2; each curve that of a column of the
+    history. A number is a pair (value, standard error), or a table with value and error, or with the
+    `values` of repeats, whose median and spread are taken; `common` is an error that all numbers of a
+    name share. A curve is a table with a `file` (CSV with the columns t [s] and that of its name) and
+    `error`; its `common` is relative.
 
     Raises BadInput or Unreadable.
     """
