@@ -41,11 +41,14 @@ def superball(loss, young=5e6, loss_model="flat"):
 # %%
 # The loss factor
 # ---------------
-# Two quick runs give the restitution over the loss factor, and the loss factor at 0.78.
-losses = np.array([0.15, 0.25])
-restitutions = [ff.run(superball(loss), estimate=False)["restitution"] for loss in losses]
-fitted = np.interp(0.78, restitutions[::-1], losses[::-1])
+# The restitution of a normal impact, as a body of revolution, determines the loss factor.
+upright = ff.Ball(radius=radius, material=superball(0.2).bodies[0].material,
+                  position=1.002 * radius, velocity=-speed * np.cos(angle))  # fmt: skip
+normal = ff.Scene(dimension="axisymmetric", bodies=[upright], obstacles=[ff.Plane()], accuracy=0.02)
+fit = ff.fit(normal, {"body.1.loss": (0.05, 0.6)}, ff.Experiment(restitution=(0.78, 0.02)))
+fitted = fit.best["body.1.loss"]
 result = ff.run(superball(fitted))
+print(fit)
 print(f"loss factor {fitted:.3f}")
 result
 

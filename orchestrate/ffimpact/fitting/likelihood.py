@@ -195,15 +195,15 @@ class Likelihood:
         def above(value: float) -> float:
             return self._at(k, value, best, box)[1] - least - COVERED
 
-        n = middle
-        while 0 <= n < len(grid) and (rises[n] < COVERED or sign * (grid[n] - best[k]) <= 0):
+        inner, n = float(best[k]), middle
+        while 0 <= n < len(grid):
+            outer = float(grid[n])
+            # from the best values a smaller chi2 may be met than along the profile
+            if sign * (outer - best[k]) > 0 and rises[n] >= COVERED and above(outer) >= 0:
+                return inner if above(inner) >= 0 else float(brentq(above, inner, outer, xtol=1e-6))
+            inner = outer if sign * (outer - best[k]) > 0 else inner
             n += sign
-        if not 0 <= n < len(grid):
-            return None
-        inner = float(best[k] if (n - sign - middle) * sign <= 0 else grid[n - sign])
-        if above(inner) >= 0:
-            return inner
-        return float(brentq(above, inner, float(grid[n]), xtol=1e-6))
+        return None
 
 
 def _scattered(box: Box) -> Array:
