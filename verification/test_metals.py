@@ -81,3 +81,13 @@ def test_integrators_agree(tmp_path, integrator):
     run = metals.ball(tmp_path / "run", 20, 1e9, integrator=integrator, dt=4e-8, end_time=2.2e-5).summary
     assert run["restitution"] == pytest.approx(fine["restitution"], abs=0.005)
     assert run["energy_drift"] < (1e-9 if integrator == "energy-momentum" else 2e-3)
+
+
+def test_locked_in_stress_does_not_vibrate(tmp_path):
+    """A viscous ball comes to rest after its impact: what is left of its elastic energy is in stresses
+    that plastic strain has left in it, and no part of vibration_energy. Without viscosity these
+    stresses make no later contact possible."""
+    rest = metals.ball(tmp_path / "rest", 20, 3e8, viscosity=2e4, end_time=3e-4)
+    assert rest.history["elastic"][-1] > 0.3 * rest.summary["energy_final"]
+    assert rest.summary["vibration_energy"] < 1e-6 * rest.summary["energy_final"]
+    assert not metals.ball(tmp_path / "free", 20, 3e8).summary["later_contact_possible"]

@@ -1,10 +1,14 @@
 """Entries of metals: what is refused, and their numbers."""
 
+import math
+from dataclasses import replace
+
 import pytest
 
 import ffimpact as ff
 from ffimpact.failure import BadInput
 from ffimpact.scenes import assembly
+from ffimpact.scenes.sizes import Impact
 
 STEEL = {"young": 210e9, "nu": 0.3, "density": 7800.0}
 
@@ -58,3 +62,14 @@ def test_a_body_of_another_law_does_not_take_the_yield_stress_of_the_scene():
     scene = ff.Scene.read(STEEL | {"law": "metal", "yield_stress": 1e8, "body": bodies}).ready()
     first, second = (body.made_of for body in scene.bodies)
     assert first.yield_stress == 1e8 and second.yield_stress is None
+
+
+@pytest.mark.parametrize("sphere, work", [(True, lambda a, p: math.pi * a**4 * p / 4), (False, lambda a, p: 2 * a**3 * p / 3)], ids=["ball", "disc"])
+def test_a_yielding_contact_is_wider(sphere, work):
+    """Its half-width stores the kinetic energy at a pressure of 2.8 sigma_y; the penalty follows it."""
+    elastic = Impact(sphere, 1.0, 210e9, 0.3, 7800.0, 20.0, 0.02)
+    soft = replace(elastic, hardness=ff.Metal(**STEEL, yield_stress=2e8).hardness)
+    mass = 7800.0 * math.pi * (4 / 3 if sphere else 1)
+    assert work(soft.yielding_half_width, 2.8 * 2e8) == pytest.approx(mass * 20.0**2 / 2)
+    assert soft.penalty == pytest.approx(elastic.penalty * elastic.half_width / soft.yielding_half_width)
+    assert replace(elastic, hardness=1e12).penalty == elastic.penalty

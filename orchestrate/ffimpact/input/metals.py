@@ -4,6 +4,7 @@ Units are SI.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Annotated, Any
@@ -19,6 +20,7 @@ from .rules import Vector, number
 __all__ = ["OfMetal", "YIELD_ENTRIES", "YieldCurve"]
 
 LARGEST_CURVE = 1000  # points of a table
+TABOR = 2.8  # mean pressure of a dent over the yield stress
 
 
 @dataclass(frozen=True)
@@ -105,6 +107,12 @@ class OfMetal(Entries):
         rate0, n = self.perzyna or (1.0, 0.0)  # n = 0 and C = 0: no influence of the rate
         C, rate0 = self.johnson_cook or (0.0, rate0)
         return [self.hardening or 0.0, Q, b, n, C, rate0, *np.ravel(curve).tolist()]
+
+    @property
+    def hardness(self) -> float:
+        """The mean pressure [Pa] of a contact that yields, TABOR sigma_y; infinite without a metal."""
+        numbers = self.yield_numbers
+        return TABOR * numbers[7] if numbers else math.inf
 
     def refusals_of_metal(self, young: float) -> Iterator[tuple[str, str]]:
         """Yields what is wrong with the yield stress beside Young's modulus [Pa]."""

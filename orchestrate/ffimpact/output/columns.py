@@ -228,8 +228,8 @@ SUMMARY = (
     _part("kinetic_final", "J/m", "kinetic energy at the end"),
     _part("elastic_final", "J/m", "elastic energy at the end"),
     _both("vibration_energy", "J/m", "kinetic and elastic energy less translation_energy, "
-        "rotation_energy and that of the equilibrium with gases, at the end; stresses that plastic "
-        "strain leaves in a body are part of it"),
+        "rotation_energy and that of the equilibrium with gases, at the end; without that of stresses "
+        "which plastic strain leaves in a body"),
     _whole("translation_energy", "J/m", "of the centres of mass of bodies that nothing holds, at "
         "the end"),
     _whole("rotation_energy", "J/m", "of these L^2/(2 I) at the end, I of the deformed body"),

@@ -102,7 +102,9 @@ PROMISED = (
 RESULTS = (*PROMISED, "contact_time", "peak_force")
 # Results of the whole impact: a later contact changes them.
 OF_IMPACT = ("impulse", "rebound", "rebound_spin", "thresholded_contact_time", "contact_time")
-TIMES = ("thresholded_contact_time", "contact_time")
+# Results with the order SLOWEST p: vibration decides when forces end, and the largest penetration is
+# that of a single point.
+SLOW = ("thresholded_contact_time", "contact_time", "max_penetration")
 AT_END = ("rebound", "final")  # velocities at the end of contact and of the run
 # First words of the messages `skipped` about steps that integrator = auto has not chosen.
 STEPS = ("explicit steps (", "implicit steps (")
@@ -268,7 +270,7 @@ def error_estimates(runs: Sequence[Answers]) -> dict[str, float]:
     ratio = _ratio(pairs, _order(runs[0]))
     slowest = math.pow(COARSER, SLOWEST * _order(runs[0]))
     estimates = {
-        name: _extrapolated([pair[name] for pair in pairs], slowest if name in TIMES else ratio)
+        name: _extrapolated([pair[name] for pair in pairs], slowest if name in SLOW else ratio)
         for name in pairs[0]
     }
     # All levels may have the same drift, so their differences do not show it.

@@ -393,6 +393,7 @@ class AutomaticValues:
             nu=soft.touching.nu,
             density=soft.touching.density,
             damping=soft.touching.damping,
+            hardness=min(body.touching.hardness for body in bodies),
             closing=along,
             pressing=pressing,
             exponent=scene.number("exponent"),

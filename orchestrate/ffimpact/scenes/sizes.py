@@ -75,6 +75,7 @@ class Impact:
     end_time: float = 0.0
     endless: bool = False
     damping: Damping = Damping()
+    hardness: float = math.inf  # mean pressure [Pa] of the contact of a metal that yields
     given_contact_size: float = 0.0  # of a mesh whose elements at the contact are given [m]
 
     @property
@@ -133,6 +134,19 @@ class Impact:
         share = 1.31 * share**0.4 if self.sphere else 1.42 * math.sqrt(share)
         return min(WIDEST, max(NARROWEST, share))
 
+    @property
+    def yielding_half_width(self) -> float:
+        """The half-width a [m] of the contact, which is wider where a metal yields.
+
+        A pressure H resists with pi a^2 H, or 2 a H, through the depth a^2/(2 R). The kinetic energy
+        is pi a^4 H/(4 R) of a ball, 2 a^3 H/(3 R) of a disc.
+        """
+        pressure = self.density * self._fall(self._bar_speed) ** 2 / self.hardness
+        share = math.pow(8 / 3 * pressure, 1 / 4)
+        if not self.sphere:
+            share = math.pow(3 * math.pi / 4 * pressure, 1 / 3)
+        return max(self.half_width, self.radius * min(WIDEST, share))
+
     def _fall(self, c: float) -> float:
         """Returns the normal velocity [m/s] that makes as wide a contact, with the weight."""
         weight = self.radius * abs(self.pressing)
@@ -157,7 +171,9 @@ class Impact:
     @property
     def penalty(self) -> float:
         """The penalty k [Pa/m^m]: the pressure makes a small penetration."""
-        b = max(self.half_width, min(WIDEST * self.radius, ELEMENTS * self.given_contact_size))
+        b = max(
+            self.yielding_half_width, min(WIDEST * self.radius, ELEMENTS * self.given_contact_size)
+        )
         tangent = self._in_impact[1]
         stiff = STIFF_BALL if self.sphere else STIFF_DISC
         pressed = b**2 / self.radius / stiff / max(1 + tangent, DAMPED * tangent / self.accuracy)
@@ -222,8 +238,9 @@ class Impact:
         followed = self.endless or (self.end_time > 0 and self.pressing > 0)
         if self._speed_along > 0 and followed:
             return math.pi
-        rolled = self.half_width + 0.4 * self._speed_along * self._lasts
-        return min(math.pi, max(math.pi / 2 * self.half_width, rolled) / self.radius)
+        width = self.yielding_half_width
+        rolled = width + 0.4 * self._speed_along * self._lasts
+        return min(math.pi, max(math.pi / 2 * width, rolled) / self.radius)
 
 
 def _rounded(value: float) -> float:
