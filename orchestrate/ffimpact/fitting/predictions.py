@@ -225,7 +225,7 @@ def features(experiment: Experiment, row: Table, where: Path, gravity: float, dr
             if curve.name not in history:
                 raise BadInput(f"experiment: {unknown(curve.name, sorted(history), ', ')}")
             times = mean_times if "force" in curve.name else history["t"]
-            parts.append(_sampled(curve, times, history[curve.name]))
+            parts.append(_sampled(curve, times, history[curve.name], float(history["t"][-1])))
     return np.concatenate(parts)
 
 
@@ -247,9 +247,17 @@ def _predicted(name: str, row: Table, where: Path, gravity: float, drag: float) 
     return float(row[name])
 
 
-def _sampled(curve: Curve, times: Array, values: Array) -> Array:
+def _sampled(curve: Curve, times: Array, values: Array, end: float) -> Array:
     if not curve.onset:
-        return np.interp(curve.times, times, values)
+        if curve.times[-1] > end * (1 + 1e-9):
+            raise BadInput(
+                f"experiment: {curve.name} is measured to {curve.times[-1]:g} s, the run ends at {end:g} s "
+                "(accepted: a later end_time)"
+            )
+        # from the middle of the last step to its end
+        ahead = (end - times[-1]) * (values[-1] - values[-2]) / (times[-1] - times[-2])
+        longer = np.append(times, end), np.append(values, values[-1] + ahead)
+        return np.interp(curve.times, *longer)
     largest = float(values.max())
     if largest <= 0:
         raise BadInput(
@@ -257,9 +265,8 @@ def _sampled(curve: Curve, times: Array, values: Array) -> Array:
         )
     start = crossing(times, values, curve.onset * largest)
     over = values > curve.onset * largest
-    end = float(times[np.flatnonzero(over)[-1]])
-    # a force that has not ended is followed to the end of the run
-    duration = (end - start) * 1.25
+    # the force is followed a quarter longer than it lasts above the onset
+    duration = (float(times[np.flatnonzero(over)[-1]]) - start) * 1.25
     return np.append(duration, np.interp(start + duration * PULSE, times, values, right=0.0))
 
 
