@@ -20,7 +20,9 @@ SCANNED = 9  # logarithm to base 2 of the points at which chi2 is looked at
 STARTS = 4  # of these from which the best values are sought
 DRAWN = 33  # points of a profile
 UNIFORM = 12.0  # information of a uniform prior between 0 and 1
-STATED = 2.0  # stated errors hold for 95 %: so many standard errors
+# Stated errors are so many standard errors. They are bounds, in the median four to five times the
+# errors (docs/measurements); half of the errors of a normal distribution are below 0.67 of one.
+STATED = 3.0
 
 
 def covariance(experiments: Sequence[Experiment], stated: Sequence[Array]) -> Array:

@@ -257,7 +257,8 @@ def _sampled(curve: Curve, times: Array, values: Array, end: float) -> Array:
         # from the middle of the last step to its end
         ahead = (end - times[-1]) * (values[-1] - values[-2]) / (times[-1] - times[-2])
         longer = np.append(times, end), np.append(values, values[-1] + ahead)
-        return np.interp(curve.times, *longer)
+        at_times: Array = np.interp(curve.times, *longer)
+        return at_times
     largest = float(values.max())
     if largest <= 0:
         raise BadInput(
