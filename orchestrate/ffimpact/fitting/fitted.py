@@ -168,8 +168,9 @@ class Fit:
         if any(answer is None for answer in answers):
             raise BadInput("predict: a run within the covariance of the entries does not end")
         predicted = np.array(answers)
-        half = (predicted[1::2] - predicted[2::2]) / 2
-        parameters = 1.96 * np.sqrt((half**2).sum(axis=0))
+        # the larger of both sides, as one may be cut off by a bound
+        away = np.maximum(*(np.abs(predicted[k::2] - predicted[0]) for k in (1, 2)))
+        parameters = 1.96 * np.sqrt((away**2).sum(axis=0))
         value, stated = runs.fine(0, self.best, accuracy or self.accuracy)
         rows = [
             {
