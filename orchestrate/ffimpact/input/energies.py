@@ -170,8 +170,8 @@ class Energy:
             return (
                 f": has the bulk modulus {lame + 2 / 3 * mu:.6g} Pa at rest (accepted: more than 0)"
             )
-        if not 0 <= self.nu() <= LARGEST_NU:
-            return f": makes Poisson's ratio {self.nu():.6g} (accepted: 0 to {LARGEST_NU}, or nu = 0.5: J = 1)"
+        if self.nu() > LARGEST_NU:
+            return f": makes Poisson's ratio {self.nu():.6g} (accepted: up to {LARGEST_NU}, or nu = 0.5: J = 1)"
         return ""
 
     def _unsymmetric(self, code: Sequence[float]) -> str:

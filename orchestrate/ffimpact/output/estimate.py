@@ -15,7 +15,7 @@ an impact runs agree by chance. So the error estimate of a result is
        in a flat strike, as its penalty follows the elements (scenes/front.py). Elsewhere errors
        fall more slowly. So q is the median of the orders of all results, by the differences of the
        two pairs, but at least SLOWEST p and at most p. The order of a single result scatters.
-       Contact times always have the order SLOWEST p: vibration decides when forces end.
+       The results SLOW always have the order SLOWEST p.
 
 If errors are of order q, the two differences have the ratio r^q; if they scatter, they are about
 equal. Most errors are in between, so the second difference is divided by r^(q/2). All results of
