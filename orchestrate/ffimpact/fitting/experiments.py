@@ -272,9 +272,8 @@ def _read(name: str, what: Mapping[str, Any]) -> tuple[str, pd.DataFrame]:
         try:
             table = pd.read_csv(path)
         except (OSError, ValueError) as error:
-            raise Unreadable(
-                f"{path} cannot be read: {brief(str(error))} (accepted: a CSV file)"
-            ) from None
+            why = getattr(error, "strerror", None) or brief(str(error))
+            raise Unreadable(f"{path} cannot be read: {why} (accepted: a CSV file)") from None
     if missing := [column for column in ("t", name) if column not in table]:
         raise BadInput(f"{where}: has no column {', '.join(missing)} (accepted: t [s] and {name})")
     return where, table[["t", name]].apply(pd.to_numeric, errors="coerce")

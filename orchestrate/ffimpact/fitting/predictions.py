@@ -243,7 +243,9 @@ def _predicted(name: str, row: Table, where: Path, gravity: float, drag: float) 
                 f"experiment: {name} needs a body that rebounds from an obstacle"
             ) from None
     if name not in row or not isinstance(row[name], int | float):
-        raise BadInput(f"experiment: {unknown(name, [*numbers(row), *DERIVED], ', ')}")
+        raise BadInput(
+            f"experiment: {unknown(name, [*numbers(read_record(where).summary), *DERIVED, 'dent_depth_1', 'dent_radius_1'], ', ')}"
+        )
     return float(row[name])
 
 
