@@ -97,6 +97,17 @@ def test_restitution_alone_does_not_tell_the_modulus(folder, measured, tmp_path)
     assert told.table.loc["body.1.loss", "known"] == "yes" and "cannot refuse" in told.verdict
 
 
+def test_a_marker_on_the_ball_determines_the_modulus(folder, tmp_path):
+    """The way of a point near the top, in mm on a film whose origin is anywhere."""
+    seen = ff.run(folder / "ball.toml", TRUTH, accuracy=0.02, fields=200, estimate=False, figures=False, out=tmp_path / "film", progress=False).probe(0.0, 0.015)
+    part = seen.iloc[:: max(1, len(seen) // 30)]
+    table = {"t": part.t.tolist(), "y": (1e3 * part.y + 7).tolist()}
+    film = ff.Experiment(track={"table": table, "error": 2e-5, "point": (0.0, 0.015), "scale": 1e-3})
+    told = ff.fit(folder / "ball.toml", MODULUS, film, {"body.1.loss": 0.11, "end_time": 2.5e-3}, out=tmp_path / "fit", confirm=False, progress=False)
+    row = told.table.iloc[0]
+    assert row["low"] < 4.3e7 < row["high"] < 1.2 * row["low"] and told.p > 0.05
+
+
 def test_contradictory_and_misread_data_are_questioned(folder, measured, tmp_path):
     """Heights in cm, and two contact times of the same impact that differ by a tenth."""
     time = measured["contact_time"]

@@ -57,6 +57,11 @@ def test_a_force_begins_where_it_rises(tmp_path):
         ({"normal_force": {"table": {"t": [0, 1, 2, 3], "normal_force": [0, 1, "x", 0]}, "error": 0.1}}, "row 3"),
         ({"normal_force": {"table": {"t": [0, 1, 2, 3], "normal_force": [0, 1, 2, 0]}, "error": 9}}, "above its noise"),
         ({"normal_force": {"table": {"t": [0, 1, 2, 3], "normal_force": [0, 1, 2, 0]}}}, "has no error"),
+        ({"track": (1, 2)}, "a table with file, error, point"),
+        ({"track": {"table": {"t": [0, 1, 2, 3], "y": [0, 1, 2, 3]}, "error": 1}}, "no point"),
+        ({"track": {"table": {"t": [0, 1, 2, 3], "y": [0, 1, 2, 3]}, "error": 1, "point": 3}}, "point 3"),
+        ({"track": {"table": {"t": [0, 1, 2, 3], "v": [0, 1, 2, 3]}, "error": 1, "point": (0, 0)}}, "of t, x, y"),
+        ({"track": {"table": {"t": [0, 1, 1, 3], "y": [0, 1, 2, 3]}, "error": 1, "point": (0, 0)}}, "do not increase"),
     ],
 )
 def test_what_is_no_measurement_is_refused_in_words(what, words):

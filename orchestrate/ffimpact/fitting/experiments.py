@@ -30,6 +30,7 @@ ONSET = 0.05  # a force begins where it first exceeds this share of its largest 
 ABOVE_NOISE = 4.0  # or this many times its error
 UNSURE = 0.1  # share of the time between two samples by which a beginning is uncertain
 NUMBER = ("value", "values", "error", "common")  # accepted in the table of a number,
+TRACK = ("file", "table", "error", "point", "body", "scale")  # of a marker
 CURVE = ("file", "table", "error", "common", "start")  # and of a curve
 STARTS = ("onset", "clock")
 PULSES = ("normal_force", "normal_load")  # curves of one impact, which begin with it
@@ -58,6 +59,8 @@ class Curve:
 
     With an `onset`, a share of the largest value, time zero is where the values first exceed it, in
     the run likewise; `shift` [s] is the standard error of this. Without, times are those of the run.
+    Of a `marker`, a body and a material point of it from the centre of mass on [m], the values are the
+    ways along the axis `name` since the first time.
     """
 
     name: str
@@ -67,6 +70,7 @@ class Curve:
     common: float = 0.0
     onset: float = 0.0
     shift: float = 0.0
+    marker: tuple[int, tuple[float, ...]] | None = None
 
 
 class Experiment:
@@ -75,7 +79,8 @@ class Experiment:
     entries: entries of the scene by dotted names. speed [m/s] of the first body, or height [m] from
     which it fell. Each measured number has the name that it has in a result, or is interval_ratio,
     rebound_height, or dent_depth_2 or dent_radius_2 of body 2; each curve that of a column of the
-    history. A number is a pair (value, standard error), or a table with value and error, or with the
+    history; track is a marker on a body: its file has the columns t and x, y (, z), `scale` their unit
+    in m, `point` its place from the centre of mass on. A number is a pair (value, standard error), or a table with value and error, or with the
     `values` of repeats, whose median and spread are taken; `common` is an error that all numbers of a
     name share. A curve is a table with a `file` (CSV with the columns t [s] and that of its name) and
     `error`; its `common` is relative.
@@ -107,11 +112,15 @@ class Experiment:
         self.speed, self.height, self.name = speed, height, name
         self.numbers: list[Number] = []
         self.curves: list[Curve] = []
-        self.tables: dict[str, pd.DataFrame] = {}  # of the curves, as they were measured
+        self.tables: dict[str, dict[str, Any]] = {}  # of the curves, as they were measured
         for word, what in measured.items():
-            if isinstance(what, Mapping) and {"file", "table"} & set(what):
-                where, self.tables[word] = _read(word, what)
-                self.curves.append(_curve(word, what, where, self.tables[word]))
+            if word == "track":
+                self.curves += _track(what)
+                self.tables[word] = _listed(what, _read(("t",), what)[1])
+            elif isinstance(what, Mapping) and {"file", "table"} & set(what):
+                where, table = _read(("t", word), what)
+                self.tables[word] = _listed(what, table[["t", word]])
+                self.curves.append(_curve(word, what, where, table))
             else:
                 self.numbers.append(_measured(word, what))
 
@@ -262,10 +271,49 @@ def _thinned(curve: Curve) -> Curve:
     return Curve(curve.name, times, values, curve.error, curve.common, curve.onset, curve.shift)
 
 
-def _read(name: str, what: Mapping[str, Any]) -> tuple[str, pd.DataFrame]:
-    """The table of a curve, and how messages name it."""
+def _listed(what: Mapping[str, Any], table: pd.DataFrame) -> dict[str, Any]:
+    """A curve as it was given, with its table in place of the file."""
+    own = {name: value for name, value in what.items() if name != "file"}
+    return plain(own | {"table": table.to_dict("list")})  # type: ignore[no-any-return]
+
+
+def _track(what: Any) -> list[Curve]:
+    """The curves of a marker on a body, one for each measured axis."""
+    if not isinstance(what, Mapping) or not {"file", "table"} & set(what):
+        raise BadInput(f"track: '{brief(what)}' (accepted: a table with file, error, point)")
+    for word in what:
+        if word not in TRACK:
+            raise BadInput(f"track: {unknown(word, TRACK, ', ')}")
+    if "error" not in what or "point" not in what:
+        raise BadInput("track: has no error or no point (accepted: both, in m)")
+    error, scale, body = (_number(f"track.{w}", what.get(w, 1)) for w in ("error", "scale", "body"))
+    point = np.asarray(what["point"], dtype=float)
+    if point.ndim != 1 or len(point) not in (2, 3) or not 0 < error < math.inf or scale == 0:
+        raise BadInput(
+            f"track: point {brief(what['point'])}, error {error:g}, scale {scale:g} (accepted: two or three "
+            "coordinates, error above 0, scale in m for a unit of the file)"
+        )
+    where, table = _read(("t",), what)
+    axes = [axis for axis in "xyz" if axis in table]
+    columns = table[["t", *axes]].to_numpy(float)
+    if not axes or not np.isfinite(columns).all() or len(table) < 4:
+        raise BadInput(
+            f"{where}: {len(table)} rows of {', '.join(table)} (accepted: 4 or more of t, x, y in numbers)"
+        )
+    if (np.diff(columns[:, 0]) <= 0).any():
+        raise BadInput(f"{where}: times do not increase (accepted: each later than the one before)")
+    curves = []
+    for axis, values in zip(axes, columns[:, 1:].T):
+        curve = _thinned(Curve(axis, columns[:, 0], scale * values, error))
+        ways = curve.values - curve.values[0]
+        curves.append(replace(curve, values=ways, marker=(int(body), tuple(point.tolist()))))
+    return curves
+
+
+def _read(names: tuple[str, ...], what: Mapping[str, Any]) -> tuple[str, pd.DataFrame]:
+    """The table of a curve with the columns `names`, and how messages name it."""
     if "table" in what:
-        where, table = name, pd.DataFrame(what["table"])
+        where, table = names[-1], pd.DataFrame(what["table"])
     else:
         path = Path(str(what["file"]))
         where = str(path)
@@ -274,6 +322,8 @@ def _read(name: str, what: Mapping[str, Any]) -> tuple[str, pd.DataFrame]:
         except (OSError, ValueError) as error:
             why = getattr(error, "strerror", None) or brief(str(error))
             raise Unreadable(f"{path} cannot be read: {why} (accepted: a CSV file)") from None
-    if missing := [column for column in ("t", name) if column not in table]:
-        raise BadInput(f"{where}: has no column {', '.join(missing)} (accepted: t [s] and {name})")
-    return where, table[["t", name]].apply(pd.to_numeric, errors="coerce")
+    if missing := [column for column in names if column not in table]:
+        raise BadInput(
+            f"{where}: has no column {', '.join(missing)} (accepted: {', '.join(names)}, t in s)"
+        )
+    return where, table.apply(pd.to_numeric, errors="coerce")

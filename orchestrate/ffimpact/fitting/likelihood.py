@@ -50,6 +50,8 @@ def covariance(experiments: Sequence[Experiment], stated: Sequence[Array]) -> Ar
             sources["elements", curve.name][at] = next(errors) * curve.values
             sources["duration", curve.name][at] = next(errors) * curve.times * slope
             sources[f"start {k}", curve.name][at] = curve.shift * slope
+            if curve.marker:  # the error of the first place, from which the others are measured
+                sources[f"origin {k}", curve.name][at] = curve.error
             k += len(curve.values)
     return np.asarray(np.diag(own**2) + sum(np.outer(part, part) for part in sources.values()))
 

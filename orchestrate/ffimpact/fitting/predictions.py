@@ -26,6 +26,7 @@ __all__ = ["DERIVED", "Runs", "checked_free", "features", "named", "observed"]
 PULSE = np.linspace(0, 1, 41)  # times of a force over its duration
 DENT = re.compile(r"dent_(depth|radius)(?:_([0-9]+))?")  # of the body of this number
 MESHED = ("mesh_size", "contact_mesh_size")
+TRACKED = 200  # states that a run keeps for a track
 LIMIT = 600.0  # largest time of a run [s]
 # Errors relative to the restitution's of numbers that follow from it
 POWER = {"rebound_height": 2.0, "interval_ratio": 1.0}
@@ -85,7 +86,7 @@ class Runs:
         # what the scene sets, such as a step, stays set while the free entries change
         self.own: list[dict[str, Value]] = [
             dependents(scene.content, [*centre, *e.entries])
-            | {"fields": 2 if any(DENT.fullmatch(number.name) for number in e.numbers) else 0}
+            | {"fields": _states(e)}
             | dict(e.entries)
             | self._velocity(e)
             for e in self.experiments
@@ -132,7 +133,10 @@ class Runs:
     def _features(self, i: int, row: Table, entries: dict[str, Value]) -> Array | None:
         """The features of a run; None if it has no answer, such as a ball that stays."""
         where = place(self.folder, entries)
-        own = features(self.experiments[i], row, where, self.gravity, self.drag)
+        try:
+            own = features(self.experiments[i], row, where, self.gravity, self.drag)
+        except BadInput:  # such as a dent of a body that has not yielded
+            return None
         return own if np.isfinite(own).all() else None
 
     def fine(self, i: int, point: Mapping[str, Value], accuracy: float) -> tuple[Array, Array]:
@@ -179,6 +183,19 @@ class Runs:
         return {f"body.1.velocity.{k}": speed * v / size for k, v in enumerate(velocity, 1) if v}
 
 
+def _states(experiment: Experiment) -> int:
+    """The number of states that a run keeps for an experiment."""
+    if any(curve.marker for curve in experiment.curves):
+        return TRACKED
+    return 2 if any(DENT.fullmatch(number.name) for number in experiment.numbers) else 0
+
+
+def _fields(where: Path) -> Fields:
+    summary = read_record(where).summary
+    revolution = summary["provenance"]["script"] == AXISYMMETRIC.script
+    return Fields(where, revolution, summary.get("symmetric_along", ()))
+
+
 def _meshes(where: Path) -> dict[str, Value]:
     """The sizes of elements that a run has used, by dotted names."""
     bodies = read_record(where).scene["body"]
@@ -222,6 +239,9 @@ def features(experiment: Experiment, row: Table, where: Path, gravity: float, dr
         history, used = read_history(where), read_record(where).scene
         mean_times = force_times(history, used.get("integrator"))
         for curve in experiment.curves:
+            if curve.marker:
+                parts.append(_moved(curve, where))
+                continue
             if curve.name not in history:
                 raise BadInput(f"experiment: {unknown(curve.name, sorted(history), ', ')}")
             times = mean_times if "force" in curve.name else history["t"]
@@ -231,10 +251,7 @@ def features(experiment: Experiment, row: Table, where: Path, gravity: float, dr
 
 def _predicted(name: str, row: Table, where: Path, gravity: float, drag: float) -> float:
     if dented := DENT.fullmatch(name):
-        summary = read_record(where).summary
-        revolution = summary["provenance"]["script"] == AXISYMMETRIC.script
-        states = Fields(where, revolution, summary.get("symmetric_along", ()))
-        return float(getattr(states.dent(int(dented[2] or 1)), dented[1]))
+        return float(getattr(_fields(where).dent(int(dented[2] or 1)), dented[1]))
     if name in DERIVED:
         try:
             return DERIVED[name](row, gravity, drag)
@@ -247,6 +264,19 @@ def _predicted(name: str, row: Table, where: Path, gravity: float, drag: float) 
             f"experiment: {unknown(name, [*numbers(read_record(where).summary), *DERIVED, 'dent_depth_1', 'dent_radius_1'], ', ')}"
         )
     return float(row[name])
+
+
+def _moved(curve: Curve, where: Path) -> Array:
+    """The ways of a marker along an axis since the first measured time."""
+    body, point = curve.marker or (1, ())
+    seen = _fields(where).probe(point, body)
+    if curve.times[-1] > seen["t"].iloc[-1] * (1 + 1e-9):
+        raise BadInput(
+            f"experiment: track is measured to {curve.times[-1]:g} s, the run ends at {seen['t'].iloc[-1]:g} s "
+            "(accepted: a later end_time)"
+        )
+    at: Array = np.interp(curve.times, seen["t"], seen[curve.name])
+    return np.asarray(at - at[0])
 
 
 def _sampled(curve: Curve, times: Array, values: Array, end: float) -> Array:

@@ -73,13 +73,4 @@ def _table(experiment: Experiment) -> Table:
     table |= {"set": experiment.entries} if experiment.entries else {}
     for number in experiment.numbers:
         table[number.name] = {"value": number.value, "error": number.error, "common": number.common}
-    for curve in experiment.curves:
-        columns = experiment.tables[curve.name].to_dict("list")
-        start = "onset" if curve.onset else "clock"
-        table[curve.name] = {
-            "table": columns,
-            "error": curve.error,
-            "common": curve.common,
-            "start": start,
-        }
-    return table
+    return table | experiment.tables
