@@ -79,11 +79,13 @@ class Experiment:
     entries: entries of the scene by dotted names. speed [m/s] of the first body, or height [m] from
     which it fell. Each measured number has the name that it has in a result, or is interval_ratio,
     rebound_height, or dent_depth_2 or dent_radius_2 of body 2; each curve that of a column of the
-    history; track is a marker on a body: its file has the columns t and x, y (, z), `scale` their unit
-    in m, `point` its place from the centre of mass on. A number is a pair (value, standard error), or a table with value and error, or with the
-    `values` of repeats, whose median and spread are taken; `common` is an error that all numbers of a
-    name share. A curve is a table with a `file` (CSV with the columns t [s] and that of its name) and
-    `error`; its `common` is relative.
+    history; track is a marker on a body.
+
+    A number is a pair (value, standard error), or a table with value and error, or with the `values`
+    of repeats, whose median and spread are taken; `common` is an error that all numbers of a name
+    share. A curve is a table with a `file` (CSV with the columns t [s] and that of its name) and
+    `error`; its `common` is relative. The file of a track has the columns t and x, y (, z), `scale` is
+    their unit in m, `point` its place from the centre of mass on [m].
 
     Raises BadInput or Unreadable.
     """
