@@ -8,6 +8,7 @@ import pytest
 
 import ffimpact as ff
 from ffimpact.__main__ import main
+from ffimpact.failure import BadInput
 from tests.support.cli import start, wait_for
 
 SCENE = """dimension = "axisymmetric"
@@ -75,6 +76,18 @@ def test_the_fitted_scene_runs_and_other_speeds_are_predicted(fitted, folder):
 def test_the_experiment_that_tells_most_is_first(fitted):
     table = fitted.next([ff.Experiment(speed=2, contact_time=(None, 1e-4)), ff.Experiment(speed=2, contact_time=(None, 1e-6))])
     assert (table <= 1).all().all() and table["body.1.young"].is_monotonic_increasing and table["body.1.young"].iloc[0] < 0.95 < 0.99 < table["body.1.young"].iloc[1]
+
+
+def test_a_free_entry_is_not_set_by_what_is_predicted(fitted):
+    for act in (lambda: fitted.predict({"body.1.young": 5e7}), lambda: fitted.next(ff.Experiment({"body.1.young": 5e7}, contact_time=(None, 1e-5)))):
+        with pytest.raises(BadInput, match="body.1.young is free"):
+            act()
+
+
+def test_as_many_values_as_entries_that_do_not_agree(folder, measured, tmp_path):
+    """A contact time outside what the bounds allow: the model is refused all the same."""
+    told = ff.fit(folder / "ball.toml", {"body.1.young": (3e8, 1e9)}, ff.Experiment(contact_time=(measured["contact_time"], 1e-5)), out=tmp_path / "fit", confirm=False, progress=False)
+    assert told.freedom == 0 and "is refused" in told.verdict and any("no values between the bounds agree" in note for note in told.notes)
 
 
 def test_files_of_a_fit_make_it_again(fitted, folder, capsys):

@@ -205,7 +205,10 @@ def _of_repeats(name: str, values: Any) -> tuple[float, float]:
     """Median of repeats and its standard error. Repeats scatter asymmetrically, since roughness
     makes spin of speed (Montaine and others 2011), so no mean is taken.
     """
-    repeats = np.asarray(values, dtype=float) if np.ndim(values) == 1 else np.empty(0)
+    try:
+        repeats = np.asarray(values, dtype=float).ravel()
+    except (TypeError, ValueError):
+        repeats = np.empty(0)
     if len(repeats) < 3 or not np.isfinite(repeats).all():
         raise BadInput(f"{name}: values = {brief(values)} (accepted: three finite numbers or more)")
     median = float(np.median(repeats))
@@ -289,7 +292,10 @@ def _track(what: Any) -> list[Curve]:
     if "error" not in what or "point" not in what:
         raise BadInput("track: has no error or no point (accepted: both, in m)")
     error, scale, body = (_number(f"track.{w}", what.get(w, 1)) for w in ("error", "scale", "body"))
-    point = np.asarray(what["point"], dtype=float)
+    try:
+        point = np.asarray(what["point"], dtype=float)
+    except (TypeError, ValueError):
+        point = np.empty(0)
     if point.ndim != 1 or len(point) not in (2, 3) or not 0 < error < math.inf or scale == 0:
         raise BadInput(
             f"track: point {brief(what['point'])}, error {error:g}, scale {scale:g} (accepted: two or three "
@@ -315,7 +321,11 @@ def _track(what: Any) -> list[Curve]:
 def _read(names: tuple[str, ...], what: Mapping[str, Any]) -> tuple[str, pd.DataFrame]:
     """The table of a curve with the columns `names`, and how messages name it."""
     if "table" in what:
-        where, table = names[-1], pd.DataFrame(what["table"])
+        where = names[-1]
+        try:
+            table = pd.DataFrame(what["table"])
+        except (TypeError, ValueError) as error:
+            raise BadInput(f"{where}: is no table: {brief(str(error))}") from None
     else:
         path = Path(str(what["file"]))
         where = str(path)

@@ -73,8 +73,9 @@ def fit(
     )
     with muted(progress is False):
         centre = scales.entries(np.full(len(scales.names), 0.5))
+        known_before = _priors(scales, priors)
         runs = Runs(loaded, every, folder, centre, cores=workers or freefem.CORES, air=air)
-        outcome = search(runs, scales, _priors(scales, priors), robust)
+        outcome = search(runs, scales, known_before, robust)
         settings = {"free": {name: list(pair) for name, pair in scales.bounds.items()}}
         settings |= {"priors": {name: list(pair) for name, pair in (priors or {}).items()}}
         made = Fit(scales, runs, outcome, settings | {"robust": robust, "air": air})
@@ -92,10 +93,6 @@ def _check(experiments: list[Experiment], scales: Scales, priors: Mapping[str, A
         for number in e.numbers:
             if math.isnan(number.value):
                 raise BadInput(f"{number.name}: has no value (accepted: the measured value)")
-        if both := set(e.entries) & set(scales.names):
-            raise BadInput(
-                f"experiment: {both.pop()} is free (accepted: set by the experiments, or free)"
-            )
     values = sum(len(e.values) for e in experiments)
     if values + len(priors or {}) < len(scales.names):
         raise BadInput(
@@ -109,12 +106,29 @@ def _priors(scales: Scales, priors: Mapping[str, Sequence[float]] | None) -> Arr
     for name, pair in (priors or {}).items():
         if name not in scales.names:
             raise BadInput(f"priors: {unknown(name, scales.names, ', ')}")
-        if np.ndim(pair) != 1 or len(pair) != 2 or not pair[1] > 0:
-            raise BadInput(f"priors: {name}: '{brief(pair)}' (accepted: value and standard error)")
-        at = scales.coordinates(
-            scales.entries(np.full(len(scales.names), 0.5)) | {name: float(pair[0])}
-        )
+        value, error = _pair(name, pair)
+        low = scales.bounds[name][0]
+        if value <= 0 and scales.logarithmic[scales.names.index(name)]:
+            raise BadInput(
+                f"priors: {name}: {value:g} (accepted: above 0, as its bounds from {low:g} on)"
+            )
+        at = scales.coordinates(scales.entries(np.full(len(scales.names), 0.5)) | {name: value})
         k = scales.names.index(name)
         beside = scales.values(at + 1e-4 * np.eye(len(at))[k])[k]
-        table[k] = at[k], float(pair[1]) / ((beside - float(pair[0])) / 1e-4)
+        table[k] = at[k], error / ((beside - value) / 1e-4)
     return table
+
+
+def _pair(name: str, pair: Any) -> tuple[float, float]:
+    """Value and standard error of a prior."""
+    try:
+        value, error = (float(number) for number in pair)
+    except (TypeError, ValueError):
+        raise BadInput(
+            f"priors: {name}: '{brief(pair)}' (accepted: value and standard error)"
+        ) from None
+    if not (math.isfinite(value) and 0 < error < math.inf):
+        raise BadInput(
+            f"priors: {name}: {value:g}, {error:g} (accepted: a number, and an error above 0)"
+        )
+    return value, error

@@ -15,7 +15,7 @@ from ..scene import Scene
 from ..sweeps.study import unit_of
 from .emulator import Scales
 from .experiments import LIKE_BEFORE, Experiment
-from .likelihood import covariance
+from .likelihood import COVERED, covariance
 from .predictions import Runs, named
 from .search import Found
 
@@ -47,7 +47,8 @@ class Fit:
         self.chi2 = outcome.least
         known_before = int(np.isfinite(outcome.likelihood.priors[:, 1]).sum())
         self.freedom = len(outcome.predicted) + known_before - len(scales.names)
-        self.p = _probability(self.chi2, self.freedom)
+        tested = 0 if settings.get("robust") else self.freedom
+        self.p = _probability(self.chi2, tested)
         self.notes: list[str] = []
         spread = np.linalg.inv(outcome.information)
         sizes = np.sqrt(np.diag(spread))
@@ -63,6 +64,12 @@ class Fit:
     @property
     def verdict(self) -> str:
         """What chi2 says of the model."""
+        if self.settings.get("robust"):
+            return (
+                f"robust: chi2 {self.chi2:.3g} of {self.freedom} degrees of freedom is not tested"
+            )
+        if self.freedom < 1 and self.chi2 > COVERED:
+            return f"the model is refused: as many values as free entries, and still chi2 {self.chi2:.3g}"
         if self.freedom < 1:
             return "as many values as free entries: they cannot refuse the model"
         words = f"chi2 {self.chi2:.3g} of {self.freedom} degrees of freedom, p = {self.p:.2g}"
@@ -188,10 +195,11 @@ class Fit:
     def accuracy(self) -> float:
         return float(self.start.number("accuracy"))
 
-    def next(self, candidates: Sequence[Experiment]) -> pd.DataFrame:
+    def next(self, candidates: Sequence[Experiment] | Experiment) -> pd.DataFrame:
         """What each of the candidates would add: the standard error of each free entry with it over that
         without. Only the errors of their measurements count; values may be None. Best first.
         """
+        candidates = [candidates] if isinstance(candidates, Experiment) else list(candidates)
         runs, at, box = (
             self.laboratory.with_experiments(candidates, self.best),
             self.outcome.best,
@@ -209,7 +217,7 @@ class Fit:
             width = np.array([sides[2 * k][k] - sides[2 * k + 1][k] for k in range(len(at))])
             slope = (seen[0::2] - seen[1::2]) / width[:, None]
             measured = experiment.expecting(seen.mean(axis=0))
-            noise = covariance([measured], [runs.stated[i]])
+            noise = covariance([measured], [runs.stated[i]], measured.values)
             more = self.outcome.information + slope @ np.linalg.solve(noise, slope.T)
             rows.append(np.sqrt(np.diag(np.linalg.inv(more))) / before)
         index = pd.Index([repr(experiment) for experiment in candidates], name="experiment")
@@ -312,6 +320,11 @@ def questions(made: Fit, experiments: list[Experiment]) -> list[str]:
             name = made.scales.names[k]
             notes.append(
                 f"{name}: {made.best[name]:.4g} is far from what was known beforehand: is it another material?"
+            )
+    for row in made.measurements.itertuples():
+        if made.freedom < 1 and abs(row.off) > 3:
+            notes.append(
+                f"{row.number} of experiment {row.experiment} is off by {abs(row.off):.2g} errors: no values between the bounds agree"
             )
     table = made.measurements
     if (table.model_error > table.error).mean() > 0.5:

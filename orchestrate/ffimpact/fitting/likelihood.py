@@ -25,29 +25,32 @@ UNIFORM = 12.0  # information of a uniform prior between 0 and 1
 STATED = 3.0
 
 
-def covariance(experiments: Sequence[Experiment], stated: Sequence[Array]) -> Array:
+def covariance(
+    experiments: Sequence[Experiment], stated: Sequence[Array], predicted: Array
+) -> Array:
     """The covariance (m, m) of all measured values less what they would be without errors of
     measurement and of elements and steps.
 
     `stated` are the relative errors of elements and steps, for each experiment: of its numbers, and
-    of scale and duration of its curves. They are common to all values of a name, as the errors
-    `common` are. The start of each curve has an error of its own.
+    of scale and duration of its curves. They are shares of the predicted values (m,) (as shares of
+    measured ones they would bias a scale) and common to all values of a name, as the errors `common`
+    are. The start of each curve has an error of its own.
     """
-    measured = np.concatenate([e.values for e in experiments])
-    own, k = np.zeros(len(measured)), 0
-    sources: dict[tuple[str, str], Array] = defaultdict(lambda: np.zeros(len(measured)))
+    own, k = np.zeros(len(predicted)), 0
+    sources: dict[tuple[str, str], Array] = defaultdict(lambda: np.zeros(len(predicted)))
     for e, relative in zip(experiments, stated):
         errors = iter(np.nan_to_num(relative) / STATED)
         for number in e.numbers:
             own[k] = number.error
             sources["common", number.name][k] = number.common
-            sources["elements", number.name][k] = next(errors) * number.value
+            sources["elements", number.name][k] = next(errors) * predicted[k]
             k += 1
         for curve in e.curves:
-            at, slope = slice(k, k + len(curve.values)), np.gradient(curve.values, curve.times)
+            at = slice(k, k + len(curve.values))
+            values, slope = predicted[at], np.gradient(predicted[at], curve.times)
             own[at] = curve.error
-            sources["common", curve.name][at] = curve.common * curve.values
-            sources["elements", curve.name][at] = next(errors) * curve.values
+            sources["common", curve.name][at] = curve.common * values
+            sources["elements", curve.name][at] = next(errors) * values
             sources["duration", curve.name][at] = next(errors) * curve.times * slope
             sources[f"start {k}", curve.name][at] = curve.shift * slope
             if curve.marker:  # the error of the first place, from which the others are measured

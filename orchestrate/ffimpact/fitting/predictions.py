@@ -76,6 +76,11 @@ class Runs:
         air: float = flight.AIR,
     ):
         self.scene, self.experiments, self.folder = scene, list(experiments), folder
+        for experiment in self.experiments:
+            if both := set(experiment.entries) & set(centre):
+                raise BadInput(
+                    f"experiment: {both.pop()} is free (accepted: set by the experiments, or free)"
+                )
         self.cores, self.air, self.gravity, self.drag = cores, air, flight.GRAVITY, 0.0
         self.features_by_point: dict[tuple[int, tuple[Value, ...]], Array | None] = {}
         self.made = 0

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -37,7 +36,6 @@ class Found:
     information: Array
     likelihood: Likelihood
     predicted: Array
-    variance: Array
     interpolation: float
     box: Box
 
@@ -77,20 +75,18 @@ class _Nodes:
 def search(runs: Runs, scales: Scales, priors: Array, robust: bool) -> Found:
     """Returns what was found. Raises Failure if too few runs end."""
     nodes, count = _Nodes(runs, scales), len(scales.names)
-    noise = covariance(runs.experiments, runs.stated)
     box, looked = Box.whole(count), set()
     best = np.full(count, 0.5)
     for _ in range(ROUNDS):
         looked.add(box)
         nodes.add(box.nodes())
-        likelihood, predict, inexact = _likelihood(nodes, box, noise, priors, robust)
-        best, least = likelihood.best(box, np.clip(best, box.low, box.high)[None])
+        # twice, as errors that are shares of the values are those of the values at the best
+        for _ in range(2):
+            best = np.clip(best, box.low, box.high)
+            likelihood, inexact = _likelihood(nodes, box, best, priors, robust)
+            best, least = likelihood.best(box, best[None])
         smaller = Box.around(*likelihood.region(best, least, box))
-        if (
-            smaller.width * smaller.spacing.max()
-            and not _same(smaller, box)
-            and smaller not in looked
-        ):
+        if not _same(smaller, box) and smaller not in looked:
             box = smaller
         elif inexact > EXACT and (denser := box.denser()):
             box = denser
@@ -104,7 +100,7 @@ def search(runs: Runs, scales: Scales, priors: Array, robust: bool) -> Found:
         if end is not None
     ]
     nodes.add(_rounded(np.array(ends), scales))
-    likelihood, predict, inexact = _likelihood(nodes, box, noise, priors, robust)
+    likelihood, inexact = _likelihood(nodes, box, best, priors, robust)
     best, least = likelihood.best(box, best[None])
     profiles = [likelihood.profile(k, best, least, box) for k in range(count)]
     return Found(
@@ -113,8 +109,7 @@ def search(runs: Runs, scales: Scales, priors: Array, robust: bool) -> Found:
         profiles,
         likelihood.information(best, box),
         likelihood,
-        predict(best[None])[0],
-        noise,
+        likelihood.predict(best[None])[0],
         inexact,
         box,
     )
@@ -137,20 +132,21 @@ def _rounded(at: Array, scales: Scales) -> Array:
 
 
 def _likelihood(
-    nodes: _Nodes, box: Box, noise: Array, priors: Array, robust: bool
-) -> tuple[Likelihood, Any, float]:
-    """The likelihood with the interpolation in a box, the interpolation, and its error relative to
-    the others.
+    nodes: _Nodes, box: Box, near: Array, priors: Array, robust: bool
+) -> tuple[Likelihood, float]:
+    """The likelihood with the interpolation in a box, and the error of the interpolation relative to
+    the others. Errors that are shares of values are those of the values predicted `near` (k,).
     """
-    emulators = nodes.emulators(box)
+    runs, emulators = nodes.runs, nodes.emulators(box)
 
     def predict(at: Array) -> Array:
         return np.hstack([emulator(at) for emulator in emulators])
 
+    noise = covariance(runs.experiments, runs.stated, predict(near[None])[0])
     inexact = _blocks([emulator.covariance for emulator in emulators])
     share = float(np.sqrt(np.mean(np.diag(inexact) / np.diag(noise))))
-    measured = np.concatenate([e.values for e in nodes.runs.experiments])
-    return Likelihood(measured, noise + inexact, predict, priors, robust), predict, share
+    measured = np.concatenate([e.values for e in runs.experiments])
+    return Likelihood(measured, noise + inexact, predict, priors, robust), share
 
 
 def _blocks(matrices: Sequence[Array]) -> Array:
