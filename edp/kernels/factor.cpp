@@ -244,7 +244,7 @@ void Factor::compliance(const std::vector<int> &u, size_t computed, double *C) {
 const std::vector<double> &Factor::inverseOf(Tail &tail) {
   if (tail.inverse.empty()) {
     int info = 0;
-    tail.inverse = tail.L;                 // dpotri turns the lower triangle of L into that of S^-1
+    tail.inverse = tail.L;                 // dpotri: lower triangle of L to that of S^-1
     dpotri_("L", &tail.size, tail.inverse.data(), &tail.size, &info);
   }
   return tail.inverse;

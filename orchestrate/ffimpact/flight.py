@@ -58,7 +58,7 @@ def speeds(lasts: float, gravity: float, drag: float) -> tuple[float, float]:
 
 
 def rise(start: float, gravity: float, drag: float) -> float:
-    """The height [m] that a ball with the speed `start` [m/s] upwards reaches."""
+    """The height [m] to which a ball rises with the speed `start` [m/s] upwards."""
     if drag * start**2 / gravity < SMALL:
         return start**2 / (2 * gravity)
     return math.log1p(drag * start**2 / gravity) / (2 * drag)

@@ -22,7 +22,9 @@ DEEPEST = 12  # the finest spacing of nodes is 2^-12 of the bounds
 WIDTH = 4  # spacings of nodes across a box, at first
 WIDEST = {1: 16, 2: 8, 3: 8}  # by the number of entries; of more entries a box stays as it is
 CORNERS = 3  # from so many entries on the nodes in the corners of a box are left out:
-REACH = 0.75  # those further from its centre, summed over the entries, than this share of its width
+FARTHEST = (
+    0.75  # those further from its centre, summed over the entries, than this share of its width
+)
 
 
 @dataclass(frozen=True)
@@ -120,7 +122,7 @@ class Box:
         """Coordinates of the nodes (n, k)."""
         steps = np.array(list(itertools.product(range(self.width + 1), repeat=len(self.levels))))
         if len(self.levels) >= CORNERS:
-            steps = steps[np.abs(steps - self.width // 2).sum(axis=1) <= REACH * self.width]
+            steps = steps[np.abs(steps - self.width // 2).sum(axis=1) <= FARTHEST * self.width]
         return np.asarray(self.low + steps * self.spacing)
 
     def holds(self, at: Array, margin: float = 0.0) -> NDBool:

@@ -246,7 +246,7 @@ def _curve(name: str, what: Mapping[str, Any], where: str, table: pd.DataFrame) 
         largest = float(values.max())
         if not largest > 2 * ABOVE_NOISE * error:
             raise BadInput(
-                f"{where}: {name} reaches {largest:g}, its error is {error:g} (accepted: a curve above its noise)"
+                f"{where}: {name} is {largest:g} at most, its error is {error:g} (accepted: a curve above its noise)"
             )
         onset = max(ONSET, ABOVE_NOISE * error / largest)
         begins, above = (crossing(times, values, share * largest) for share in (onset, 2 * onset))

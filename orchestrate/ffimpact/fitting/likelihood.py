@@ -15,7 +15,7 @@ from .experiments import Array, Experiment
 __all__ = ["COVERED", "Likelihood", "Profile", "covariance"]
 
 COVERED = 3.841458820694124  # rise of chi2 at the ends of an interval of 95 % (1 degree of freedom)
-WIDE = 16.0  # rise of chi2 up to which the runs of a fit reach: four standard errors
+WIDE = 16.0  # rise of chi2 up to which a fit makes runs: four standard errors
 SCANNED = 9  # logarithm to base 2 of the points at which chi2 is looked at
 STARTS = 4  # of these from which the best values are sought
 DRAWN = 33  # points of a profile
@@ -150,9 +150,9 @@ class Likelihood:
         points = _scattered(box)
         near = points[self.chi2(points) < least + WIDE]
         sides = np.vstack([near, best[None]])
-        reach = np.sqrt(WIDE * np.diag(np.linalg.inv(self.information(best, box))))
-        return np.minimum(sides.min(axis=0), best - reach), np.maximum(
-            sides.max(axis=0), best + reach
+        away = np.sqrt(WIDE * np.diag(np.linalg.inv(self.information(best, box))))
+        return np.minimum(sides.min(axis=0), best - away), np.maximum(
+            sides.max(axis=0), best + away
         )
 
     def information(self, at: Array, box: Box) -> Array:
@@ -196,7 +196,7 @@ class Likelihood:
         box: Box,
         sign: int,
     ) -> float | None:
-        """Where the profile first reaches COVERED on one side of the best value."""
+        """Where the profile first rises to COVERED on one side of the best value."""
         from scipy.optimize import brentq  # takes long to load
 
         def above(value: float) -> float:
