@@ -20,15 +20,16 @@ import pandas as pd
 import ffimpact as ff
 from ffimpact.fitting.emulator import Scales
 from ffimpact.fitting.experiments import Experiment
+from ffimpact.fitting.fit import FINER
 from ffimpact.fitting.fitted import Fit
-from ffimpact.fitting.predictions import Runs
+from ffimpact.fitting.runs import Runs
 from ffimpact.fitting.search import search
 from ffimpact.places import RESULTS
 from ffimpact.progress import muted
 
 FREE = {"body.1.young": (1e7, 1e9), "body.1.loss": (0.02, 0.5)}
 KINDS = {"numbers": (1.0, 2.0, 4.0), "force": (2.0,), "restitutions": (1.0, 2.0, 4.0)}
-ACCURACY, FINE = 0.02, 0.005
+ACCURACY, FINE = 0.02, 0.0025
 OF_RATIO, OF_TIME, OF_FORCE = 0.003, 0.02, 0.02  # standard errors; of time and force relative
 
 
@@ -66,10 +67,8 @@ def fitted(kind: str, experiments: list[Experiment], shared: dict[str, Runs], fo
         centre = scales.entries(np.full(2, 0.5))
         shared[kind] = Runs(scene().ready("ball"), experiments, folder, centre, cores=2)
     runs = shared[kind]
-    if kind == "force":  # of a force the answers belong to its own times
-        runs.features_by_point.clear()
-    runs.experiments = experiments
-    outcome = search(runs, scales, np.column_stack([np.zeros(2), np.full(2, np.inf)]), False)
+    runs.begin(experiments)
+    outcome = search(runs, scales, np.column_stack([np.zeros(2), np.full(2, np.inf)]), False, ACCURACY / FINER)
     return Fit(scales, runs, outcome, {})
 
 

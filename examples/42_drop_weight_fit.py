@@ -58,11 +58,10 @@ plt.show()
 
 # %%
 fig, ax = plt.subplots(layout="constrained")
-own = fit.measurements
-begin = impact.curves[0].times
-ax.plot(1e3 * begin, own.measured, "k.", label="measured")
-ax.plot(1e3 * begin, own.predicted, label="fitted pad")
-ax.set(xlabel="time after the first contact in ms", ylabel="force in N")
+(own,) = fit.curves.values()
+ax.plot(1e3 * own.t, own.measured, "k.", label="measured")
+ax.plot(1e3 * own.t, own.predicted, label="fitted pad")
+ax.set(xlabel="time from the middle of the impact in ms", ylabel="force in N")
 ax.legend()
 plt.show()
 

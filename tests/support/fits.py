@@ -4,6 +4,7 @@ import numpy as np
 
 from ffimpact.fitting.emulator import Scales
 from ffimpact.fitting.experiments import Experiment
+from ffimpact.fitting.predictions import observed
 from ffimpact.fitting.search import search
 
 NONE = np.array([[0.0, np.inf]])  # nothing is known beforehand of an entry
@@ -25,6 +26,9 @@ class Formula:
     @staticmethod
     def formula(speed, entries):
         return {"restitution": np.exp(-entries["l"] * speed**0.2), "contact_time": (1 / entries["E"]) ** 0.4 * speed**-0.2}
+
+    def observed(self, i, predicted):
+        return observed(self.experiments[i], predicted)
 
     def answers(self, points):
         self.asked += len(points)

@@ -8,9 +8,11 @@ import ffimpact as ff
 from ffimpact import flight
 from ffimpact.failure import BadInput, Unreadable
 from ffimpact.fitting.command import read
+from ffimpact.fitting.curves import pulse
 from ffimpact.fitting.emulator import Box, Emulator, Scales
 from ffimpact.fitting.experiments import Experiment
 from ffimpact.fitting.likelihood import COVERED, Likelihood
+from ffimpact.fitting.predictions import observed
 from ffimpact.fitting.search import search
 from tests.support.fits import FREE, NONE, Formula, found_for
 
@@ -25,16 +27,45 @@ def test_repeats_give_their_median_and_its_error():
     assert number.error == pytest.approx(1.2533 * 0.01 / np.sqrt(1000), rel=0.1)
 
 
-def test_a_force_begins_where_it_rises(tmp_path):
-    """A recording that begins before the contact is the same curve."""
+def half_sine(times, begins=2e-4, lasts=5e-4):
+    return 100 * np.sin(np.pi * np.clip(times - begins, 0, lasts) / lasts)
+
+
+def force(times, values, error=0.5, **more):
+    return Experiment(normal_force={"table": {"t": times, "normal_force": values}, "error": error, **more}).curves[0]
+
+
+def test_a_pulse_is_the_same_whenever_the_recording_begins():
+    """Mean time and standard deviation of half a sine of duration T: T/2 and T sqrt(1/4 - 2/pi^2). What
+    is compared does not change with the clock, and is zero for degree 1."""
     times = np.linspace(0, 1e-3, 200)
-    force = 100 * np.sin(np.pi * np.clip(times - 2e-4, 0, 5e-4) / 5e-4)
-    for name, first in (("late", 0.0), ("early", 0.4)):
-        np.savetxt(tmp_path / f"{name}.csv", np.column_stack([times + first, force]), header="t,normal_force", comments="", delimiter=",")
-    late, early = (Experiment(normal_force={"file": tmp_path / f"{name}.csv", "error": 0.5}).curves[0] for name in ("late", "early"))
-    assert late.onset == 0.05 and len(late.times) == 40 and late.times[0] < 5e-6
-    assert np.interp(2.5e-4, late.times, late.values) == pytest.approx(100, rel=0.02)
-    assert np.allclose(late.times, early.times, atol=1e-9) and np.allclose(late.values, early.values, rtol=1e-6)
+    centre, width = pulse(times, half_sine(times))
+    assert centre == pytest.approx(4.5e-4, rel=1e-4) and width == pytest.approx(5e-4 * np.sqrt(1 / 4 - 2 / np.pi**2), rel=1e-3)
+    late, early, twice = force(times, half_sine(times)), force(times + 0.4, half_sine(times)), force(times, half_sine(times) + half_sine(times, 9e-4, 5e-5) / 2)
+    assert np.allclose(late.values, early.values, rtol=1e-6) and np.allclose(late.values, twice.values, rtol=1e-6)
+    assert np.abs(late.basis @ late.times).max() < 1e-12
+
+
+def test_errors_of_a_pulse_are_those_of_its_noise():
+    """Recordings with noise, each aligned by its own mean time, deviate from the exact pulse as stated."""
+    chance = np.random.default_rng(4)
+    for count in (60, 2000):
+        times = np.linspace(0, 1e-3, count)
+        curves = [force(times, half_sine(times) + 2 * chance.standard_normal(count), 2.0) for _ in range(200)]
+        off = [np.linalg.solve(np.linalg.cholesky(c.noise), c.values - c.basis @ half_sine(c.times + 4.5e-4)) for c in curves]
+        assert np.std(off, axis=0) == pytest.approx(1, rel=0.2) and np.abs(np.mean(off, axis=0)).max() < 0.4
+
+
+def test_a_long_recording_keeps_its_pulse():
+    times = np.arange(0, 5, 1e-4)
+    assert force(times, half_sine(times, 2.0, 5e-3)).values[0] == pytest.approx(force(times[:21000], half_sine(times[:21000], 2.0, 5e-3)).values[0], rel=1e-6)
+
+
+@pytest.mark.parametrize("part", [slice(90, None), slice(None, 90)])
+def test_half_a_pulse_is_refused(part):
+    times = np.linspace(0, 1e-3, 200)
+    with pytest.raises(BadInput, match="the whole pulse"):
+        force(times[part], half_sine(times)[part])
 
 
 @pytest.mark.parametrize(
@@ -218,7 +249,7 @@ def test_what_the_data_do_not_tell_has_no_interval():
 def test_the_search_narrows_around_the_truth():
     formula = Formula((1, 2, 3, 4), {"E": 7e6, "l": 0.11}, np.random.default_rng(2))
     scales, outcome = found_for(formula)
-    assert outcome.interpolation < 0.3 and (outcome.box.high - outcome.box.low < 0.3).all()
+    assert not outcome.notes and (outcome.box.high - outcome.box.low < 0.3).all()
     for k, (name, profile) in enumerate(zip(FREE, outcome.profiles)):
         low, high = (scales.values(np.full(2, end))[k] for end in (profile.low, profile.high))
         assert low < {"E": 7e6, "l": 0.11}[name] < high and high / low < 1.2
@@ -230,7 +261,10 @@ def test_an_error_of_the_scale_does_not_bias_the_scale():
     times, chance, scales = np.linspace(0.02, 0.98, 40), np.random.default_rng(6), []
 
     class HalfSine:
-        stated = [np.zeros(2)]
+        stated = [np.zeros(8)]
+
+        def observed(self, i, predicted):
+            return observed(self.experiments[i], predicted)
 
         def answers(self, points):
             return [[point["scale"] * np.sin(np.pi * times) for point in points]]

@@ -92,24 +92,25 @@ def _arguments(content: Table, folder: Path) -> dict[str, Any]:
         raise BadInput(f"air: '{brief(air)}' (accepted: 0 or above, in kg/m3)")
     return {
         "scene": Scene.load(name if name in built_in() else os.path.join(folder, name)),
-        "entries": _flat(content.get("set", {})),
-        "free": _flat(content.get("free", {})),
-        "priors": _flat(content.get("priors", {})),
+        "entries": _flat(content.get("set", {}), "set"),
+        "free": _flat(content.get("free", {}), "free"),
+        "priors": _flat(content.get("priors", {}), "priors"),
         "experiments": [_experiment(k, table, folder) for k, table in enumerate(tables, 1)],
         "robust": robust,
         "air": float(air),
     }
 
 
-def _flat(table: Any, path: str = "") -> Table:
+def _flat(table: Any, where: str) -> Table:
     """The entries of a table by dotted names; TOML reads body.1.young as nested tables."""
     if not isinstance(table, dict):
-        raise BadInput(f"{path or 'set'}: '{brief(table)}' is no table")
+        raise BadInput(f"{where}: '{brief(table)}' is no table")
     entries: Table = {}
     for name, value in table.items():
-        entries |= (
-            _flat(value, f"{path}{name}.") if isinstance(value, dict) else {f"{path}{name}": value}
-        )
+        if isinstance(value, dict):
+            entries |= {f"{name}.{rest}": own for rest, own in _flat(value, where).items()}
+        else:
+            entries[name] = value
     return entries
 
 
@@ -118,7 +119,11 @@ def _experiment(k: int, table: Any, folder: Path) -> Experiment:
         if not isinstance(table, dict):
             raise BadInput(f"'{brief(table)}' is no table")
         measured = {name: _beside(what, folder) for name, what in table.items() if name != "set"}
-        return Experiment(_flat(table.get("set", {})), **measured)
+        if wrong := {"entries", "self"} & set(measured):
+            raise BadInput(
+                f"{wrong.pop()}: is not measured (accepted: set, speed, height, numbers)"
+            )
+        return Experiment(_flat(table.get("set", {}), "set"), **measured)
     except BadInput as error:
         raise error.within(f"experiment.{k}") from None
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..failure import Failure
-from .experiments import Array
+from .curves import Array
 
 __all__ = ["Box", "Emulator", "Scales"]
 

@@ -7,37 +7,30 @@ Experiment({"body.1.mass": 0.5}, normal_force={"file": "force.csv", "error": 2.0
 
 from __future__ import annotations
 
-import copy
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from ..failure import BadInput, Unreadable, brief, unknown
 from ..input.parameter import plain
 from ..recording import Bounces
+from .curves import Array, Curve, as_measured
 
-__all__ = ["LIKE_BEFORE", "Array", "Curve", "Experiment", "Number", "crossing"]
+__all__ = ["Experiment", "Number"]
 
-Array = NDArray[np.float64]
-SAMPLES = 40  # largest number of points of a curve that a fit uses
-ONSET = 0.05  # a force begins where it first exceeds this share of its largest value,
-ABOVE_NOISE = 4.0  # or this many times its error
-UNSURE = 0.1  # share of the time between two samples by which a beginning is uncertain
 NUMBER = ("value", "values", "error", "common")  # accepted in the table of a number,
 TRACK = ("file", "table", "error", "point", "body", "scale")  # of a marker
 CURVE = ("file", "table", "error", "common", "start")  # and of a curve
 STARTS = ("onset", "clock")
 PULSES = ("normal_force", "normal_load")  # curves of one impact, which begin with it
-LIKE_BEFORE = (
-    2.5  # speeds, heights and so on that are this many times as large as others are questioned
-)
 SHARES = ("restitution", "interval_ratio")  # numbers between 0 and 1
+POSITIVE = ("contact_time", "peak_force", "impulse", "rebound_height")  # numbers above 0
+FEW = 10  # repeats, of which the standard deviation is taken
 
 
 @dataclass(frozen=True)
@@ -50,27 +43,6 @@ class Number:
     value: float
     error: float
     common: float = 0.0
-
-
-@dataclass(frozen=True)
-class Curve:
-    """A measured curve: column `name` of the history, `values` (n,) at `times` (n,) [s], with the
-    standard error of a value. `common` is the relative standard error of the scale of the values.
-
-    With an `onset`, a share of the largest value, time zero is where the values first exceed it, in
-    the run likewise; `shift` [s] is the standard error of this. Without, times are those of the run.
-    Of a `marker`, a body and a material point of it from the centre of mass on [m], the values are the
-    ways along the axis `name` since the first time.
-    """
-
-    name: str
-    times: Array
-    values: Array
-    error: float
-    common: float = 0.0
-    onset: float = 0.0
-    shift: float = 0.0
-    marker: tuple[int, tuple[float, ...]] | None = None
 
 
 class Experiment:
@@ -110,6 +82,8 @@ class Experiment:
             raise BadInput(
                 "experiment: nothing is measured (accepted: restitution=(0.9, 0.01) ...)"
             )
+        if not isinstance(name, str):
+            raise BadInput(f"experiment: name: '{brief(name)}' (accepted: words)")
         self.entries: dict[str, Any] = plain(dict(entries or {}))
         self.speed, self.height, self.name = speed, height, name
         self.numbers: list[Number] = []
@@ -129,26 +103,21 @@ class Experiment:
     @classmethod
     def of_bounces(cls, drop: Bounces) -> list[Experiment]:
         """An experiment for each bounce that ff.bounces() has a restitution of. Its error is that of
-        the two intervals and the spread of the restitutions, which roughness and spin make.
+        the two intervals, and what the restitutions scatter more, as by roughness and spin.
         """
+        if not isinstance(drop, Bounces):
+            raise BadInput(f"of_bounces: '{brief(drop)}' (accepted: what ff.bounces() returns)")
         heard = drop.table.dropna(subset=["restitution"])
-        spread = 1.4826 * float(
-            (heard["restitution"] - heard["restitution"].median()).abs().median()
-        )
+        ratios, errors = heard["restitution"].to_numpy(), heard["error"].to_numpy()
+        # what the times do not explain of the deviations from the trend over the speed
+        degree = min(1, len(heard) - 1)
+        trend = np.polyval(np.polyfit(heard["speed"], ratios, degree), heard["speed"])
+        apart = 1.4826 * float(np.median(np.abs(ratios - trend)))
+        spread = math.sqrt(max(apart**2 - float(np.median(errors)) ** 2, 0.0))
         return [
             cls(speed=speed, restitution=(ratio, math.hypot(error, spread)))
-            for speed, ratio, error in zip(heard["speed"], heard["restitution"], heard["error"])
+            for speed, ratio, error in zip(heard["speed"], ratios, errors)
         ]
-
-    def expecting(self, values: Array) -> Experiment:
-        """The same experiment with expected values (m,) in place of measured ones."""
-        other, n = copy.copy(self), len(self.numbers)
-        other.numbers = [replace(number, value=float(v)) for number, v in zip(self.numbers, values)]
-        other.curves = []
-        for curve in self.curves:
-            other.curves.append(replace(curve, values=values[n : n + len(curve.times)]))
-            n += len(curve.times)
-        return other
 
     def __repr__(self) -> str:
         words = [f"{name} = {value}" for name, value in self.entries.items()]
@@ -157,11 +126,32 @@ class Experiment:
         return self.name or ", ".join(words) or "as the scene"
 
     @property
+    def asked(self) -> str:
+        """The experiment with what it measures, in words."""
+        words = [f"{number.name} +- {number.error:.3g}" for number in self.numbers]
+        return f"{self!r}: {', '.join([*words, *(curve.name for curve in self.curves)])}"
+
+    @property
     def values(self) -> Array:
         """All that was measured, (m,): the numbers, then the curves."""
         return np.concatenate(
             [[number.value for number in self.numbers], *(c.values for c in self.curves)]
         )
+
+    @property
+    def parts(self) -> list[slice]:
+        """Where the values of each curve are among all."""
+        ends = len(self.numbers) + np.cumsum([0] + [len(c.basis) for c in self.curves])
+        return [slice(int(begin), int(end)) for begin, end in zip(ends, ends[1:])]
+
+    def sizes(self, predicted: Array) -> Array:
+        """The sizes (m,) of predicted values (m,): of the coefficients of a curve their root mean
+        square.
+        """
+        size = np.abs(predicted)
+        for at in self.parts:
+            size[at] = np.sqrt(np.mean(predicted[at] ** 2))
+        return size
 
 
 def _number(where: str, value: Any) -> float:
@@ -198,6 +188,8 @@ def _measured(name: str, what: Any) -> Number:
         )
     if name in SHARES and not math.isnan(value) and not 0 < value <= 1:
         raise BadInput(f"{name}: {value:g} (accepted: above 0, up to 1)")
+    if name in POSITIVE and value <= 0:
+        raise BadInput(f"{name}: {value:g} (accepted: above 0)")
     return Number(name, value, error, common)
 
 
@@ -211,11 +203,15 @@ def _of_repeats(name: str, values: Any) -> tuple[float, float]:
         repeats = np.empty(0)
     if len(repeats) < 3 or not np.isfinite(repeats).all():
         raise BadInput(f"{name}: values = {brief(values)} (accepted: three finite numbers or more)")
-    median = float(np.median(repeats))
+    from scipy.stats import t  # takes long to load
+
+    median, count = float(np.median(repeats)), len(repeats)
     spread = 1.4826 * float(np.median(np.abs(repeats - median)))
-    if spread == 0:
+    if count < FEW or spread == 0:
         spread = float(np.std(repeats, ddof=1))
-    return median, 1.2533 * spread / math.sqrt(len(repeats))
+    # 95 % of few repeats are wider than 1.96 of their errors (Student)
+    wider = float(t.ppf(0.975, count - 1)) / 1.96
+    return median, 1.2533 * wider * spread / math.sqrt(count)
 
 
 def _curve(name: str, what: Mapping[str, Any], where: str, table: pd.DataFrame) -> Curve:
@@ -241,39 +237,7 @@ def _curve(name: str, what: Mapping[str, Any], where: str, table: pd.DataFrame) 
         raise BadInput(
             f"{where}: {len(times)} times (accepted: 4 or more, each later than the one before)"
         )
-    onset, shift = 0.0, 0.0
-    if start == "onset":
-        largest = float(values.max())
-        if not largest > 2 * ABOVE_NOISE * error:
-            raise BadInput(
-                f"{where}: {name} is {largest:g} at most, its error is {error:g} (accepted: a curve above its noise)"
-            )
-        onset = max(ONSET, ABOVE_NOISE * error / largest)
-        begins, above = (crossing(times, values, share * largest) for share in (onset, 2 * onset))
-        shift = float(
-            error * (above - begins) / (onset * largest) + UNSURE * np.median(np.diff(times))
-        )
-        times = times - begins
-    return _thinned(Curve(name, times, values, error, common, onset, shift))
-
-
-def crossing(times: Array, values: Array, level: float) -> float:
-    """The time at which values first exceed a level, between two of the times."""
-    k = int(np.argmax(values > level))
-    if k == 0:
-        return float(times[0])
-    share = (level - values[k - 1]) / (values[k] - values[k - 1])
-    return float(times[k - 1] + share * (times[k] - times[k - 1]))
-
-
-def _thinned(curve: Curve) -> Curve:
-    """A curve at SAMPLES times or fewer; before the onset nothing is used."""
-    used = curve.times >= 0
-    times, values = curve.times[used], curve.values[used]
-    if len(times) > SAMPLES:
-        even = np.linspace(times[0], times[-1], SAMPLES)
-        times, values = even, np.interp(even, times, values)
-    return Curve(curve.name, times, values, curve.error, curve.common, curve.onset, curve.shift)
+    return as_measured(name, times, values, error, common, aligned=start == "onset")
 
 
 def _listed(what: Mapping[str, Any], table: pd.DataFrame) -> dict[str, Any]:
@@ -312,9 +276,8 @@ def _track(what: Any) -> list[Curve]:
         raise BadInput(f"{where}: times do not increase (accepted: each later than the one before)")
     curves = []
     for axis, values in zip(axes, columns[:, 1:].T):
-        curve = _thinned(Curve(axis, columns[:, 0], scale * values, error))
-        ways = curve.values - curve.values[0]
-        curves.append(replace(curve, values=ways, marker=(int(body), tuple(point.tolist()))))
+        marker = (int(body), tuple(point.tolist()))
+        curves.append(as_measured(axis, columns[:, 0], scale * values, error, marker=marker))
     return curves
 
 

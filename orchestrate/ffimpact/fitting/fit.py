@@ -24,13 +24,17 @@ from ..freefem import freefem
 from ..places import RESULTS
 from ..progress import muted
 from ..scene import Scene
+from .curves import Array
 from .emulator import Scales
-from .experiments import Array, Experiment
-from .fitted import Fit, confirmed, questions
-from .predictions import Runs, checked_free
+from .experiments import Experiment
+from .fitted import Fit
+from .questions import questions
+from .runs import Runs, checked_free
 from .search import search
 
 __all__ = ["fit"]
+
+FINER = 4.0  # finer runs have the accuracy of the scene over this
 
 
 def fit(
@@ -54,15 +58,15 @@ def fit(
     is likely. Errors of measurements, of elements and steps and of the interpolation enter the
     likelihood. priors: for an entry its value and standard error as known beforehand. robust: large
     deviations count linearly. air: its density [kg/m3], for the drag in rebound_height,
-    interval_ratio and height. confirm: finer runs at the end. Runs are kept in the folder `out`: an
-    interrupted fit goes on, with the same numbers. Raises the exceptions of run().
+    interval_ratio and height. confirm: finer runs at the best values correct the others. Runs are kept
+    in the folder `out`: an interrupted fit goes on, with the same numbers. Raises the exceptions of run().
     """
     started = time.monotonic()
     loaded = scene if isinstance(scene, Scene) else Scene.load(scene)
     loaded = (loaded.ready(loaded.name) if isinstance(scene, Scene) else loaded).override(
         dict(entries or {})
     )
-    every = [experiments] if isinstance(experiments, Experiment) else list(experiments)
+    every = [experiments] if isinstance(experiments, Experiment) else list(experiments or ())
     scales = Scales(checked_free(loaded, free))
     _check(every, scales, priors)
     content = json.dumps([loaded.content, scales.names], sort_keys=True, default=str)
@@ -75,13 +79,12 @@ def fit(
         centre = scales.entries(np.full(len(scales.names), 0.5))
         known_before = _priors(scales, priors)
         runs = Runs(loaded, every, folder, centre, cores=workers or freefem.CORES, air=air)
-        outcome = search(runs, scales, known_before, robust)
+        finer = loaded.number("accuracy") / FINER if confirm else None
+        outcome = search(runs, scales, known_before, robust, finer)
         settings = {"free": {name: list(pair) for name, pair in scales.bounds.items()}}
         settings |= {"priors": {name: list(pair) for name, pair in (priors or {}).items()}}
         made = Fit(scales, runs, outcome, settings | {"robust": robust, "air": air})
-        made.notes += questions(made, every)
-        if confirm:
-            made.notes += confirmed(made)
+        made.notes += outcome.notes + questions(made)
     made.seconds, made.runs = time.monotonic() - started, runs.made
     return made
 

@@ -14,19 +14,20 @@ from ..failure import BadInput
 from ..scene import Scene
 from ..sweeps.study import unit_of
 from .emulator import Scales
-from .experiments import LIKE_BEFORE, Experiment
-from .likelihood import COVERED, covariance
-from .predictions import Runs, named
+from .experiments import Experiment
+from .likelihood import COVERED, Profile, covariance
+from .predictions import named, samples
+from .runs import Runs
 from .search import Found
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["Fit", "confirmed", "questions"]
+__all__ = ["Fit"]
 
 TOGETHER = 0.98  # correlation above which two entries are known only together
+ALONE = 0.9  # of an interval's width is what was known before: the data add little
 REFUSED = 0.01  # probability of so large a chi2 below which the model is refused
-FINER = 4.0  # the last runs have the accuracy of the scene over this
 
 
 class Fit:
@@ -92,23 +93,27 @@ class Fit:
                 math.nan if end is None else float(self.scales.values(np.full(len(names), end))[k])
                 for end in (profile.low, profile.high)
             )
-            others = [
-                other
-                for other in names
-                if other != name and abs(self.correlation.loc[name, other]) > TOGETHER
-            ]
-            status = "yes"
-            if math.isnan(low) and math.isnan(high):
-                status = "no: every value between the bounds agrees with the data"
-            elif math.isnan(low) or math.isnan(high):
-                status = f"only {'below' if math.isnan(low) else 'above'} {high if math.isnan(low) else low:.4g}"
-            elif others:
-                status = f"only together with {', '.join(others)}"
-            value = best[k] if status == "yes" else math.nan
+            status = self._status(k, profile, low, high)
+            value = best[k] if status.startswith("yes") else math.nan
             rows.append(
                 {"value": value, "low": low, "high": high, "unit": unit_of(name), "known": status}
             )
         return pd.DataFrame(rows, index=pd.Index(names, name="entry"))
+
+    def _status(self, k: int, profile: Profile, low: float, high: float) -> str:
+        """Whether entry k is known, and if not, why."""
+        names = self.scales.names
+        related = self.correlation[names[k]].abs() > TOGETHER
+        others = [name for name in names if related[name] and name != names[k]]
+        if profile.low is None and profile.high is None:
+            return "no: every value between the bounds agrees with the data"
+        if profile.low is None or profile.high is None:
+            return f"only below {high:.4g}" if profile.low is None else f"only above {low:.4g}"
+        if others:
+            return f"only together with {', '.join(others)}"
+        before = 2 * 1.96 * self.outcome.likelihood.priors[k, 1]
+        alone = profile.high - profile.low > ALONE * before
+        return "yes, from before: the data add little" if alone else "yes"
 
     def _measurements(self) -> pd.DataFrame:
         rows = []
@@ -116,9 +121,8 @@ class Fit:
         variance = self.outcome.likelihood
         coarse = np.sqrt(np.diag(np.linalg.inv(variance.root.T @ variance.root)))
         for number, experiment in enumerate(runs.experiments, 1):
-            own = [n.error for n in experiment.numbers] + [
-                c.error for c in experiment.curves for _ in c.times
-            ]
+            own = [n.error for n in experiment.numbers]
+            own += [e for c in experiment.curves for e in np.sqrt(np.diag(c.noise))]
             for name, value, error in zip(named(experiment), experiment.values, own):
                 predicted = float(self.outcome.predicted[k])
                 model = math.sqrt(max(coarse[k] ** 2 - error**2, 0.0))
@@ -136,6 +140,21 @@ class Fit:
                 k += 1
         return pd.DataFrame(rows)
 
+    @property
+    def curves(self) -> dict[str, pd.DataFrame]:
+        """Each measured curve beside that of a run with the most likely values: t, measured, predicted. A
+        pulse has its mean time at zero; of many values the means are taken.
+        """
+        drawn = {}
+        answers = self.laboratory.answers([self.best])
+        for k, (experiment, (features,)) in enumerate(zip(self.experiments, answers), 1):
+            if features is None:
+                continue
+            for curve, predicted in zip(experiment.curves, samples(experiment, features[None])):
+                columns = {"t": curve.times, "measured": curve.samples, "predicted": predicted[0]}
+                drawn[f"{curve.name} of experiment {experiment.name or k}"] = pd.DataFrame(columns)
+        return drawn
+
     def listed(self) -> str:
         """The measurements as text; of a curve the root mean square of its deviations."""
         numbers = [n.name for e in self.experiments for n in e.numbers]
@@ -145,7 +164,7 @@ class Fit:
         for (k, name), part in self.measurements[~own].groupby(["experiment", "number"]):
             size = math.sqrt(float((part["off"] ** 2).mean()))
             lines.append(
-                f"experiment {k}: {name} at {len(part)} times, off by {size:.2g} errors (rms)"
+                f"experiment {k}: {name} by {len(part)} coefficients, off by {size:.2g} errors (rms)"
             )
         return "\n".join(lines)
 
@@ -159,9 +178,11 @@ class Fit:
         accuracy: float | None = None,
     ) -> pd.DataFrame:
         """What the fitted scene, with other entries, predicts: for each of the numbers `names` value,
-        the error (95 %) by the entries that are fitted, that of elements and steps, and the ends of both.
+        the error (95 %) by the entries that are fitted, that of elements and steps (NaN where no run
+        estimates it), and the ends of both. An entry without a value counts with all that agree.
 
-        Runs at the most likely values and at one standard error along each axis of their covariance.
+        Runs at the most likely values, at one standard error along each axis of their covariance and at
+        the ends of intervals; the value is that of a finer run.
         """
         chosen = [names] if isinstance(names, str) else list(names)
         wanted: dict[str, Any] = {name: (None, 1.0) for name in chosen}
@@ -169,27 +190,28 @@ class Fit:
         runs, at = self.laboratory.with_experiments([asked], self.best), self.outcome.best
         values, vectors = np.linalg.eigh(np.linalg.inv(self.outcome.information))
         axes = [np.sqrt(value) * vector for value, vector in zip(values, vectors.T)]
-        points = [at, *(side for axis in axes for side in (at + axis, at - axis))]
-        inside = [self.scales.entries(np.clip(point, 0, 1)) for point in points]
-        answers = runs.answers(inside)[0]
+        sides = [side for axis in axes for side in (at + axis, at - axis)]
+        ends = np.vstack([profile.ends for profile in self.outcome.profiles])
+        points = [self.scales.entries(np.clip(p, 0, 1)) for p in [at, *sides, *ends]]
+        answers = runs.answers(points)[0]
         if any(answer is None for answer in answers):
-            raise BadInput("predict: a run within the covariance of the entries does not end")
-        predicted = np.array(answers)
+            raise BadInput("predict: a run within the intervals of the entries does not end")
+        predicted = np.array(answers) - answers[0]
         # the larger of both sides, as one may be cut off by a bound
-        away = np.maximum(*(np.abs(predicted[k::2] - predicted[0]) for k in (1, 2)))
-        parameters = 1.96 * np.sqrt((away**2).sum(axis=0))
-        value, stated = runs.fine(0, self.best, accuracy or self.accuracy)
-        rows = [
-            {
-                "value": v,
-                "error": p,
-                "model_error": m * abs(v),
-                "low": v - p - m * abs(v),
-                "high": v + p + m * abs(v),
-            }
-            for v, p, m in zip(value, parameters, np.nan_to_num(stated))
-        ]
-        return pd.DataFrame(rows, index=pd.Index(chosen, name="number"))
+        away = np.maximum(*(np.abs(predicted[k : len(sides) + 1 : 2]) for k in (1, 2)))
+        spread = 1.96 * np.sqrt((away**2).sum(axis=0))
+        outer = predicted[len(sides) + 1 :]
+        value, stated = runs.fine(0, self.best, accuracy or runs.finer or self.accuracy)
+        model = stated * np.abs(value)
+        own = np.nan_to_num(model)
+        table = {
+            "value": value,
+            "error": np.maximum(spread, np.abs(outer).max(axis=0)),
+            "model_error": model,
+            "low": value + np.minimum(-spread, outer.min(axis=0)) - own,
+            "high": value + np.maximum(spread, outer.max(axis=0)) + own,
+        }
+        return pd.DataFrame(table, index=pd.Index(chosen, name="number"))
 
     @property
     def accuracy(self) -> float:
@@ -216,11 +238,10 @@ class Fit:
             seen = runs.observed(i, np.array(answers[i]))
             width = np.array([sides[2 * k][k] - sides[2 * k + 1][k] for k in range(len(at))])
             slope = (seen[0::2] - seen[1::2]) / width[:, None]
-            measured = experiment.expecting(seen.mean(axis=0))
-            noise = covariance([measured], [runs.stated[i]], measured.values)
+            noise = covariance([experiment], [runs.stated[i]], seen.mean(axis=0))
             more = self.outcome.information + slope @ np.linalg.solve(noise, slope.T)
             rows.append(np.sqrt(np.diag(np.linalg.inv(more))) / before)
-        index = pd.Index([repr(experiment) for experiment in candidates], name="experiment")
+        index = pd.Index([e.asked for e in candidates], name="experiment")
         table = pd.DataFrame(rows, index, self.scales.names)
         return table.iloc[np.argsort(table.prod(axis=1).to_numpy())]
 
@@ -292,68 +313,6 @@ class Fit:
             rows[name] = ["-" if math.isnan(v) else f"{v:.4g}" for v in rows[name]]
         lines = [rows.to_string(), self.verdict, *(f"  {note}" for note in self.notes)]
         return "\n".join([*lines, f"{self.runs} runs, {self.seconds:.3g} s"])
-
-
-def questions(made: Fit, experiments: list[Experiment]) -> list[str]:
-    """What is to be questioned in the data."""
-    notes = []
-    for row in made.measurements.itertuples():
-        if (
-            row.predicted > 0
-            and not 1 / LIKE_BEFORE < row.measured / row.predicted < LIKE_BEFORE
-            and abs(row.off) > 5
-        ):
-            notes.append(
-                f"{row.number} of experiment {row.experiment} is {row.measured:.4g}, predicted {row.predicted:.4g}: is its unit right?"
-            )
-    seen: dict[tuple[str, str], Any] = {}
-    for e in experiments:
-        for number in e.numbers:
-            key = (repr((sorted(e.entries.items()), e.speed, e.height)), number.name)
-            other = seen.setdefault(key, number)
-            if abs(other.value - number.value) > 5 * math.hypot(other.error, number.error):
-                notes.append(
-                    f"{number.name}: {other.value:.4g} and {number.value:.4g} in two experiments that are alike contradict each other"
-                )
-    for k, (value, error) in enumerate(made.outcome.likelihood.priors):
-        if abs(made.outcome.best[k] - value) > 3 * error:
-            name = made.scales.names[k]
-            notes.append(
-                f"{name}: {made.best[name]:.4g} is far from what was known beforehand: is it another material?"
-            )
-    for row in made.measurements.itertuples():
-        if made.freedom < 1 and abs(row.off) > 3:
-            notes.append(
-                f"{row.number} of experiment {row.experiment} is off by {abs(row.off):.2g} errors: no values between the bounds agree"
-            )
-    table = made.measurements
-    if (table.model_error > table.error).mean() > 0.5:
-        notes.append(
-            "errors of elements and steps exceed those of most measurements: a smaller accuracy narrows the intervals"
-        )
-    for at, (name, row) in zip(made.outcome.best, made.table.iterrows()):
-        if min(at, 1 - at) < 1e-3 and row["known"] == "yes":
-            notes.append(
-                f"{name}: the best value is at a bound, {made.best[str(name)]:.4g}: are the bounds right?"
-            )
-    return notes[:12]
-
-
-def confirmed(made: Fit) -> list[str]:
-    """Notes on numbers that finer runs at the fitted values change by more than was stated."""
-    notes, runs = [], made.laboratory
-    k = 0
-    for i, experiment in enumerate(runs.experiments):
-        fine, _ = runs.fine(i, made.best, made.accuracy / FINER)
-        for n, number in enumerate(experiment.numbers):
-            coarse, stated = made.outcome.predicted[k + n], runs.stated[i][n]
-            if abs(coarse - fine[n]) > np.nan_to_num(stated) * abs(fine[n]) + 0.3 * number.error:
-                notes.append(
-                    f"{number.name} of {experiment!r}: a finer run gives {fine[n]:.5g} for {coarse:.5g}, more than stated "
-                    f"({100 * stated:.2g} %): a smaller accuracy is needed"
-                )
-        k += len(experiment.values)
-    return notes
 
 
 def _probability(chi2: float, freedom: int) -> float:

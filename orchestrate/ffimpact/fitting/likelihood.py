@@ -9,8 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..failure import BadInput
+from .curves import Array
 from .emulator import Box
-from .experiments import Array, Experiment
+from .experiments import Experiment
 
 __all__ = ["COVERED", "Likelihood", "Profile", "covariance"]
 
@@ -31,44 +32,39 @@ def covariance(
     """The covariance (m, m) of all measured values less what they would be without errors of
     measurement and of elements and steps.
 
-    `stated` are the relative errors of elements and steps, for each experiment: of its numbers, and
-    of scale and duration of its curves. They are shares of the predicted values (m,) (as shares of
-    measured ones they would bias a scale) and common to all values of a name, as the errors `common`
-    are. The start of each curve has an error of its own.
+    `stated` are the relative errors of elements and steps, for each experiment. They are shares of the
+    predicted values (m,) (as shares of measured ones they would bias a scale), and for numbers common to
+    all of a name, as the errors `common` are.
     """
-    own, k = np.zeros(len(predicted)), 0
+    noise, k = np.zeros((len(predicted), len(predicted))), 0
     sources: dict[tuple[str, str], Array] = defaultdict(lambda: np.zeros(len(predicted)))
     for e, relative in zip(experiments, stated):
-        errors = iter(np.nan_to_num(relative) / STATED)
-        for number in e.numbers:
-            own[k] = number.error
-            sources["common", number.name][k] = number.common
-            sources["elements", number.name][k] = next(errors) * predicted[k]
-            k += 1
-        for curve in e.curves:
-            at = slice(k, k + len(curve.values))
-            values, slope = predicted[at], np.gradient(predicted[at], curve.times)
-            own[at] = curve.error
-            sources["common", curve.name][at] = curve.common * values
-            sources["elements", curve.name][at] = next(errors) * values
-            sources["duration", curve.name][at] = next(errors) * curve.times * slope
-            sources[f"start {k}", curve.name][at] = curve.shift * slope
-            if curve.marker:  # the error of the first place, from which the others are measured
-                sources[f"origin {k}", curve.name][at] = curve.error
-            k += len(curve.values)
-    return np.asarray(np.diag(own**2) + sum(np.outer(part, part) for part in sources.values()))
+        own = predicted[k : k + len(relative)]
+        errors = relative / STATED * e.sizes(own)
+        for n, number in enumerate(e.numbers):
+            noise[k + n, k + n] = number.error**2
+            sources["common", number.name][k + n] = number.common
+            sources["elements", number.name][k + n] = errors[n]
+        for curve, part in zip(e.curves, e.parts):
+            at = slice(k + part.start, k + part.stop)
+            noise[at, at] = curve.noise + np.diag(errors[part] ** 2)
+            sources["common", curve.name][at] = curve.common * own[part]
+        k += len(own)
+    return np.asarray(noise + sum(np.outer(part, part) for part in sources.values()))
 
 
 @dataclass(frozen=True)
 class Profile:
     """The rise of chi2 (n,) over the coordinate (n,) of an entry, at the best of the others. `low` and
-    `high` end the interval of 95 %, None where chi2 does not rise that far within the bounds.
+    `high` end the interval of 95 %, None where chi2 does not rise that far within the bounds; there
+    all entries have the coordinates `ends` (2, k).
     """
 
     at: Array
     rise: Array
     low: float | None
     high: float | None
+    ends: Array
 
 
 class Likelihood:
@@ -177,7 +173,9 @@ class Likelihood:
                 start, rises[n] = self._at(k, float(grid[n]), start, box)
         rises -= least
         low, high = (self._end(k, grid, rises, middle, best, least, box, sign) for sign in (-1, 1))
-        return Profile(grid, rises, low, high)
+        beyond = (grid[0] if low is None else low, grid[-1] if high is None else high)
+        ends = np.array([self._at(k, float(value), best, box)[0] for value in beyond])
+        return Profile(grid, rises, low, high, ends)
 
     def _at(self, k: int, value: float, start: Array, box: Box) -> tuple[Array, float]:
         """The best of the other entries where entry k has a value."""

@@ -5,29 +5,30 @@ close enough around the values that are likely.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..failure import Failure
+from .curves import Array
 from .emulator import Box, Emulator, Scales
-from .experiments import Array
 from .likelihood import Likelihood, Profile, covariance
-from .predictions import Runs, observed
+from .runs import Runs
 
 __all__ = ["Found", "search"]
 
 ROUNDS = 14  # of boxes of runs
 EXACT = 0.3  # largest error of the interpolation, relative to the other errors
-CONFIRMED = (
-    0.3  # largest change of chi2's root by runs at the best values and the ends of intervals
-)
+APART = 1e-6  # runs that are closer are one
+CORRECTIONS = 3  # by finer runs, until
+STAYS = 0.5  # the best values move by fewer standard errors than this
 
 
 @dataclass(frozen=True)
 class Found:
     """The outcome of a search, in coordinates: `best` (k,) with chi2 `least`, the profiles, the
-    information (k, k), the likelihood, and its emulator's predictions (m,) at the best.
+    information (k, k), the likelihood, its emulator's predictions (m,) at the best, and notes on how
+    the search ended.
     """
 
     best: Array
@@ -36,8 +37,8 @@ class Found:
     information: Array
     likelihood: Likelihood
     predicted: Array
-    interpolation: float
     box: Box
+    notes: list[str]
 
 
 class _Nodes:
@@ -48,82 +49,112 @@ class _Nodes:
         self.at = np.empty((0, len(scales.names)))
 
     def add(self, at: Array) -> None:
-        new = [
-            point
-            for point in at
-            if not len(self.at) or np.abs(self.at - point).max(axis=1).min() > 1e-9
-        ]
-        if new:
-            self.at = np.vstack([self.at, new])
-            self.runs.answers([self.scales.entries(point) for point in new])
+        before = len(self.at)
+        for point in at:
+            if not (np.abs(self.at - point).max(axis=1) < APART).any():
+                self.at = np.vstack([self.at, point])
+        self.runs.answers([self.scales.entries(point) for point in self.at[before:]])
 
     def emulators(self, box: Box) -> list[Emulator]:
         made = []
         near = self.at[box.holds(self.at, 2.0)]
         every = self.runs.answers([self.scales.entries(point) for point in near])
-        for experiment, answers in zip(self.runs.experiments, every):
+        for i, (experiment, answers) in enumerate(zip(self.runs.experiments, every)):
             ended = [k for k, answer in enumerate(answers) if answer is not None]
             if not ended:
                 raise Failure(
                     f"{experiment!r}: no run of the fit ended (accepted: narrower bounds)"
                 )
             own = np.array([answers[k] for k in ended])
-            made.append(Emulator(near[ended], own, box, lambda p, e=experiment: observed(e, p)))  # type: ignore[misc]
+            made.append(Emulator(near[ended], own, box, lambda p, i=i: self.runs.observed(i, p)))  # type: ignore[misc]
         return made
 
 
-def search(runs: Runs, scales: Scales, priors: Array, robust: bool) -> Found:
-    """Returns what was found. Raises Failure if too few runs end."""
-    nodes, count = _Nodes(runs, scales), len(scales.names)
-    box, looked = Box.whole(count), set()
-    best = np.full(count, 0.5)
+def search(
+    runs: Runs, scales: Scales, priors: Array, robust: bool, finer: float | None = None
+) -> Found:
+    """Returns what was found. With `finer`, an accuracy, runs of this accuracy at the best values
+    correct the others, and the search goes on until the best values stay. Raises Failure if too few
+    runs end.
+    """
+    nodes = _Nodes(runs, scales)
+    outcome = _narrowed(nodes, Box.whole(len(scales.names)), priors, robust)
+    notes: list[str] = []
+    for _ in range(CORRECTIONS if finer else 0):
+        before = outcome
+        notes = runs.correct(scales.entries(before.best), finer or 0.0)
+        outcome = _narrowed(nodes, before.box, priors, robust)
+        moved = outcome.best - before.best
+        if moved @ outcome.information @ moved < STAYS**2:
+            break
+    return replace(outcome, notes=notes + outcome.notes)
+
+
+def _narrowed(nodes: _Nodes, box: Box, priors: Array, robust: bool) -> Found:
+    """What is found from a box on, which is narrowed, moved and widened until it holds what is likely."""
+    scales, looked, notes = nodes.scales, set(), []
+    best = (box.low + box.high) / 2
     for _ in range(ROUNDS):
         looked.add(box)
         nodes.add(box.nodes())
-        # twice, as errors that are shares of the values are those of the values at the best
-        for _ in range(2):
-            best = np.clip(best, box.low, box.high)
-            likelihood, inexact = _likelihood(nodes, box, best, priors, robust)
-            best, least = likelihood.best(box, best[None])
-        smaller = Box.around(*likelihood.region(best, least, box))
+        likelihood, best, least, inexact = _best(nodes, box, best, priors, robust)
+        profiles = _profiles(likelihood, best, least, box)
+        smaller = Box.around(*_widened(likelihood.region(best, least, box), profiles, box))
         if not _same(smaller, box) and smaller not in looked:
             box = smaller
         elif inexact > EXACT and (denser := box.denser()):
             box = denser
         else:
             break
-    profiles = [likelihood.profile(k, best, least, box) for k in range(count)]
-    ends = [best] + [
-        _with(best, k, end)
-        for k, p in enumerate(profiles)
-        for end in (p.low, p.high)
-        if end is not None
-    ]
-    nodes.add(_rounded(np.array(ends), scales))
-    likelihood, inexact = _likelihood(nodes, box, best, priors, robust)
-    best, least = likelihood.best(box, best[None])
-    profiles = [likelihood.profile(k, best, least, box) for k in range(count)]
-    return Found(
-        best,
-        least,
-        profiles,
-        likelihood.information(best, box),
-        likelihood,
-        likelihood.predict(best[None])[0],
-        inexact,
-        box,
-    )
+    else:
+        notes.append("the search did not come to rest: the intervals are uncertain")
+    nodes.add(_rounded(np.vstack([best, *(profile.ends for profile in profiles)]), scales))
+    likelihood, best, least, inexact = _best(nodes, box, best, priors, robust)
+    if inexact > EXACT:
+        notes.append(
+            f"the interpolation between runs adds {100 * inexact:.2g} % of the other errors: narrower bounds may help"
+        )
+    profiles = _profiles(likelihood, best, least, box)
+    information = likelihood.information(best, box)
+    predicted = likelihood.predict(best[None])[0]
+    return Found(best, least, profiles, information, likelihood, predicted, box, notes)
+
+
+def _best(
+    nodes: _Nodes, box: Box, near: Array, priors: Array, robust: bool
+) -> tuple[Likelihood, Array, float, float]:
+    """The likelihood in a box, the coordinates with the least chi2, chi2, and the error of the
+    interpolation relative to the others.
+    """
+    best = np.clip(near, box.low, box.high)
+    # twice, as errors that are shares of the values are those of the values at the best
+    for _ in range(2):
+        likelihood, inexact = _likelihood(nodes, box, best, priors, robust)
+        best, least = likelihood.best(box, best[None])
+    return likelihood, best, least, inexact
+
+
+def _profiles(likelihood: Likelihood, best: Array, least: float, box: Box) -> list[Profile]:
+    return [likelihood.profile(k, best, least, box) for k in range(len(best))]
+
+
+def _widened(
+    region: tuple[Array, Array], profiles: Sequence[Profile], box: Box
+) -> tuple[Array, Array]:
+    """A region that goes on where a profile has not risen at an end of the box within the bounds."""
+    low, high = (side.copy() for side in region)
+    for k, profile in enumerate(profiles):
+        wide = box.high[k] - box.low[k]
+        if profile.low is None and box.low[k] > 0:
+            low[k] = min(low[k], box.low[k] - wide / 2)
+        if profile.high is None and box.high[k] < 1:
+            high[k] = max(high[k], box.high[k] + wide / 2)
+    return low, high
 
 
 def _same(box: Box, other: Box) -> bool:
     """Whether a box is another, up to its density."""
     return bool(np.allclose(box.low, other.low) and np.allclose(box.high, other.high))
-
-
-def _with(best: Array, k: int, value: float) -> Array:
-    changed = best.copy()
-    changed[k] = value
-    return changed
 
 
 def _rounded(at: Array, scales: Scales) -> Array:

@@ -1,11 +1,13 @@
-"""The figure of a fit: profiles of the free entries, and what was measured beside the predictions."""
+"""The figure of a fit: profiles of the free entries, what was measured beside the predictions, curves."""
 
 from __future__ import annotations
 
+import itertools
 from typing import TYPE_CHECKING
 
 import matplotlib.pyplot as plt
 import numpy as np
+import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
@@ -20,21 +22,35 @@ __all__ = ["draw"]
 COVERED = 3.84  # rise of chi2 at the ends of an interval of 95 %
 HIGHEST = 10.0  # drawn rise
 DECADE = 20.0  # ratio of the ends of an axis from which on it is logarithmic
+CURVES = 3  # drawn at most
 POINTS = 60  # measured values drawn singly
 
 
 def draw(fit: Fit) -> Figure:
-    """Draws the rise of chi2 over each entry, and how far each measured value is from its prediction,
-    in standard errors.
+    """Draws the rise of chi2 over each entry, how far each measured value is from its prediction, in
+    standard errors, and the first curves as measured and predicted.
     """
     with styled():
-        count = len(fit.table)
-        figure = plt.figure(figsize=(3.2 * max(count, 2), 5.6), layout="constrained")
-        grid = figure.add_gridspec(2, count)
-        for k, name in enumerate(fit.table.index):
-            _profile(figure.add_subplot(grid[0, k]), fit, str(name))
-        _deviations(figure.add_subplot(grid[1, :]), fit)
+        count, curves = len(fit.table), dict(itertools.islice(fit.curves.items(), CURVES))
+        rows = 3 if curves else 2
+        figure = plt.figure(figsize=(3.2 * max(count, 2), 2.8 * rows), layout="constrained")
+        grid = figure.add_gridspec(rows, 1)
+        blocks = [figure.add_subfigure(grid[row, 0]) for row in range(rows)]
+        for ax, name in zip(np.ravel(blocks[0].subplots(1, count)), fit.table.index):
+            _profile(ax, fit, str(name))
+        _deviations(blocks[1].subplots(), fit)
+        if curves:
+            for ax, drawn in zip(np.ravel(blocks[2].subplots(1, len(curves))), curves.items()):
+                _curve(ax, *drawn)
     return figure
+
+
+def _curve(ax: Axes, name: str, curve: pd.DataFrame) -> None:
+    ax.plot(curve["t"], curve["measured"], ".", color=GREY, label="measured")
+    ax.plot(curve["t"], curve["predicted"], color=BLUE, label="predicted")
+    ax.set(xlabel="time in s", title=name)
+    ax.xaxis.set_major_locator(MaxNLocator(4))
+    ax.legend(fontsize="small")
 
 
 def _profile(ax: Axes, fit: Fit, name: str) -> None:
