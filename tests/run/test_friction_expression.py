@@ -40,7 +40,7 @@ def test_a_constant_is_the_coefficient(tmp_path):
         zero = (0,) * (axes == "space")
         body = shape(radius=0.05, material=ff.NeoHookean(young=7e6, nu=0.4, density=1722), position=(0, 0.0501, *zero), velocity=(6, -6, *zero))
         runs = [ff.run(ff.Scene(bodies=[body], obstacles=[ff.Plane()], contact=ff.Contact(**law), accuracy=0.2), out=tmp_path / f"{axes}{k}", estimate=False, figures=False)
-                for k, law in enumerate(({"friction_static": 0.5}, {"friction": "0.5"}))]
+                for k, law in enumerate(({"friction_static": 0.5}, {"friction": 0.5 if axes == "plane" else "0.5"}))]
         for name in ("impulse", "rebound_vx", "friction_work"):
             assert runs[0][name] == pytest.approx(runs[1][name], rel=1e-9), name
 
@@ -65,7 +65,6 @@ def test_rubber_under_pressure_has_less_friction(tmp_path):
     ({"friction": "p^-0.3*1e9"}, "friction: is .* Pa"),
     ({"friction": "__import__('os').system('ls')"}, "friction: .* is not known"),
     ({"friction": "0.3*w"}, "friction: 'w' in .* is not known"),
-    ({"friction": 0.3}, "friction: '0.3' is no expression"),
     ({"friction": "0.3", "friction_static": 0.2}, "friction_static: beside friction"),
     ({"friction": "0.3", "regularization": "linear-printed"}, "regularization: 'linear-printed' beside friction"),
     ({"pair": [{"bodies": ["disc", "plane"], "friction": "0.3"}]}, "friction: '0.3' holds for the whole scene")])

@@ -97,10 +97,10 @@ class Contact(OfContact):
     nested = {"pair": Pair}
     default_static = 0.0
     friction: Annotated[
-        str | None,
+        float | str | None,
         Expression(),
-        "mu_f of (12) as an expression of the slip velocity v [m/s] and the pressure p [Pa], in "
-        "place of both coefficients: '0.3 + 0.4*exp(-v/0.05)'",
+        "mu_f of (12), in place of both coefficients: a number, or an expression of the slip "
+        "velocity v [m/s] and the pressure p [Pa] such as '0.3 + 0.4*exp(-v/0.05)'",
     ] = None
     exponent: Annotated[float | None, real(1, 1, 4, "-"), "contact exponent m of (10)"] = None
     slip_velocity: Annotated[

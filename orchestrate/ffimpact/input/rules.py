@@ -393,16 +393,21 @@ class Text(Rule):
 
 @dataclass(frozen=True)
 class Expression(Text):
-    """An expression of the slip velocity v and the pressure p."""
+    """An expression of the slip velocity v and the pressure p, or a number."""
 
-    accepted: str = "an expression of v and p in quotes"
+    accepted: str = "a number, or an expression of v and p in quotes"
 
     def checked(self, value: Any, dimension: Dimension | None) -> Any:
+        if isinstance(value, int | float) and not isinstance(value, bool):
+            value = repr(float(value))
         try:
             implicit.program("", value, "vp")
         except BadInput as error:
             raise BadInput(str(error)) from None
         return value
+
+    def schema(self) -> dict[str, Any]:
+        return {"type": ["string", "number"]}
 
 
 @dataclass(frozen=True)
