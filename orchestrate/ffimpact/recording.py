@@ -20,7 +20,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from . import flight
+from . import flight, repeats
 from .failure import BadInput, NotInstalled, Unreadable, brief
 
 if TYPE_CHECKING:
@@ -70,9 +70,7 @@ class Bounces:
     @property
     def restitution(self) -> tuple[float, float]:
         """Median of the restitutions, and its standard error from their spread."""
-        all_ = self.table["restitution"].dropna()
-        spread = 1.4826 * float((all_ - all_.median()).abs().median())
-        return float(all_.median()), 1.2533 * spread / math.sqrt(len(all_))
+        return repeats.middle(self.table["restitution"].dropna().to_numpy())
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draws the loudness over time with the onsets, or the restitutions without a recording."""
@@ -157,7 +155,9 @@ def _restitutions(
     rows, notes = [], []
     for k in range(1, len(intervals)):
         before, after = speeds[k - 1][1], speeds[k][0]
-        relative = math.sqrt(2) * resolution * math.hypot(1 / flights[k - 1], 1 / flights[k])
+        # of three onsets, that in the middle ends one flight and begins the next
+        ends = 1 / flights[k - 1], 1 / flights[k - 1] + 1 / flights[k], 1 / flights[k]
+        relative = resolution * math.hypot(*ends)
         rows.append(
             {
                 "time": times[k],

@@ -10,7 +10,7 @@ PACKAGE = ROOT / "orchestrate/ffimpact"
 # A folder imports the folders before it and the modules in its own line. A module that is in no
 # line imports no others.
 ORDER = (("failure", "places", "progress", "flight"), ("freefem",), ("geometry",), ("mesh",), ("input",), ("output",), ("scenes",), ("scene",), ("running",),
-         ("report",), ("sweeps",), ("schema", "plot", "view", "spectrum", "recording"), ("result",), ("fitting",), ("api",), ("__init__", "__main__"))
+         ("report",), ("sweeps",), ("repeats",), ("schema", "plot", "view", "spectrum", "recording"), ("result",), ("fitting",), ("api",), ("__init__", "__main__"))
 MODULES = {path.relative_to(PACKAGE).with_suffix("").parts: path for path in sorted(PACKAGE.rglob("*.py"))}
 
 

@@ -88,18 +88,17 @@ def as_measured(
     if aligned:  # the first coefficient of a pulse is that of its mean time, which is used already
         columns[:, :2] = np.column_stack([times, columns[:, 0]])
     basis = np.linalg.qr(columns)[0].T
+    noisy = basis  # (m, n) errors of the values by those of the samples
     if aligned:
         smooth = basis.T @ (basis @ samples)
         basis = basis[1:]
         # the error of the mean time shifts the whole pulse
         late = times * np.gradient(times) / (samples @ np.gradient(times))
-        shifts = basis @ np.gradient(smooth, times) * np.linalg.norm(late)
-    elif marker:  # the error of the first place, from which the others are measured
-        shifts = basis.sum(axis=1)
+        noisy = basis + np.outer(basis @ np.gradient(smooth, times), late)
+    elif marker:  # the ways are measured from the first place
+        noisy = basis - np.outer(basis.sum(axis=1), np.eye(count)[0])
         samples = samples - samples[0]
-    else:
-        shifts = np.zeros(len(basis))
-    noise = error**2 / many * (np.eye(len(basis)) + np.outer(shifts, shifts))
+    noise = error**2 / many * noisy @ noisy.T
     return Curve(name, times, samples, basis, noise, error, scatter, common, aligned, marker)
 
 

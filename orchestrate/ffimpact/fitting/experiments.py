@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from .. import repeats
 from ..failure import BadInput, Unreadable, brief, unknown
 from ..input.parameter import plain
 from ..recording import Bounces
@@ -30,7 +31,6 @@ STARTS = ("onset", "clock")
 PULSES = ("normal_force", "normal_load")  # curves of one impact, which begin with it
 SHARES = ("restitution", "interval_ratio")  # numbers between 0 and 1
 POSITIVE = ("contact_time", "peak_force", "impulse", "rebound_height")  # numbers above 0
-FEW = 10  # repeats, of which the standard deviation is taken
 
 
 @dataclass(frozen=True)
@@ -102,21 +102,21 @@ class Experiment:
 
     @classmethod
     def of_bounces(cls, drop: Bounces) -> list[Experiment]:
-        """An experiment for each bounce that ff.bounces() has a restitution of. Its error is that of
-        the two intervals, and what the restitutions scatter more, as by roughness and spin.
+        """An experiment with the ratio of two intervals for each bounce that ff.bounces() has a
+        restitution of. Its error is that of the intervals, and what the restitutions scatter more, as
+        by roughness and spin.
         """
         if not isinstance(drop, Bounces):
             raise BadInput(f"of_bounces: '{brief(drop)}' (accepted: what ff.bounces() returns)")
         heard = drop.table.dropna(subset=["restitution"])
         ratios, errors = heard["restitution"].to_numpy(), heard["error"].to_numpy()
-        # what the times do not explain of the deviations from the trend over the speed
-        degree = min(1, len(heard) - 1)
-        trend = np.polyval(np.polyfit(heard["speed"], ratios, degree), heard["speed"])
-        apart = 1.4826 * float(np.median(np.abs(ratios - trend)))
-        spread = math.sqrt(max(apart**2 - float(np.median(errors)) ** 2, 0.0))
+        spread = repeats.scatter(heard["speed"].to_numpy(), ratios, errors)
+        if math.isinf(spread):
+            raise BadInput("of_bounces: one restitution (accepted: two or more)")
+        # the ratio of the intervals contains the contact, whose time the runs know
         return [
-            cls(speed=speed, restitution=(ratio, math.hypot(error, spread)))
-            for speed, ratio, error in zip(heard["speed"], ratios, errors)
+            cls(speed=speed, interval_ratio=(ratio, ratio / own * math.hypot(error, spread)))
+            for speed, ratio, own, error in zip(heard["speed"], heard["ratio"], ratios, errors)
         ]
 
     def __repr__(self) -> str:
@@ -194,24 +194,14 @@ def _measured(name: str, what: Any) -> Number:
 
 
 def _of_repeats(name: str, values: Any) -> tuple[float, float]:
-    """Median of repeats and its standard error. Repeats scatter asymmetrically, since roughness
-    makes spin of speed (Montaine and others 2011), so no mean is taken.
-    """
+    """Median of repeats and its standard error."""
     try:
-        repeats = np.asarray(values, dtype=float).ravel()
+        several = np.asarray(values, dtype=float).ravel()
     except (TypeError, ValueError):
-        repeats = np.empty(0)
-    if len(repeats) < 3 or not np.isfinite(repeats).all():
+        several = np.empty(0)
+    if len(several) < 3 or not np.isfinite(several).all():
         raise BadInput(f"{name}: values = {brief(values)} (accepted: three finite numbers or more)")
-    from scipy.stats import t  # takes long to load
-
-    median, count = float(np.median(repeats)), len(repeats)
-    spread = 1.4826 * float(np.median(np.abs(repeats - median)))
-    if count < FEW or spread == 0:
-        spread = float(np.std(repeats, ddof=1))
-    # 95 % of few repeats are wider than 1.96 of their errors (Student)
-    wider = float(t.ppf(0.975, count - 1)) / 1.96
-    return median, 1.2533 * wider * spread / math.sqrt(count)
+    return repeats.middle(several)
 
 
 def _curve(name: str, what: Mapping[str, Any], where: str, table: pd.DataFrame) -> Curve:
@@ -236,6 +226,10 @@ def _curve(name: str, what: Mapping[str, Any], where: str, table: pd.DataFrame) 
     if len(times) < 4 or (np.diff(times) <= 0).any():
         raise BadInput(
             f"{where}: {len(times)} times (accepted: 4 or more, each later than the one before)"
+        )
+    if start == "clock" and times[0] < 0:
+        raise BadInput(
+            f"{where}: t begins at {times[0]:g} s (accepted: 0 or later, the start of the run, or start = 'onset')"
         )
     return as_measured(name, times, values, error, common, aligned=start == "onset")
 
@@ -272,8 +266,10 @@ def _track(what: Any) -> list[Curve]:
         raise BadInput(
             f"{where}: {len(table)} rows of {', '.join(table)} (accepted: 4 or more of t, x, y in numbers)"
         )
-    if (np.diff(columns[:, 0]) <= 0).any():
-        raise BadInput(f"{where}: times do not increase (accepted: each later than the one before)")
+    if (np.diff(columns[:, 0]) <= 0).any() or columns[0, 0] < 0:
+        raise BadInput(
+            f"{where}: times do not increase from 0 on (accepted: each later than the one before)"
+        )
     curves = []
     for axis, values in zip(axes, columns[:, 1:].T):
         marker = (int(body), tuple(point.tolist()))

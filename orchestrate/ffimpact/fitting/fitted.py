@@ -15,7 +15,7 @@ from ..scene import Scene
 from ..sweeps.study import unit_of
 from .emulator import Scales
 from .experiments import Experiment
-from .likelihood import COVERED, Profile, covariance
+from .likelihood import UNIFORM, Profile, covariance
 from .predictions import named, samples
 from .runs import Runs
 from .search import Found
@@ -27,6 +27,7 @@ __all__ = ["Fit"]
 
 TOGETHER = 0.98  # correlation above which two entries are known only together
 ALONE = 0.9  # of an interval's width is what was known before: the data add little
+LARGE = 6.635  # chi2 of one degree of freedom with this probability:
 REFUSED = 0.01  # probability of so large a chi2 below which the model is refused
 
 
@@ -47,7 +48,10 @@ class Fit:
         self.seconds, self.runs = 0.0, runs.made
         self.chi2 = outcome.least
         known_before = int(np.isfinite(outcome.likelihood.priors[:, 1]).sum())
-        self.freedom = len(outcome.predicted) + known_before - len(scales.names)
+        # only what the data determine takes degrees of freedom
+        bounds = UNIFORM * np.linalg.inv(outcome.information)
+        taken = len(scales.names) - round(float(np.trace(bounds)))
+        self.freedom = len(outcome.predicted) + known_before - taken
         tested = 0 if settings.get("robust") else self.freedom
         self.p = _probability(self.chi2, tested)
         self.notes: list[str] = []
@@ -69,7 +73,7 @@ class Fit:
             return (
                 f"robust: chi2 {self.chi2:.3g} of {self.freedom} degrees of freedom is not tested"
             )
-        if self.freedom < 1 and self.chi2 > COVERED:
+        if self.freedom < 1 and self.chi2 > LARGE:
             return f"the model is refused: as many values as free entries, and still chi2 {self.chi2:.3g}"
         if self.freedom < 1:
             return "as many values as free entries: they cannot refuse the model"
@@ -109,6 +113,12 @@ class Fit:
             return "no: every value between the bounds agrees with the data"
         if profile.low is None or profile.high is None:
             return f"only below {high:.4g}" if profile.low is None else f"only above {low:.4g}"
+        if len(profile.parts) > 1:
+            ends = (
+                self.scales.values(np.array([np.full(len(names), end) for end in part]))[:, k]
+                for part in profile.parts
+            )
+            return "no: one of " + ", ".join(f"{a:.4g} to {b:.4g}" for a, b in ends)
         if others:
             return f"only together with {', '.join(others)}"
         before = 2 * 1.96 * self.outcome.likelihood.priors[k, 1]
@@ -118,14 +128,15 @@ class Fit:
     def _measurements(self) -> pd.DataFrame:
         rows = []
         runs, k = self.laboratory, 0
-        variance = self.outcome.likelihood
-        coarse = np.sqrt(np.diag(np.linalg.inv(variance.root.T @ variance.root)))
+        total = np.diag(self.outcome.likelihood.variance)
         for number, experiment in enumerate(runs.experiments, 1):
-            own = [n.error for n in experiment.numbers]
-            own += [e for c in experiment.curves for e in np.sqrt(np.diag(c.noise))]
+            own = [math.hypot(n.error, n.common) for n in experiment.numbers]
+            for curve in experiment.curves:
+                shared = curve.common * curve.values
+                own += np.sqrt(np.diag(curve.noise) + shared**2).tolist()
             for name, value, error in zip(named(experiment), experiment.values, own):
                 predicted = float(self.outcome.predicted[k])
-                model = math.sqrt(max(coarse[k] ** 2 - error**2, 0.0))
+                model = math.sqrt(max(total[k] - error**2, 0.0))
                 rows.append(
                     {
                         "experiment": experiment.name or number,
@@ -134,7 +145,7 @@ class Fit:
                         "error": error,
                         "predicted": predicted,
                         "model_error": model,
-                        "off": (value - predicted) / coarse[k],
+                        "off": (value - predicted) / math.sqrt(total[k]),
                     }
                 )
                 k += 1
@@ -219,7 +230,8 @@ class Fit:
 
     def next(self, candidates: Sequence[Experiment] | Experiment) -> pd.DataFrame:
         """What each of the candidates would add: the standard error of each free entry with it over that
-        without. Only the errors of their measurements count; values may be None. Best first.
+        without. Errors that it shares with the other measurements count once; values may be None. Best
+        first.
         """
         candidates = [candidates] if isinstance(candidates, Experiment) else list(candidates)
         runs, at, box = (
@@ -230,16 +242,23 @@ class Fit:
         step = np.minimum(0.5 * box.spacing, 0.05)
         sides = [np.clip(at + sign * d, 0, 1) for d in np.diag(step) for sign in (1, -1)]
         answers = runs.answers([self.scales.entries(side) for side in sides])
-        before = np.sqrt(np.diag(np.linalg.inv(self.outcome.information)))
-        rows = []
+        own = self.outcome.likelihood
+        slopes_before = own.slopes(at, box)
+        before, rows = np.sqrt(np.diag(np.linalg.inv(self.outcome.information))), []
         for i, experiment in enumerate(candidates):
             if any(answer is None for answer in answers[i]):
                 raise BadInput(f"{experiment!r}: a run near the fitted values does not end")
             seen = runs.observed(i, np.array(answers[i]))
             width = np.array([sides[2 * k][k] - sides[2 * k + 1][k] for k in range(len(at))])
-            slope = (seen[0::2] - seen[1::2]) / width[:, None]
-            noise = covariance([experiment], [runs.stated[i]], seen.mean(axis=0))
-            more = self.outcome.information + slope @ np.linalg.solve(noise, slope.T)
+            slopes = np.hstack([slopes_before, (seen[0::2] - seen[1::2]) / width[:, None]])
+            # with the errors that it shares with what is measured already
+            predicted = np.append(self.outcome.predicted, seen.mean(axis=0))
+            together = [*self.experiments, experiment]
+            noise = covariance(together, [*self.laboratory.stated, runs.stated[i]], predicted)
+            m = len(own.measured)
+            noise[:m, :m] = own.variance
+            prior = np.diag(1 / own.priors[:, 1] ** 2 + UNIFORM)
+            more = slopes @ np.linalg.solve(noise, slopes.T) + prior
             rows.append(np.sqrt(np.diag(np.linalg.inv(more))) / before)
         index = pd.Index([e.asked for e in candidates], name="experiment")
         table = pd.DataFrame(rows, index, self.scales.names)

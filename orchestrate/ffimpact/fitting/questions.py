@@ -16,6 +16,7 @@ UNIT = 2.5  # a number so many times as large as predicted may have another unit
 OFF = 5.0  # so many errors off; two alike that are so many errors apart contradict each other
 FAR = 3.0  # errors from what was known beforehand, or between numbers that cannot refuse a model
 SCATTERED = 2.0  # ratio of the scatter of neighbours to the given error
+WIDENED = 1.4  # ratio of standard errors to those of the measurements alone
 AT_BOUND = 1e-3  # distance from a bound, over the distance of both
 
 
@@ -74,10 +75,11 @@ def _of_curves(experiments: Sequence[Experiment]) -> list[str]:
 
 
 def _of_runs(made: Fit) -> list[str]:
-    notes, table = [], made.measurements
-    if (table.model_error > table.error).mean() > 0.5:
+    notes = []
+    if made.outcome.widened.max() > WIDENED:
         notes.append(
-            "errors of elements, steps and interpolation exceed those of most measurements: a smaller accuracy narrows the intervals"
+            f"errors of elements, steps and interpolation make the intervals up to {made.outcome.widened.max():.2g} times as wide: "
+            "a smaller accuracy narrows them"
         )
     unanswered = made.laboratory.unanswered
     if unanswered:

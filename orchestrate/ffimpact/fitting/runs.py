@@ -41,7 +41,7 @@ class Runs:
     `fixed` are, for each experiment, its entries with the mesh of a first run, so that answers change
     smoothly with the free entries. `stated` (m,) are the errors of elements and steps of what is
     measured, relative to its size, as the runs estimate them: STATED standard errors. Where there is no
-    estimate, the accuracy is taken. correct() corrects all by a finer run: `offsets` (m,).
+    estimate, the accuracy is taken. correct() corrects all by finer runs: `factors` and `offsets` (m,).
     """
 
     def __init__(
@@ -87,6 +87,7 @@ class Runs:
     def begin(self, experiments: Sequence[Experiment]) -> None:
         """Begins again without corrections, by experiments that measured the same otherwise."""
         self.experiments, self.stated = list(experiments), list(self.first_stated)
+        self.factors = [np.ones(len(e.values)) for e in self.experiments]
         self.offsets = [np.zeros(len(e.values)) for e in self.experiments]
         self.finer: float | None = None  # accuracy of the runs that correct
 
@@ -102,8 +103,8 @@ class Runs:
         return other
 
     def observed(self, i: int, predicted: Array) -> Array:
-        """What is measured in an experiment, (p, m), from features (p, f)."""
-        return observed(self.experiments[i], predicted) + self.offsets[i]
+        """What is measured in an experiment, (p, m), from features (p, f), corrected."""
+        return observed(self.experiments[i], predicted) * self.factors[i] + self.offsets[i]
 
     def answers(self, points: Sequence[Mapping[str, Value]]) -> list[list[Array | None]]:
         """For each experiment the features at the points; None where a run failed."""
@@ -159,10 +160,15 @@ class Runs:
             except Failure as failure:
                 notes.append(f"{experiment!r}: not corrected by a finer run: {failure}")
                 continue
-            change = fine - observed(experiment, coarse[None])[0]
-            notes += _surprises(experiment, change, fine, self.stated[i])
+            before = observed(experiment, coarse[None])[0]
+            change = fine - before
+            notes += _surprises(experiment, change, fine, self.first_stated[i])
             rest = STATED * _rest(experiment, change) / experiment.sizes(fine)
-            self.offsets[i] = change
+            # by a factor what has one sign, the coefficients of a curve together by a sum
+            scaled = fine * before > 0
+            scaled[len(experiment.numbers) :] = False
+            self.factors[i] = np.where(scaled, fine / np.where(scaled, before, 1.0), 1.0)
+            self.offsets[i] = np.where(scaled, 0.0, change)
             self.stated[i] = np.where(np.isnan(stated), rest, stated)
         return notes
 

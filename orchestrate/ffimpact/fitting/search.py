@@ -28,7 +28,7 @@ STAYS = 0.5  # the best values move by fewer standard errors than this
 class Found:
     """The outcome of a search, in coordinates: `best` (k,) with chi2 `least`, the profiles, the
     information (k, k), the likelihood, its emulator's predictions (m,) at the best, and notes on how
-    the search ended.
+    the search ended. `widened` (k,): standard errors over those by the errors of measurement alone.
     """
 
     best: Array
@@ -37,6 +37,7 @@ class Found:
     information: Array
     likelihood: Likelihood
     predicted: Array
+    widened: Array
     box: Box
     notes: list[str]
 
@@ -55,19 +56,27 @@ class _Nodes:
                 self.at = np.vstack([self.at, point])
         self.runs.answers([self.scales.entries(point) for point in self.at[before:]])
 
-    def emulators(self, box: Box) -> list[Emulator]:
-        made = []
+    def emulator(self, box: Box) -> Emulator:
+        """The emulator of all that is measured, by the runs near a box that have an answer."""
         near = self.at[box.holds(self.at, 2.0)]
         every = self.runs.answers([self.scales.entries(point) for point in near])
-        for i, (experiment, answers) in enumerate(zip(self.runs.experiments, every)):
-            ended = [k for k, answer in enumerate(answers) if answer is not None]
-            if not ended:
+        for experiment, answers in zip(self.runs.experiments, every):
+            if all(answer is None for answer in answers):
                 raise Failure(
                     f"{experiment!r}: no run of the fit ended (accepted: narrower bounds)"
                 )
-            own = np.array([answers[k] for k in ended])
-            made.append(Emulator(near[ended], own, box, lambda p, i=i: self.runs.observed(i, p)))  # type: ignore[misc]
-        return made
+        ended = [k for k, own in enumerate(zip(*every)) if all(part is not None for part in own)]
+        rows = [[part for own in every if (part := own[k]) is not None] for k in ended]
+        if not rows:
+            raise Failure("no runs of all experiments ended alike (accepted: narrower bounds)")
+        ends = np.cumsum([len(part) for part in rows[0]])[:-1]
+
+        def observe(features: Array) -> Array:
+            parts = np.split(features, ends, axis=1)
+            return np.hstack([self.runs.observed(i, part) for i, part in enumerate(parts)])
+
+        features = np.array([np.concatenate(own) for own in rows])
+        return Emulator(near[ended], features, box, observe)
 
 
 def search(
@@ -87,55 +96,83 @@ def search(
         moved = outcome.best - before.best
         if moved @ outcome.information @ moved < STAYS**2:
             break
+    else:
+        if finer:
+            notes.append(
+                "corrections by finer runs still moved the values: a smaller accuracy is needed"
+            )
     return replace(outcome, notes=notes + outcome.notes)
 
 
 def _narrowed(nodes: _Nodes, box: Box, priors: Array, robust: bool) -> Found:
     """What is found from a box on, which is narrowed, moved and widened until it holds what is likely."""
-    scales, looked, notes = nodes.scales, set(), []
+    looked, notes = set(), []
     best = (box.low + box.high) / 2
     for _ in range(ROUNDS):
         looked.add(box)
         nodes.add(box.nodes())
-        likelihood, best, least, inexact = _best(nodes, box, best, priors, robust)
-        profiles = _profiles(likelihood, best, least, box)
-        smaller = Box.around(*_widened(likelihood.region(best, least, box), profiles, box))
+        likelihood, minima, inexact = _minima(nodes, box, best, priors, robust)
+        best, least = minima[0]
+        region = likelihood.region(best, least, box)
+        smaller = Box.around(*region)
+        if smaller in looked or _same(smaller, box):
+            profiles = [likelihood.profile(k, minima, box) for k in range(len(best))]
+            smaller = Box.around(*_widened(region, profiles, box))
         if not _same(smaller, box) and smaller not in looked:
             box = smaller
         elif inexact > EXACT and (denser := box.denser()):
             box = denser
         else:
+            # runs at the best values and at the ends of intervals
+            ends = np.vstack([best, *(profile.ends for profile in profiles)])
+            nodes.add(_rounded(ends, nodes.scales))
             break
     else:
         notes.append("the search did not come to rest: the intervals are uncertain")
-    nodes.add(_rounded(np.vstack([best, *(profile.ends for profile in profiles)]), scales))
-    likelihood, best, least, inexact = _best(nodes, box, best, priors, robust)
+    return _concluded(nodes, box, _minima(nodes, box, best, priors, robust), notes)
+
+
+def _concluded(
+    nodes: _Nodes,
+    box: Box,
+    last: tuple[Likelihood, list[tuple[Array, float]], float],
+    notes: list[str],
+) -> Found:
+    """What is found in the last box."""
+    likelihood, minima, inexact = last
+    best, least = minima[0]
     if inexact > EXACT:
         notes.append(
             f"the interpolation between runs adds {100 * inexact:.2g} % of the other errors: narrower bounds may help"
         )
-    profiles = _profiles(likelihood, best, least, box)
+    profiles = [likelihood.profile(k, minima, box) for k in range(len(best))]
+    if any(
+        (p.low is None and box.low[k] > 0) or (p.high is None and box.high[k] < 1)
+        for k, p in enumerate(profiles)
+    ):
+        notes.append("the search ended before all profiles rose or met the bounds")
     information = likelihood.information(best, box)
     predicted = likelihood.predict(best[None])[0]
-    return Found(best, least, profiles, information, likelihood, predicted, box, notes)
+    exact = [np.zeros(len(e.values)) for e in nodes.runs.experiments]
+    noise = covariance(nodes.runs.experiments, exact, predicted)
+    alone = likelihood.with_variance(noise).information(best, box)
+    widened = np.sqrt(np.diag(np.linalg.inv(information)) / np.diag(np.linalg.inv(alone)))
+    return Found(best, least, profiles, information, likelihood, predicted, widened, box, notes)
 
 
-def _best(
+def _minima(
     nodes: _Nodes, box: Box, near: Array, priors: Array, robust: bool
-) -> tuple[Likelihood, Array, float, float]:
-    """The likelihood in a box, the coordinates with the least chi2, chi2, and the error of the
-    interpolation relative to the others.
+) -> tuple[Likelihood, list[tuple[Array, float]], float]:
+    """The likelihood in a box, its minima, the least first, and the error of the interpolation relative
+    to the others.
     """
     best = np.clip(near, box.low, box.high)
     # twice, as errors that are shares of the values are those of the values at the best
     for _ in range(2):
         likelihood, inexact = _likelihood(nodes, box, best, priors, robust)
-        best, least = likelihood.best(box, best[None])
-    return likelihood, best, least, inexact
-
-
-def _profiles(likelihood: Likelihood, best: Array, least: float, box: Box) -> list[Profile]:
-    return [likelihood.profile(k, best, least, box) for k in range(len(best))]
+        minima = likelihood.minima(box, best[None])
+        best = minima[0][0]
+    return likelihood, minima, inexact
 
 
 def _widened(
@@ -168,19 +205,9 @@ def _likelihood(
     """The likelihood with the interpolation in a box, and the error of the interpolation relative to
     the others. Errors that are shares of values are those of the values predicted `near` (k,).
     """
-    runs, emulators = nodes.runs, nodes.emulators(box)
-
-    def predict(at: Array) -> Array:
-        return np.hstack([emulator(at) for emulator in emulators])
-
+    runs, predict = nodes.runs, nodes.emulator(box)
     noise = covariance(runs.experiments, runs.stated, predict(near[None])[0])
-    inexact = _blocks([emulator.covariance for emulator in emulators])
+    inexact = predict.covariance
     share = float(np.sqrt(np.mean(np.diag(inexact) / np.diag(noise))))
     measured = np.concatenate([e.values for e in runs.experiments])
     return Likelihood(measured, noise + inexact, predict, priors, robust), share
-
-
-def _blocks(matrices: Sequence[Array]) -> Array:
-    from scipy.linalg import block_diag  # takes long to load
-
-    return np.asarray(block_diag(*matrices))
