@@ -88,6 +88,19 @@ def test_a_free_entry_is_not_set_by_what_is_predicted(fitted):
             act()
 
 
+@pytest.mark.parametrize("words, by", [("width", {"t": 1e3}), ("largest value", {"normal_force": 1e-3})])
+def test_a_force_in_another_unit_is_questioned(folder, measured, tmp_path, words, by):
+    table = {name: measured.history[name].to_numpy() * by.get(name, 1) for name in ("t", "normal_force")}
+    impact = ff.Experiment(normal_force={"table": table, "error": 0.01 * table["normal_force"].max()})
+    with pytest.raises(BadInput, match=f"its {words}.*is its unit right"):
+        ff.fit(folder / "ball.toml", FREE, impact, out=folder / "fit", progress=False)
+
+
+def test_how_a_run_went_is_not_measured(folder):
+    with pytest.raises(BadInput, match="'wall_seconds' is not known"):
+        ff.fit(folder / "ball.toml", FREE, ff.Experiment(wall_seconds=(1, 0.1), restitution=(0.9, 0.1)), out=folder / "fit", progress=False)
+
+
 def test_as_many_values_as_entries_that_do_not_agree(folder, measured, tmp_path):
     """A contact time outside what the bounds allow: the model is refused all the same."""
     told = ff.fit(folder / "ball.toml", {"body.1.young": (3e8, 1e9)}, ff.Experiment(contact_time=(measured["contact_time"], 1e-5)), out=tmp_path / "fit", confirm=False, progress=False)
@@ -119,7 +132,7 @@ def test_a_marker_on_the_ball_determines_the_modulus(folder, tmp_path):
     seen = ff.run(folder / "ball.toml", TRUTH, accuracy=0.02, fields=200, estimate=False, figures=False, out=tmp_path / "film", progress=False).probe(0.0, 0.015)
     part = seen.iloc[:: max(1, len(seen) // 30)]
     table = {"t": part.t.tolist(), "y": (1e3 * part.y + 7).tolist()}
-    film = ff.Experiment(track={"table": table, "error": 2e-5, "point": (0.0, 0.015), "scale": 1e-3})
+    film = ff.Experiment(track={"table": table, "error": 2e-2, "point": (0.0, 0.015), "scale": 1e-3})
     told = ff.fit(folder / "ball.toml", MODULUS, film, {"body.1.loss": 0.11, "end_time": 2.5e-3}, out=tmp_path / "fit", confirm=False, progress=False)
     row = told.table.iloc[0]
     assert row["low"] < 4.3e7 < row["high"] < 1.2 * row["low"] and told.p > 0.05

@@ -61,6 +61,28 @@ def test_a_long_recording_keeps_its_pulse():
     assert force(times, half_sine(times, 2.0, 5e-3)).values[0] == pytest.approx(force(times[:21000], half_sine(times[:21000], 2.0, 5e-3)).values[0], rel=1e-6)
 
 
+def test_two_pulses_close_together_are_refused():
+    times = np.linspace(0, 2e-3, 400)
+    with pytest.raises(BadInput, match="rises again at t = 0.00"):
+        force(times, half_sine(times) + 0.8 * half_sine(times, 9e-4))
+
+
+def test_the_error_of_a_track_is_in_the_unit_of_its_file():
+    track = {"table": {"t": [0, 1, 2, 3], "x": [0, 10, 20, 30]}, "error": 0.5, "point": (0, 0), "scale": 1e-3}
+    curve, = Experiment(track=track).curves
+    assert curve.error == pytest.approx(5e-4) and curve.samples[-1] == pytest.approx(0.03)
+
+
+@pytest.mark.parametrize(("what", "words"), [
+    ({"air": -1}, "air"), ({"workers": 0}, "workers"), ({"workers": "2"}, "workers"), ({"out": 3}, "out"), ({"entries": ["a"]}, "entries"),
+    ({"free": {1: (1e6, 2e6)}}, "free: 1"), ({"free": {"accuracy": (0.01, 0.1)}}, "free: accuracy"), ({"free": {"body.1.mesh_size": (0.01, 0.1)}}, "free: body.1.mesh_size"),
+    ({"priors": {"body.1.young": (1e12, 1e3)}}, "beyond its bounds")])
+def test_arguments_that_cannot_be_meant_are_refused(what, words, tmp_path):
+    arguments = {"free": {"body.1.young": (1e5, 1e8)}, "out": tmp_path / "fit"} | what
+    with pytest.raises(BadInput, match=words):
+        ff.fit("two-discs", arguments.pop("free"), Experiment(restitution=(0.9, 0.01)), **arguments)
+
+
 @pytest.mark.parametrize("part", [slice(90, None), slice(None, 90)])
 def test_half_a_pulse_is_refused(part):
     times = np.linspace(0, 1e-3, 200)
@@ -92,6 +114,11 @@ def test_half_a_pulse_is_refused(part):
         ({"normal_force": {"table": {"t": [0, 1, 2, 3], "normal_force": [0, 1, "x", 0]}, "error": 0.1}}, "row 3"),
         ({"normal_force": {"table": {"t": [0, 1, 2, 3], "normal_force": [0, 1, 2, 0]}, "error": 9}}, "above its noise"),
         ({"normal_force": {"table": {"t": [0, 1, 2, 3], "normal_force": [0, 1, 2, 0]}}}, "has no error"),
+        ({"normal_force": {"table": {"t": [0, 1, 2, 3], "normal_force": [0, 1, 2, 0]}, "file": "force.csv", "error": 0.1}}, "file beside table"),
+        ({"y": {"table": {"t": [-1, 0, 1, 2], "y": [0, 1, 2, 0]}, "error": 0.1}}, "begins at -1 s"),
+        ({"contact_time": (-1e-3, 1e-5)}, "above 0"),
+        ({"entries": {3: 3}, "restitution": (0.9, 0.1)}, "is no entry"),
+        ({"name": 3, "restitution": (0.9, 0.1)}, "name"),
         ({"track": (1, 2)}, "a table with file, error, point"),
         ({"track": {"table": {"t": [0, 1, 2, 3], "y": [0, 1, 2, 3]}, "error": 1}}, "no point"),
         ({"track": {"table": {"t": [0, 1, 2, 3], "y": [0, 1, 2, 3]}, "error": 1, "point": 3}}, "point 3"),

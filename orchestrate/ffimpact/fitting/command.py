@@ -83,6 +83,8 @@ def _arguments(content: Table, folder: Path) -> dict[str, Any]:
     if not isinstance(name, str):
         raise BadInput("scene: is missing (accepted: the path of a scene, or a built-in one)")
     tables = content.get("experiment", [])
+    if isinstance(tables, dict):
+        raise BadInput("experiment: is one table (accepted: [[experiment]], in double brackets)")
     if not isinstance(tables, list) or not tables:
         raise BadInput("experiment: nothing was measured (accepted: tables [[experiment]])")
     robust, air = content.get("robust", False), content.get("air", 1.2)

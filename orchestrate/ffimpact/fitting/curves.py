@@ -24,6 +24,7 @@ MANY = 60  # values of which the neighbours show the noise
 WINDOW = 3.0  # a pulse is looked at so many standard deviations around its mean time
 ABOVE_NOISE = 4.0  # a pulse is so many times as large as its error
 HALF = 0.5  # share of the largest value from which the times of a pulse are first taken
+LOW = 0.1  # share below which a pulse is over
 ROUNDS = 30  # in which the window of a pulse is found
 
 
@@ -114,7 +115,17 @@ def _whole_pulse(name: str, times: Array, samples: Array, error: float) -> tuple
             raise BadInput(
                 f"{name}: {end} at {value:g}, with {largest:g} at most (accepted: the whole pulse, or start = 'clock')"
             )
-    return pulse(times, samples)
+    centre, width = pulse(times, samples)
+    # beside the largest pulse, within twice its window, there is no other
+    near = np.abs(times - centre) < 2 * WINDOW * width
+    levels = np.where(samples > HALF * largest, 1, np.where(samples < LOW * largest, -1, 0))[near]
+    steps = np.diff(levels[levels != 0])
+    if (steps > 0).sum() > 1:
+        second = times[near][levels != 0][1:][steps > 0][1]
+        raise BadInput(
+            f"{name}: rises again at t = {second:g} s (accepted: one impact, the others cut off)"
+        )
+    return centre, width
 
 
 def pulse(times: Array, values: Array) -> tuple[float, float]:

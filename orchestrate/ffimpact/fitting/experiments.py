@@ -56,8 +56,8 @@ class Experiment:
     A number is a pair (value, standard error), or a table with value and error, or with the `values`
     of repeats, whose median and spread are taken; `common` is an error that all numbers of a name
     share. A curve is a table with a `file` (CSV with the columns t [s] and that of its name) and
-    `error`; its `common` is relative. The file of a track has the columns t and x, y (, z), `scale` is
-    their unit in m, `point` its place from the centre of mass on [m].
+    `error`; its `common` is relative. The file of a track has the columns t and x, y (, z), `error` is in
+    their unit, `scale` this unit in m, `point` its place from the centre of mass on [m].
 
     Raises BadInput or Unreadable.
     """
@@ -84,6 +84,8 @@ class Experiment:
             )
         if not isinstance(name, str):
             raise BadInput(f"experiment: name: '{brief(name)}' (accepted: words)")
+        if wrong := [entry for entry in entries or {} if not isinstance(entry, str)]:
+            raise BadInput(f"experiment: '{brief(wrong[0])}' is no entry of the scene")
         self.entries: dict[str, Any] = plain(dict(entries or {}))
         self.speed, self.height, self.name = speed, height, name
         self.numbers: list[Number] = []
@@ -273,12 +275,15 @@ def _track(what: Any) -> list[Curve]:
     curves = []
     for axis, values in zip(axes, columns[:, 1:].T):
         marker = (int(body), tuple(point.tolist()))
-        curves.append(as_measured(axis, columns[:, 0], scale * values, error, marker=marker))
+        ways = abs(scale) * error
+        curves.append(as_measured(axis, columns[:, 0], scale * values, ways, marker=marker))
     return curves
 
 
 def _read(names: tuple[str, ...], what: Mapping[str, Any]) -> tuple[str, pd.DataFrame]:
     """The table of a curve with the columns `names`, and how messages name it."""
+    if "table" in what and "file" in what:
+        raise BadInput(f"{names[-1]}: file beside table (accepted: one of them)")
     if "table" in what:
         where = names[-1]
         try:

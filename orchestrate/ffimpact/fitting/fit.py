@@ -34,6 +34,7 @@ from .search import search
 
 __all__ = ["fit"]
 
+FAR = 3.0  # errors beyond its bounds up to which a prior is accepted
 FINER = 4.0  # finer runs have the accuracy of the scene over this
 
 
@@ -62,6 +63,7 @@ def fit(
     in the folder `out`: an interrupted fit goes on, with the same numbers. Raises the exceptions of run().
     """
     started = time.monotonic()
+    _check_arguments(entries, air, workers, out)
     loaded = scene if isinstance(scene, Scene) else Scene.load(scene)
     loaded = (loaded.ready(loaded.name) if isinstance(scene, Scene) else loaded).override(
         dict(entries or {})
@@ -87,6 +89,17 @@ def fit(
         made.notes += outcome.notes + questions(made)
     made.seconds, made.runs = time.monotonic() - started, runs.made
     return made
+
+
+def _check_arguments(entries: Any, air: Any, workers: Any, out: Any) -> None:
+    if entries is not None and not isinstance(entries, Mapping):
+        raise BadInput(f"entries: '{brief(entries)}' (accepted: a table of entries)")
+    if isinstance(air, bool) or not isinstance(air, int | float) or not 0 <= air < math.inf:
+        raise BadInput(f"air: '{brief(air)}' (accepted: 0 or above, in kg/m3)")
+    if workers is not None and (type(workers) is not int or workers < 1):
+        raise BadInput(f"workers: '{brief(workers)}' (accepted: 1, 2 ...)")
+    if out is not None and (not isinstance(out, str | Path) or Path(out).is_file()):
+        raise BadInput(f"out: '{brief(out)}' (accepted: the path of a folder)")
 
 
 def _check(experiments: list[Experiment], scales: Scales, priors: Mapping[str, Any] | None) -> None:
@@ -119,6 +132,10 @@ def _priors(scales: Scales, priors: Mapping[str, Sequence[float]] | None) -> Arr
         k = scales.names.index(name)
         beside = scales.values(at + 1e-4 * np.eye(len(at))[k])[k]
         table[k] = at[k], error / ((beside - value) / 1e-4)
+        if not -FAR < at[k] / table[k, 1] or not (at[k] - 1) / table[k, 1] < FAR:
+            raise BadInput(
+                f"priors: {name}: {value:g} +- {error:g} is beyond its bounds, {low:g} to {scales.bounds[name][1]:g}"
+            )
     return table
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
-from ..failure import BadInput
+from ..failure import BadInput, brief
 from ..scene import Scene
 from ..sweeps.study import unit_of
 from .emulator import Scales
@@ -67,20 +67,27 @@ class Fit:
         return self.scales.entries(self.outcome.best)
 
     @property
+    def refused(self) -> bool:
+        """Whether chi2 refuses the model."""
+        if self.settings.get("robust"):
+            return False
+        return self.chi2 > LARGE if self.freedom < 1 else self.p < REFUSED
+
+    @property
     def verdict(self) -> str:
         """What chi2 says of the model."""
         if self.settings.get("robust"):
             return (
                 f"robust: chi2 {self.chi2:.3g} of {self.freedom} degrees of freedom is not tested"
             )
-        if self.freedom < 1 and self.chi2 > LARGE:
+        if self.freedom < 1 and self.refused:
             return f"the model is refused: as many values as free entries, and still chi2 {self.chi2:.3g}"
         if self.freedom < 1:
             return "as many values as free entries: they cannot refuse the model"
         words = f"chi2 {self.chi2:.3g} of {self.freedom} degrees of freedom, p = {self.p:.2g}"
         return (
             f"the model is refused: {words}"
-            if self.p < REFUSED
+            if self.refused
             else f"the model is not refused: {words}"
         )
 
@@ -122,6 +129,8 @@ class Fit:
         if others:
             return f"only together with {', '.join(others)}"
         before = 2 * 1.96 * self.outcome.likelihood.priors[k, 1]
+        if self.refused:
+            return "yes, if the refused model were true"
         alone = profile.high - profile.low > ALONE * before
         return "yes, from before: the data add little" if alone else "yes"
 
@@ -195,7 +204,9 @@ class Fit:
         Runs at the most likely values, at one standard error along each axis of their covariance and at
         the ends of intervals; the value is that of a finer run.
         """
-        chosen = [names] if isinstance(names, str) else list(names)
+        chosen = [names] if isinstance(names, str) else list(names or ())
+        if not chosen or not all(isinstance(name, str) for name in chosen):
+            raise BadInput(f"predict: names: '{brief(names)}' (accepted: names of numbers)")
         wanted: dict[str, Any] = {name: (None, 1.0) for name in chosen}
         asked = Experiment(entries, speed=speed, height=height, **wanted)
         runs, at = self.laboratory.with_experiments([asked], self.best), self.outcome.best
@@ -233,7 +244,9 @@ class Fit:
         without. Errors that it shares with the other measurements count once; values may be None. Best
         first.
         """
-        candidates = [candidates] if isinstance(candidates, Experiment) else list(candidates)
+        candidates = [candidates] if isinstance(candidates, Experiment) else list(candidates or ())
+        if not candidates or not all(isinstance(e, Experiment) for e in candidates):
+            raise BadInput("next: no candidates (accepted: a list of Experiment)")
         runs, at, box = (
             self.laboratory.with_experiments(candidates, self.best),
             self.outcome.best,
@@ -270,6 +283,8 @@ class Fit:
         """
         rows = []
         for other in (self, *others):
+            if not isinstance(other, Fit):
+                raise BadInput(f"compare: '{brief(other)}' is no fit (accepted: fits)")
             values = len(other.measurements)
             if values != len(self.measurements) or not np.allclose(
                 other.measurements.measured, self.measurements.measured
@@ -302,6 +317,8 @@ class Fit:
         """
         from .record import write
 
+        if not isinstance(folder, str | Path) or Path(folder).is_file():
+            raise BadInput(f"save: '{brief(folder)}' (accepted: the path of a folder)")
         write(self, Path(folder))
         if figure:
             from ..report.figures import save

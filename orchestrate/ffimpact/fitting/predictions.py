@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -17,9 +17,12 @@ from ..output.states import Fields
 from .curves import WINDOW, Array, Curve, pulse
 from .experiments import Experiment
 
-__all__ = ["DENT", "DERIVED", "drag_of", "features", "named", "observed", "samples"]
+__all__ = ["DENT", "DERIVED", "check_units", "drag_of", "features", "named", "observed", "samples"]
 
 PULSE = np.linspace(-1.5 * WINDOW, 1.5 * WINDOW, 181)  # times of a pulse over its deviation
+UNLIKE = 30.0  # ratio of a pulse's width or height to a run's from which on its unit is wrong
+# Numbers of how a run went
+OF_RUNS = re.compile("seconds|memory|bytes|iterations|factorizations|evaluations|steps|drift|dofs")
 DENT = re.compile(r"dent_(depth|radius)(?:_([0-9]+))?")  # of the body of this number
 
 
@@ -93,33 +96,34 @@ def _predicted(name: str, row: Table, where: Path, gravity: float, air: float) -
             raise BadInput(
                 f"experiment: {name} needs a body that rebounds from an obstacle"
             ) from None
-    if name not in row or not isinstance(row[name], int | float):
-        raise BadInput(
-            f"experiment: {unknown(name, [*numbers(read_record(where).summary), *DERIVED, 'dent_depth_1', 'dent_radius_1'], ', ')}"
-        )
+    if name not in row or not isinstance(row[name], int | float) or OF_RUNS.search(name):
+        own = [other for other in numbers(read_record(where).summary) if not OF_RUNS.search(other)]
+        accepted = [*own, *DERIVED, "dent_depth_1", "dent_radius_1"]
+        raise BadInput(f"experiment: {unknown(name, accepted, ', ')}")
     return float(row[name])
+
+
+def _check_times(what: str, times: Array, end: float) -> None:
+    """Raises BadInput if times that count from the start of a run go beyond its end."""
+    if times[-1] > end * (1 + 1e-9):
+        raise BadInput(
+            f"experiment: {what} is measured from {times[0]:g} to {times[-1]:g} s, the run ends at {end:g} s "
+            "(accepted: t from the start of the run on, a later end_time)"
+        )
 
 
 def _moved(curve: Curve, where: Path) -> Array:
     """The ways of a marker along an axis since the first measured time."""
     body, point = curve.marker or (1, ())
     seen = _fields(where).probe(point, body)
-    if curve.times[-1] > seen["t"].iloc[-1] * (1 + 1e-9):
-        raise BadInput(
-            f"experiment: track is measured to {curve.times[-1]:g} s, the run ends at {seen['t'].iloc[-1]:g} s "
-            "(accepted: a later end_time)"
-        )
+    _check_times("track", curve.times, float(seen["t"].iloc[-1]))
     at: Array = np.interp(curve.times, seen["t"], seen[curve.name])
     return np.asarray(at - at[0])
 
 
 def _sampled(curve: Curve, times: Array, values: Array, end: float) -> Array:
     if not curve.pulse:
-        if curve.times[-1] > end * (1 + 1e-9):
-            raise BadInput(
-                f"experiment: {curve.name} is measured to {curve.times[-1]:g} s, the run ends at {end:g} s "
-                "(accepted: a later end_time)"
-            )
+        _check_times(curve.name, curve.times, end)
         # from the middle of the last step to its end
         ahead = (end - times[-1]) * (values[-1] - values[-2]) / (times[-1] - times[-2])
         longer = np.append(times, end), np.append(values, values[-1] + ahead)
@@ -133,22 +137,43 @@ def _sampled(curve: Curve, times: Array, values: Array, end: float) -> Array:
     return np.append(width, np.interp(centre + width * PULSE, times, values, left=0.0, right=0.0))
 
 
-def samples(experiment: Experiment, predicted: Array) -> list[Array]:
-    """Each curve at its times, (p, n), from features (p, f)."""
-    curves, at = [], len(experiment.numbers)
+def _of_curves(experiment: Experiment, predicted: Array) -> Iterator[tuple[Curve, Array]]:
+    """Each curve with its features (p, .)."""
+    at = len(experiment.numbers)
     for curve in experiment.curves:
         size = len(PULSE) + 1 if curve.pulse else len(curve.times)
-        part = predicted[:, at : at + size]
+        yield curve, predicted[:, at : at + size]
         at += size
+
+
+def samples(experiment: Experiment, predicted: Array) -> list[Array]:
+    """Each curve at its times, (p, n), from features (p, f)."""
+    curves = []
+    for curve, part in _of_curves(experiment, predicted):
         if curve.pulse:
-            part = np.array(
-                [
-                    np.interp(curve.times / own[0], PULSE, own[1:], left=0.0, right=0.0)
-                    for own in part
-                ]
-            )
+            rows = [
+                np.interp(curve.times / own[0], PULSE, own[1:], left=0.0, right=0.0) for own in part
+            ]
+            part = np.array(rows)
         curves.append(part)
     return curves
+
+
+def check_units(experiment: Experiment, predicted: Array) -> None:
+    """Raises BadInput if a pulse is far longer or larger than that of a run with the features (f,)."""
+    for curve, part in _of_curves(experiment, predicted[None]):
+        if not curve.pulse:
+            continue
+        width, largest = pulse(curve.times, curve.samples)[1], float(curve.samples.max())
+        for what, measured, run in (
+            ("width in s", width, float(part[0, 0])),
+            ("largest value", largest, float(part[0, 1:].max())),
+        ):
+            if not 1 / UNLIKE < measured / run < UNLIKE:
+                raise BadInput(
+                    f"{curve.name}: its {what} is {measured:.3g}, that of a first run {run:.3g}: is its unit right? "
+                    f"(accepted: up to {UNLIKE:g} times as large)"
+                )
 
 
 def observed(experiment: Experiment, predicted: Array) -> Array:

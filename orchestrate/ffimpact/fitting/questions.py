@@ -16,6 +16,7 @@ UNIT = 2.5  # a number so many times as large as predicted may have another unit
 OFF = 5.0  # so many errors off; two alike that are so many errors apart contradict each other
 FAR = 3.0  # errors from what was known beforehand, or between numbers that cannot refuse a model
 SCATTERED = 2.0  # ratio of the scatter of neighbours to the given error
+TOO_GOOD = 0.01  # chi2 of a degree of freedom
 WIDENED = 1.4  # ratio of standard errors to those of the measurements alone
 AT_BOUND = 1e-3  # distance from a bound, over the distance of both
 
@@ -81,6 +82,12 @@ def _of_runs(made: Fit) -> list[str]:
             f"errors of elements, steps and interpolation make the intervals up to {made.outcome.widened.max():.2g} times as wide: "
             "a smaller accuracy narrows them"
         )
+    if (
+        made.freedom > 1
+        and made.chi2 < TOO_GOOD * made.freedom
+        and made.outcome.widened.max() < WIDENED
+    ):
+        notes.append("the deviations are far smaller than the errors given: are these too large?")
     unanswered = made.laboratory.unanswered
     if unanswered:
         message, _ = unanswered.most_common(1)[0]

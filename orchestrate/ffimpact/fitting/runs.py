@@ -20,11 +20,22 @@ from ..sweeps.study import place, study
 from .curves import Array
 from .experiments import Experiment
 from .likelihood import STATED
-from .predictions import DENT, DERIVED, drag_of, features, observed
+from .predictions import DENT, DERIVED, check_units, drag_of, features, observed
 
 __all__ = ["Runs", "checked_free"]
 
 MOVES = ("body.1.velocity", "body.1.speed")  # entries that a speed sets
+# Entries that change the error of a run, not what runs
+NUMERICS = (
+    "accuracy",
+    "tolerance",
+    "mesh_size",
+    "contact_mesh_size",
+    "mesh_stretch",
+    "dt",
+    "degree",
+    "fields",
+)
 MESHED = ("mesh_size", "contact_mesh_size")
 TRACKED = 200  # states that a run keeps for a track
 LIMIT = 600.0  # largest time of a run [s]
@@ -81,7 +92,10 @@ class Runs:
             self.fixed.append(entries | _meshes(where))
             stated = _relative_errors(experiment, where)
             self.first_stated.append(np.where(np.isnan(stated), STATED * self.accuracy, stated))
-            features(experiment, row, where, self.gravity, self.air)  # raises for unknown names
+            own = features(
+                experiment, row, where, self.gravity, self.air
+            )  # raises for unknown names
+            check_units(experiment, own)
         self.begin(self.experiments)
 
     def begin(self, experiments: Sequence[Experiment]) -> None:
@@ -117,23 +131,26 @@ class Runs:
         if missing:
             rows = self._study([entries for *_, entries in missing], estimate=False)
             for (i, key, entries), row in zip(missing, rows):
-                own = self._features(i, row, entries) if row["exit"] == 0 else None
+                own, why = None, str(row["message"])
+                try:
+                    own = self._features(i, row, entries) if row["exit"] == 0 else None
+                except BadInput as error:  # such as a dent of a body that has not yielded
+                    why = str(error)
                 self.features_by_point[i, key] = own
                 if own is None:
-                    self.unanswered[str(row["message"] or "no such number")] += 1
+                    self.unanswered[why] += 1
         listed = iter(wanted)
         return [
             [self.features_by_point[next(listed)[:2]] for _ in points] for _ in self.experiments
         ]
 
-    def _features(self, i: int, row: Table, entries: dict[str, Value]) -> Array | None:
-        """The features of a run; None if it has no answer, such as a ball that stays."""
+    def _features(self, i: int, row: Table, entries: dict[str, Value]) -> Array:
+        """The features of a run. Raises BadInput if it has none, such as of a ball that stays."""
         where = place(self.folder, entries)
-        try:
-            own = features(self.experiments[i], row, where, self.gravity, self.air)
-        except BadInput:  # such as a dent of a body that has not yielded
-            return None
-        return own if np.isfinite(own).all() else None
+        own = features(self.experiments[i], row, where, self.gravity, self.air)
+        if not np.isfinite(own).all():
+            raise BadInput("a number has no value")
+        return own
 
     def fine(self, i: int, point: Mapping[str, Value], accuracy: float) -> tuple[Array, Array]:
         """What a run with elements and steps of this accuracy predicts for an experiment (m,), and the
@@ -281,6 +298,8 @@ def checked_free(
         raise BadInput(f"free: {len(free)} entries (accepted: up to 5)")
     bounds = {}
     for name, pair in free.items():
+        if not isinstance(name, str) or name.rpartition(".")[2] in NUMERICS:
+            raise BadInput(f"free: {brief(name)} (accepted: entries of the mechanics)")
         if not isinstance(pair, tuple | list) or len(pair) != 2:
             raise BadInput(f"free: {name}: '{brief(pair)}' (accepted: lowest and highest value)")
         try:
