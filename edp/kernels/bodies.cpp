@@ -322,6 +322,40 @@ inline void Bodies::slopes(const Step &step, size_t g, int q, double A[][T::F]) 
   }
 }
 
+void Bodies::stiffnessTimes(const double *x, double *force) {
+  Step atRest;
+  atRest.staticShare = 1;
+  elements.gather(x, nodal);
+  own.assign(elements.node.size() * elements.D, 0.);
+  elements.dispatch([&](auto stored) {
+    typedef decltype(stored) T;
+    #pragma omp parallel for
+    for (int g = 0; g < int(elements.count()); g++) this->template pull<T>(atRest, g);
+  });
+  elements.sum(own, nodalForces);
+  elements.scatter(nodalForces, force);
+}
+
+template<class T> void Bodies::pull(const Step &step, size_t g) {
+  // Forces at the nodes of element g of the stress that its moduli give to the nodal increments.
+  const int n = elements.nodesOf(g), from = elements.firstNode[g];
+  double x[mostNodes * T::D], *force = &own[size_t(from) * T::D];
+  for (int a = 0; a < n; a++)
+    std::copy_n(&nodal[elements.node[from + a] * T::D], T::D, x + a * T::D);
+  const double *N = &elements.shape[elements.firstShape[g]];
+  for (int q = elements.firstPoint[g]; q < elements.firstPoint[g + 1]; q++) {
+    double A[T::F][T::F], dF[T::F] = {}, P[T::F] = {};
+    slopes<T>(step, g, q, A);
+    for (int a = 0; a < n; a++) for (int k = 0; k < T::F; k++)
+      dF[k] += N[a * T::derivatives + T::derivative(k)] * x[a * T::D + T::component(k)];
+    for (int k = 0; k < T::F; k++) for (int l = 0; l < T::F; l++) P[k] += A[k][l] * dF[l];
+    for (int a = 0; a < n; a++) for (int k = 0; k < T::F; k++)
+      force[a * T::D + T::component(k)] += N[a * T::derivatives + T::derivative(k)] * P[k];
+    N += n * T::derivatives;
+  }
+  for (auto &term : terms) term->pullElement(step, elements, g, FofA.data(), x, force);
+}
+
 void Inertia::setMass(const Triplets &mass) {
   const std::vector<int> nodeOf = elements.nodesOfUnknowns();
   std::fill(massOf.begin(), massOf.end(), 0.);

@@ -31,6 +31,8 @@ class Bodies : public Term {
   void linearise(bool stressed);
   void lineariseAtRest();
   void addTangent(const Step &step) override;
+  // force = K x with the tangent K, without a matrix
+  void stiffnessTimes(const double *x, double *force);
   bool isValid() const override;           // no point loses most of its volume in the step
   void accept(const Step &step, const Vector &) override;
   // The history becomes that after a long time at the start of the step.
@@ -59,6 +61,7 @@ class Bodies : public Term {
   // increment and forces (node, component); contributions of each element to the forces
   std::vector<double> nodal, nodalForces, own;
 
+  template<class T> void pull(const Step &step, size_t g);
   template<class T> void deform(const Step &step, size_t g, Deformed &e, Tensor *F);
   template<class T> void elementForces(const Step &step, size_t g);
   template<class T> void stiffness(const Step &step);

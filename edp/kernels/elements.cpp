@@ -1,5 +1,7 @@
 // elements.cpp: the elements of elements.hpp from the matrices of the scripts.
 #include <algorithm>
+#include <numeric>
+#include <tuple>
 #include "elements.hpp"
 
 namespace bodies {
@@ -18,38 +20,75 @@ void Elements::component(int i, int dimensions, const Triplets &pick) {
     if (pick.value[e] != 0) unknown[pick.row[e] * D + i] = pick.column[e];
 }
 
-void Elements::make(const Triplets &gradient) {
+void Elements::make(const Triplets &shapes) {
+  struct Slope { int point, node, derivative;  double value; };
   const std::vector<int> nodeOf = nodesOfUnknowns();
   nq = int(weight.size());
-  H = gradient.n / nq - D * D;
-  std::vector<std::map<int, std::vector<double>>> at(nq);
-  for (size_t e = 0; e < gradient.size; e++) {
-    int k = gradient.row[e] / nq, s = k < D ? k : (k == D * D ? D : -1);
-    if (s < 0) continue;
-    std::vector<double> &N = at[gradient.row[e] % nq][nodeOf[gradient.column[e]]];
-    N.resize(D + H);
-    N[s] += gradient.value[e];
-  }
-  firstNode = firstPoint = firstPair = {0};
+  H = shapes.n / nq - D;
+  std::vector<Slope> slopes;
+  slopes.reserve(shapes.size);
+  for (size_t e = 0; e < shapes.size; e++)
+    slopes.push_back({shapes.row[e] % nq, nodeOf[shapes.column[e]], shapes.row[e] / nq,
+                      shapes.value[e]});
+  std::sort(slopes.begin(), slopes.end(), [](const Slope &s, const Slope &t) {
+    return std::tie(s.point, s.node, s.derivative) < std::tie(t.point, t.node, t.derivative);
+  });
+  firstNode = firstPoint = {0};
   firstShape = {0};
-  elementWeight = {0};
-  for (int q = 0; q < nq; q++) {
-    for (auto &N : at[q]) shape.insert(shape.end(), N.second.begin(), N.second.end());
-    elementWeight.back() += weight[q];
-    const bool same = q + 1 < nq && at[q].size() == at[q + 1].size()
-      && std::equal(at[q].begin(), at[q].end(), at[q + 1].begin(),
-                    [](auto &M, auto &N) { return M.first == N.first; });
-    if (same) continue;
-    for (auto &N : at[q]) node.push_back(N.first);
-    for (auto &M : at[q]) for (auto &N : at[q])
-      if (N.first <= M.first) pairOf.push_back(pair(M.first, N.first));
-    firstNode.push_back(int(node.size()));
-    firstPoint.push_back(q + 1);
-    firstShape.push_back(shape.size());
-    firstPair.push_back(int(pairOf.size()));
-    elementWeight.push_back(0);
+  size_t e = 0;
+  Indices before, nodesOfPoint;
+  for (int q = 0; q < nq; q++, before = nodesOfPoint) {
+    nodesOfPoint.clear();
+    for (size_t end = e; end < slopes.size() && slopes[end].point == q; end++)
+      if (nodesOfPoint.empty() || nodesOfPoint.back() != slopes[end].node)
+        nodesOfPoint.push_back(slopes[end].node);
+    if (q > 0 && nodesOfPoint != before) endElement(q, before);
+    const size_t from = shape.size();
+    shape.resize(from + nodesOfPoint.size() * (D + H), 0.);
+    for (int a = -1, last = -1; e < slopes.size() && slopes[e].point == q; e++) {
+      if (slopes[e].node != last) a++;
+      last = slopes[e].node;
+      shape[from + a * (D + H) + slopes[e].derivative] += slopes[e].value;
+    }
   }
-  elementWeight.pop_back();
+  if (nq > 0) endElement(nq, before);
+}
+
+void Elements::endElement(int q, const Indices &nodesOfPoints) {
+  // An element ends before point q; the shapes of its points are complete.
+  const int first = firstPoint.back();
+  node.insert(node.end(), nodesOfPoints.begin(), nodesOfPoints.end());
+  firstNode.push_back(int(node.size()));
+  firstPoint.push_back(q);
+  firstShape.push_back(firstShape.back() + (q - first) * nodesOfPoints.size() * (D + H));
+  elementWeight.push_back(std::accumulate(&weight[first], &weight[0] + q, 0.));
+}
+
+void Elements::couple() {
+  if (!firstPair.empty()) return;
+  firstPair = {0};
+  for (size_t g = 0; g < count(); g++) {
+    const int *a = &node[firstNode[g]], n = nodesOf(g);
+    for (int i = 0; i < n; i++) for (int j = 0; j <= i; j++) pairOf.push_back(pair(a[i], a[j]));
+    firstPair.push_back(int(pairOf.size()));
+  }
+}
+
+void Elements::gradient(const double *u, double *F) const {
+  std::vector<double> nodal;
+  gather(u, nodal);
+  dispatch([&](auto stored) {
+    typedef decltype(stored) T;
+    for (int k = 0; k < T::F; k++)
+      std::fill_n(F + size_t(k) * nq, nq, T::row(k) == T::column(k) ? 1. : 0.);
+    for (size_t g = 0; g < count(); g++) {
+      const double *N = shape.data() + firstShape[g];
+      for (int q = firstPoint[g]; q < firstPoint[g + 1]; q++)
+        for (int a = firstNode[g]; a < firstNode[g + 1]; a++, N += T::derivatives)
+          for (int k = 0; k < T::F; k++)
+            F[size_t(k) * nq + q] += N[T::derivative(k)] * nodal[node[a] * D + T::component(k)];
+    }
+  });
 }
 
 std::vector<int> Elements::nodesOfUnknowns() const {

@@ -64,9 +64,15 @@ public:
   // Sets the unknowns of component i; pick is componentOf[i] (nodes x ndof) of the scripts.
   void component(int i, int dimensions, const Triplets &pick);
 
-  // Elements and shapes from `gradient` (nF nq x ndof): its rows of F_11, F_12 ... and, for
-  // revolution, F_33.
-  void make(const Triplets &gradient);
+  // Elements from the shapes N_a,J as rows (J, point), for revolution also N_a/r, and columns by
+  // the unknown of component 0 of node a.
+  void make(const Triplets &shapes);
+
+  // Numbers the pairs of nodes of each element, which only matrices need.
+  void couple();
+
+  // F = I + grad u, stacked, of displacements u (ndof).
+  void gradient(const double *u, double *F) const;
 
   // The node of each unknown of component 0, else -1.
   std::vector<int> nodesOfUnknowns() const;
@@ -119,6 +125,8 @@ public:
   }
 
 private:
+  typedef std::vector<int> Indices;
+  void endElement(int q, const Indices &nodesOfPoints);
   std::map<std::pair<int, int>, int> knownPairs;   // number of each pair of nodes
 };
 

@@ -144,7 +144,9 @@ void Factor::pattern(const bodies::Elements &B) {
   storeColumns(entries);
   storeNeighbours(entries);
   findParts();
-  if (L) cholmod_free_factor(&L, &common);
+}
+
+void Factor::analyse() {
   cholmod_factor *analysis = cholmod_analyze(&A, &common);   // AMD, or METIS if AMD is poor
   check(analysis, "the order of the matrix");
   ordered.assign((int *)analysis->Perm, (int *)analysis->Perm + n);
@@ -152,12 +154,14 @@ void Factor::pattern(const bodies::Elements &B) {
 }
 
 void Factor::numbers(const bodies::Elements &B) {
+  if (n == 0) pattern(B);
   for (int j = 0; j < n; j++)
     for (int e = column[j]; e < column[j + 1]; e++)
       value[e] = B.free[j] == 0 || B.free[row[e]] == 0 ? row[e] == j : B.block[from[e]];
 }
 
 bool Factor::factorise(const std::vector<int> &w) {
+  if (ordered.empty()) analyse();
   order(w);
   setTails();
   if (!L->is_super) {

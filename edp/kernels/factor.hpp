@@ -15,10 +15,8 @@ class Factor {
 public:
   Factor();
 
-  // Sets the sparsity pattern of A from the node pairs of B, and CHOLMOD's order of the unknowns.
-  void pattern(const bodies::Elements &B);
-
-  // Copies the entries of A from B. Unknowns held by supports have rows and columns of identity.
+  // Copies the entries of A from B, at first also its sparsity pattern. Unknowns held by supports
+  // have rows and columns of identity.
   void numbers(const bodies::Elements &B);
 
   // Computes L with the unknowns w last. Returns false if S (by blocks also A) is not positive
@@ -84,6 +82,8 @@ private:
   void storeColumns(const std::vector<Entry> &entries);
   void storeNeighbours(const std::vector<Entry> &entries);
   cholmod_dense denseOf(const double *b) const;
+  void pattern(const bodies::Elements &B);
+  void analyse();                          // CHOLMOD's order
   void findParts();
   void order(const std::vector<int> &w);
   void setTails();

@@ -82,11 +82,10 @@ static void addBodies() {
       most = std::max(most, m.lambda / (2 * (m.lambda + m.mu)));
     return most;
   });
-  add("kernelBodies", +[](Sparse gradient, Sparse mass, Reals free) {
+  add("kernelBodies", +[](Sparse shapes, Sparse mass, Reals free) {
     elements.free = copied<double>(free);
-    elements.make(entries(gradient));
+    elements.make(entries(shapes));
     inertia.setMass(entries(mass));
-    factor.pattern(elements);
     body.make();
   });
   add("kernelMass", +[](Sparse mass) { inertia.setMass(entries(mass)); });
@@ -129,6 +128,7 @@ static void addBodies() {
 
 static void addStresses() {
   // Kernels of bodies.hpp: deformation, energies and stresses.
+  add("kernelGradient", +[](Reals u, Reals F) { elements.gradient(u, F); });
   // F, C, det F at the start of a step; det F at its end; pressures of the elements; energy
   // dissipated so far (nq) [J/m3]
   add("kernelDeformation", +[](Reals F, Reals C, Reals jacobian) {
@@ -250,6 +250,10 @@ static void addSupports() {
 }
 
 static void addFactor() {
+  add("kernelStiffness", +[](Reals x, Reals force) {   // K x of the undeformed bodies
+    body.lineariseAtRest();
+    body.stiffnessTimes(x, force);
+  });
   // Kernels of factor.hpp: the tangent A, its factorisation and its compliance.
   add("kernelTangentAtRest", +[](double massScale) {
     // massScale M + K of the undeformed bodies without damping
@@ -257,11 +261,13 @@ static void addFactor() {
     rest.massScale = massScale;
     rest.staticShare = 1;
     body.lineariseAtRest();
+    elements.couple();
     sumTangents(terms, rest, elements.block);
     factor.numbers(elements);
   });
   add("kernelTangent", +[]() {             // at the last evaluation
     body.linearise(true);
+    elements.couple();
     sumTangents(terms, stepNow, elements.block);
     factor.numbers(elements);
   });

@@ -355,6 +355,7 @@ bool ImplicitStep::factorise() {
 }
 
 void ImplicitStep::assemble() {
+  elements.couple();
   sumTangents(terms, ofA, elements.block);
   factor.numbers(elements);
 }

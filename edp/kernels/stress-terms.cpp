@@ -166,8 +166,8 @@ void Volume::addModuli(const Step &, size_t g, int q, const Symmetric &C,
   D.add(tensors::inverse(C), tensors::inverse(C), l, -l);
 }
 
-void Volume::addElementTangent(const Step &step, Elements &all, size_t g, const double *F) {
-  // g0 = sum of w dj/du and slope = scale U''/(sum of w) of the element; block += slope g0 g0^T.
+double *Volume::linearElement(const Step &step, const Elements &all, size_t g, const double *F) {
+  // g0 = sum of w dj/du and slope = scale U''/(sum of w) of the element. Returns g0.
   const int n = all.nodesOf(g), D = all.D, first = all.firstPoint[g];
   const laws::Material &m = material(first);
   double *ownG0 = &g0[size_t(all.firstNode[g]) * D], theta = 0;
@@ -184,6 +184,21 @@ void Volume::addElementTangent(const Step &step, Elements &all, size_t g, const 
     }
   });
   slope[g] = step.stiffnessScale * m.bulk * m.law->volume(theta)[2] / all.elementWeight[g];
+  return ownG0;
+}
+
+void Volume::pullElement(const Step &step, const Elements &all, size_t g, const double *F,
+                         const double *x, double *force) {
+  const double *ownG0 = linearElement(step, all, g, F);
+  double sum = 0;
+  for (int i = 0; i < all.nodesOf(g) * all.D; i++) sum += ownG0[i] * x[i];
+  for (int i = 0; i < all.nodesOf(g) * all.D; i++) force[i] += slope[g] * sum * ownG0[i];
+}
+
+void Volume::addElementTangent(const Step &step, Elements &all, size_t g, const double *F) {
+  // block += slope g0 g0^T
+  const int n = all.nodesOf(g), D = all.D;
+  const double *ownG0 = linearElement(step, all, g, F);
   const int *to = &all.pairOf[all.firstPair[g]];
   for (int a = 0; a < n; a++)
     for (int b = 0; b <= a; b++, to++)

@@ -46,6 +46,9 @@ class StressTerm {
                          laws::Moduli &D) const = 0;
   // Adds to the blocks of the element; F: stacked, where the stress is taken.
   virtual void addElementTangent(const Step &, Elements &, size_t, const double *) {}
+  // force += this tangent times x, both of the nodes of element g
+  virtual void pullElement(const Step &, const Elements &, size_t, const double *, const double *,
+                           double *) {}
 
   // Sets the trial history of the points to that at the end of the step.
   virtual void advance(const Step &, const Deformed &) {}
@@ -114,6 +117,8 @@ class Volume : public StressTerm {
   void addModuli(const Step &step, size_t g, int q, const Symmetric &C,
                  laws::Moduli &D) const override;
   void addElementTangent(const Step &step, Elements &all, size_t g, const double *F) override;
+  void pullElement(const Step &step, const Elements &all, size_t g, const double *F,
+                   const double *x, double *force) override;
   void addEnergy(Time time, const Deformed &e, double *W) const override;
   void accept() override { start = star; }
   void archive(Archive &archive) override { archive(start);  archive(ofTangent); }
@@ -123,6 +128,7 @@ class Volume : public StressTerm {
   Symmetric stress(int q, const Symmetric &C, double J, double p) const;   // p T
 
  private:
+  double *linearElement(const Step &step, const Elements &all, size_t g, const double *F);
   std::vector<double> ofTangent, slope, g0;
   bool slopeKnown = false;                 // g0 and slope are set
   // d - dBase and pressureRemainder by (node, component); the latter by elements

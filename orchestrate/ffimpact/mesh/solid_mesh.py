@@ -5,6 +5,7 @@ boundary faces: 1 may come into contact, 2 lies on the plane of symmetry x = 0, 
 z = 0, 4 never comes into contact.
 """
 
+import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -24,6 +25,7 @@ __all__ = [
     "MOST_CELLS",
     "MOST_RIGID_CELLS",
     "MOST_UNKNOWNS",
+    "most_unknowns",
     "SolidMesh",
     "cell_volumes",
     "cells_of",
@@ -42,7 +44,11 @@ LARGEST = 0.52  # largest element size of a ball over its radius: twelve element
 MOST_SOURCES = 2000  # largest number of points from which the size field measures distances
 FILL = 0.118  # volume of a regular tetrahedron over the cube of its edge
 MOST_CELLS = 400_000  # largest expected number of tetrahedra of a body
-MOST_UNKNOWNS = 150_000  # largest number of displacement unknowns of a run
+MOST_UNKNOWNS = 150_000  # largest number of displacement unknowns of a run with implicit steps
+BYTES, SHARE = (
+    8000,
+    0.8,
+)  # memory of an unknown with explicit steps, share of the machine's that a run takes
 MOST_RIGID_CELLS = (
     60_000  # of rigid bodies, which have few unknowns: FreeFem++ takes 40 kB for each
 )
@@ -141,6 +147,14 @@ def cell_volumes(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
 def right_handed(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
     """The tetrahedra (t, 4) with positive volumes: two corners of inverted ones are swapped."""
     return np.where(cell_volumes(points, cells)[:, None] < 0, cells[:, [0, 1, 3, 2]], cells)
+
+
+def most_unknowns(explicit: bool) -> int:
+    """The largest number of unknowns of a run, with explicit steps by the memory of the machine."""
+    if not explicit:
+        return MOST_UNKNOWNS
+    memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    return max(MOST_UNKNOWNS, int(SHARE * memory / BYTES / 1000) * 1000)
 
 
 def unknowns(cells: np.ndarray, degree: int) -> int:

@@ -282,9 +282,10 @@ def _solids(
         0 if body.rigid else solid_mesh.unknowns(made.cells, degree)
         for body, made in zip(scene.bodies, meshes)
     )
-    if count > solid_mesh.MOST_UNKNOWNS:
+    largest = solid_mesh.most_unknowns(explicit=scene.values["integrator"] == "central-difference")
+    if count > largest:
         raise BadInput(
-            f"mesh_size: the bodies have {count} unknowns (accepted: up to {solid_mesh.MOST_UNKNOWNS}; larger mesh_size, "
+            f"mesh_size: the bodies have {count} unknowns (accepted: up to {largest}; larger mesh_size, "
             f"contact_mesh_size or accuracy, coarser files, degree = 1)"
         )
     rigid = sum(len(made.cells) for body, made in zip(scene.bodies, meshes) if body.rigid)
