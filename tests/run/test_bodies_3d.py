@@ -105,7 +105,7 @@ def test_too_many_unknowns_are_refused(monkeypatch):
     and advice."""
     began = time.monotonic()
     for entries in ({"mesh_size": 1e-4}, {"mesh_size": 0.01, "contact_mesh_size": 1e-4}):
-        with pytest.raises(BadInput, match=r"mesh_size: 'ball' would have about .* tetrahedra \(accepted: up to 400000; larger mesh_size"):
+        with pytest.raises(BadInput, match=r"mesh_size: 'ball' would have about .* tetrahedra \(accepted: up to 1000000; larger mesh_size"):
             assembly.assemble(read(BALL | entries))
     monkeypatch.setattr(solid_mesh, "MOST_UNKNOWNS", 500)
     with pytest.raises(BadInput, match=r"mesh_size: the bodies have [0-9]* unknowns \(accepted: up to 500; larger mesh_size"):

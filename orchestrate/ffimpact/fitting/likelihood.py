@@ -162,7 +162,7 @@ class Likelihood:
         points = _scattered(box)
         if more is not None:
             points = np.vstack([more, points])
-        starts = _distinct(points[np.argsort(self.chi2(points))], box)[:STARTS]
+        starts = _distinct(points[np.argsort(self.chi2(points))], box)
         minima = [self._least(start, box.low, box.high) for start in starts]
         return sorted(minima, key=lambda pair: pair[1])
 
@@ -229,12 +229,15 @@ class Likelihood:
 
 
 def _distinct(points: Iterable[Array], box: Box) -> list[Array]:
-    """Those of the points that are farther than APART from all before."""
+    """The first STARTS of the points that are farther than APART from those before."""
     distinct: list[Array] = []
+    width = box.high - box.low
     for point in points:
-        apart = [np.abs((point - other) / (box.high - box.low)).max() for other in distinct]
+        apart = [np.abs((point - other) / width).max() for other in distinct]
         if min(apart, default=1.0) > APART:
             distinct.append(point)
+        if len(distinct) == STARTS:
+            break
     return distinct
 
 

@@ -43,7 +43,7 @@ BENT = 1.5  # largest size of a face on a layer over sqrt(R t)
 LARGEST = 0.52  # largest element size of a ball over its radius: twelve elements per full turn
 MOST_SOURCES = 2000  # largest number of points from which the size field measures distances
 FILL = 0.118  # volume of a regular tetrahedron over the cube of its edge
-MOST_CELLS = 400_000  # largest expected number of tetrahedra of a body
+MOST_CELLS = 1_000_000  # largest expected number of tetrahedra of a body
 MOST_UNKNOWNS = 150_000  # largest number of displacement unknowns of a run with implicit steps
 BYTES, SHARE = (
     8000,
