@@ -43,7 +43,7 @@ def scatter(x: Array, y: Array, errors: Array) -> float:
 
 
 def _wider(freedom: int) -> float:
-    """95 % of few values reach farther than 1.96 of their standard deviations (Student)."""
+    """The ends of 95 % of few values over 1.96 standard deviations (Student)."""
     from scipy.stats import t  # takes long to load
 
     return float(t.ppf(0.975, freedom)) / 1.96
