@@ -48,7 +48,7 @@ def draw(fit: Fit) -> Figure:
 def _curve(ax: Axes, name: str, curve: pd.DataFrame) -> None:
     ax.plot(curve["t"], curve["measured"], ".", color=GREY, label="measured")
     ax.plot(curve["t"], curve["predicted"], color=BLUE, label="predicted")
-    ax.set(xlabel="time in s", title=name)
+    ax.set(xlabel="time in s", ylabel="SI units", title=name)
     ax.xaxis.set_major_locator(MaxNLocator(4))
     ax.legend(fontsize="small")
 
@@ -73,8 +73,10 @@ def _profile(ax: Axes, fit: Fit, name: str) -> None:
     )
     unit = "" if row["unit"] in ("-", "1") else f" in {row['unit']}"
     ax.set_xlabel(f"{name}{unit}")
-    if row["known"] != "yes":
-        ax.set_title("not known by these data", fontsize="small")
+    words = str(row["known"]).removeprefix("yes").removeprefix(", ")
+    if words:
+        beside = words if str(row["known"]).startswith("yes") else "not known by these data"
+        ax.set_title(beside, fontsize="small")
 
 
 def _deviations(ax: Axes, fit: Fit) -> None:
